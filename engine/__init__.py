@@ -1,0 +1,35 @@
+"""Escapes in open Hamiltonian systems with polynomial potentials: orbits, exits, maps. Computes, and knows of no screen."""
+
+from engine.escape_maps import EscapeMap, Outcomes, classify_orbits, compute_map
+from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
+from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
+from engine.orbits import Orbit, integrate_orbit
+from engine.planes import Plane, Window, default_window, start_states, trace_zero_velocity_curve
+from engine.potentials import CASES, Potential
+
+__all__ = [
+    "CASES",
+    "CHAOS_THRESHOLD",
+    "LARGEST_SIDE",
+    "LONGEST_TIME",
+    "EscapeMap",
+    "Fate",
+    "LyapunovOrbit",
+    "MapSpec",
+    "Orbit",
+    "Outcomes",
+    "Plane",
+    "Potential",
+    "Regularity",
+    "Window",
+    "classify_orbits",
+    "compute_map",
+    "default_window",
+    "describe_fate",
+    "find_lyapunov_orbits",
+    "integrate_orbit",
+    "judge_regularity",
+    "start_states",
+    "trace_zero_velocity_curve",
+]

@@ -1,0 +1,46 @@
+"""What became of an orbit, in codes for arrays and in words for people; and what makes a bounded one chaotic."""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum
+
+from engine.taylor import events
+
+CHAOS_THRESHOLD = 1e-7
+"""A bounded orbit is chaotic when its SALI has fallen to this or below (Skokos 2001; the paper's criterion)."""
+
+
+class Fate(IntEnum):
+    """Code of an outcome. A code of 1 or more, which is no member, is the number of the channel the orbit left by."""
+
+    BOUNDED = events.BOUNDED
+    FORBIDDEN = -1
+    OUTSIDE = -2
+    NOT_COMPUTED = events.NOT_COMPUTED
+    FAILED = events.FAILED
+
+
+class Regularity(Enum):
+    """Character of a bounded orbit by SALI; the question does not arise for one that escapes."""
+
+    REGULAR = "regular"
+    CHAOTIC = "chaotic"
+
+
+_SENTENCES = {
+    Fate.BOUNDED: "Bounded: has not left by t_max.",
+    Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here, its kinetic energy would be negative.",
+    Fate.OUTSIDE: "Outside: the start already lies beyond a Lyapunov orbit.",
+    Fate.NOT_COMPUTED: "Not decided yet.",
+    Fate.FAILED: "Failed: the integration broke down here; please report this start.",
+}
+
+
+def describe_fate(fate: int) -> str:
+    """A sentence for a fate code; channels by their number."""
+    return f"Escaped through channel {fate}." if fate >= 1 else _SENTENCES[Fate(fate)]
+
+
+def judge_regularity(sali: float) -> Regularity:
+    """Regular or chaotic, from the SALI a bounded orbit ends with (0 to √2)."""
+    return Regularity.CHAOTIC if sali <= CHAOS_THRESHOLD else Regularity.REGULAR

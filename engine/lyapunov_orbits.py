@@ -1,0 +1,207 @@
+"""Lyapunov orbits: the unstable periodic orbit over each open saddle, whose curve across the channel is the exit.
+
+At energy h above a saddle the orbit swings between two points at rest on the zero-velocity curve and runs back along the
+same path (Contopoulos 1990, Astron. Astrophys. 231, 41). A start at rest on the wall a little too far in falls inward, one
+too far out falls outward; the orbit is the root of the velocity along the channel at the moment the swing turns back.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy import optimize
+
+from engine.potentials import Potential
+from engine.taylor import events
+from engine.taylor.build import load_kernels
+from engine.taylor.codegen import ORDER, TOLERANCE
+
+# In units of the distance from the well's bottom to the saddle: how far along the channel a start may run before it is
+# plain which way it falls, the first stride of the search for a bracket, and how far that search goes.
+_REACH = 1.0
+_FIRST_STRIDE = 0.01
+_FURTHEST = 2.0
+
+_SAMPLES_PER_SWING = 100
+_LARGEST_MISFIT = 1e-11
+_GATE_MARGIN = 1e-3
+_MOST_STEPS = 400
+
+
+@dataclass(frozen=True, eq=False)
+class LyapunovOrbit:
+    """One Lyapunov orbit; lengths and times are dimensionless.
+
+    Attributes
+    ----------
+    channel
+        Number of the exit channel it closes, from 1.
+    energy
+        Its energy h.
+    period
+        Time for there and back.
+    x, y
+        (201,) path over one whole period, evenly spaced in time, from rest on one wall to the other and back: the first
+        and the last point are the same.
+    curve
+        The exit as a row of numbers for the kernels (columns in `engine.taylor.events`).
+    """
+
+    channel: int
+    energy: float
+    period: float
+    x: np.ndarray
+    y: np.ndarray
+    curve: np.ndarray
+
+
+def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """The Lyapunov orbit over each saddle that lies below `energy`.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential`.
+    energy
+        h, finite, dimensionless; for cases I and II tested to 0.5, for III to 1.0.
+
+    Returns
+    -------
+    In channel order; empty at or below the escape energy, where nothing can leave.
+
+    Raises
+    ------
+    ValueError
+        When `energy` is not finite, or so high that no Lyapunov orbit that crosses its channel as a graph is found.
+    """
+    if not np.isfinite(energy):
+        raise ValueError(f"energy={energy}: must be a finite number")
+    return _find_all(potential, float(energy))
+
+
+@functools.lru_cache(maxsize=4096)
+def _find_all(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    return tuple(_find(potential, energy, channel) for channel in potential.open_channels(energy))
+
+
+def channel_axes(potential: Potential, channel: int) -> np.ndarray:
+    """Unit vector along the unstable direction of a channel's saddle, pointing away from the well."""
+    saddle = potential.saddles[channel - 1]
+    vxx, vxy, vyy = potential.hessian(*saddle)
+    outward = np.linalg.eigh(np.array([[vxx, vxy], [vxy, vyy]]))[1][:, 0]
+    outward = np.where(np.abs(outward) < 1e-13, 0.0, outward)
+    return outward if outward @ saddle > 0 else -outward
+
+
+def _find(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
+    kernels = load_kernels(potential.terms, potential.channels)
+    saddle = potential.saddles[channel - 1]
+    outward = channel_axes(potential, channel)
+    scale = float(np.hypot(*saddle))
+    steps = np.empty((_MOST_STEPS, 5))
+    frame = (*saddle, *outward, energy, _REACH * scale, TOLERANCE, steps)
+
+    def drift(u: float) -> float:
+        return float(kernels.swing(u, *frame)[0])
+
+    bracket = _bracket(drift, scale)
+    if bracket is None:
+        raise ValueError(f"energy={energy}: no Lyapunov orbit found across channel {channel} of potential {potential.name}")
+    u = optimize.brentq(drift, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
+    _, half_period, count = kernels.swing(u, *frame)
+    if not np.isfinite(half_period):
+        raise ValueError(f"energy={energy}: the Lyapunov orbit of channel {channel} of {potential.name} does not turn back")
+    x, y = _dense_path(kernels, steps[:count], half_period)
+    curve = _exit_curve(saddle, outward, x, y)
+    if curve is None:
+        raise ValueError(
+            f"energy={energy}: too high for potential {potential.name}: across channel {channel} the Lyapunov orbit is no "
+            f"longer a smooth graph, so the exit is not defined by it"
+        )
+    whole = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
+    arrays = (x[whole], y[whole], curve)
+    for array in arrays:
+        array.flags.writeable = False
+    return LyapunovOrbit(channel, energy, 2.0 * half_period, *arrays)
+
+
+def _bracket(drift: object, scale: float) -> tuple[float, float] | None:
+    """Two neighbouring starts, the inner of which falls inward and the outer outward; strides grow from the saddle on."""
+    assert callable(drift)
+    here, stride = 0.0, _FIRST_STRIDE * scale
+    inward = drift(here) < 0
+    while abs(here) < _FURTHEST * scale:
+        there = here + stride if inward else here - stride
+        value = drift(there)
+        if np.isnan(value):
+            return None
+        if (value < 0) != inward:
+            return (here, there) if inward else (there, here)
+        here, stride = there, 1.5 * stride
+    return None
+
+
+def _dense_path(kernels: ModuleType, steps: np.ndarray, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """x, y at evenly spaced times from 0 to `duration`."""
+    x_jet, y_jet = np.empty((2, ORDER + 1, len(steps)))
+    kernels.jets(len(steps), *(np.ascontiguousarray(column) for column in steps[:, :4].T), x_jet, y_jet)
+    times = np.linspace(0.0, duration, _SAMPLES_PER_SWING + 1)
+    row = np.searchsorted(steps[:, 4], times, side="right") - 1
+    tau = times - steps[row, 4]
+    powers = tau ** np.arange(ORDER + 1)[:, None]
+    return (x_jet[:, row] * powers).sum(axis=0), (y_jet[:, row] * powers).sum(axis=0)
+
+
+def _exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray | None:
+    """The path as u = f(s); None when it is not a graph over s or not smooth enough for the fit."""
+    u = outward[0] * (x - saddle[0]) + outward[1] * (y - saddle[1])
+    q = outward[0] * (y - saddle[1]) - outward[1] * (x - saddle[0])
+    middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
+    s = (q - middle) / half_width
+    if np.any(np.diff(s) <= 0):
+        return None
+    fit = chebyshev.chebfit(s, u, events.CURVE_DEGREE)
+    if np.max(np.abs(chebyshev.chebval(s, fit) - u)) > _LARGEST_MISFIT:
+        return None
+    slope = chebyshev.chebder(fit)
+    curve = np.empty(events.CURVE_COLUMNS)
+    curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
+    curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
+    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *chebyshev.chebval([-1.0, 1.0], slope)
+    curve[events.COEFFICIENTS :] = chebyshev.cheb2poly(np.pad(fit, (0, events.CURVE_DEGREE + 1 - fit.size)))
+    return curve
+
+
+def closed_curves(potential: Potential) -> np.ndarray:
+    """(channels, columns) exit curves of channels that are all closed: at infinity."""
+    curves = np.zeros((potential.channels, events.CURVE_COLUMNS))
+    for k, saddle in enumerate(potential.saddles):
+        curves[k, events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *channel_axes(potential, k + 1)
+        curves[k, events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
+    curves[:, events.HALF_WIDTH] = 1.0
+    curves[:, events.COEFFICIENTS] = np.inf
+    return curves
+
+
+def exit_curves(potential: Potential, energy: float) -> np.ndarray:
+    """(channels, columns) exit curves at one energy, for the kernels."""
+    curves = closed_curves(potential)
+    for orbit in find_lyapunov_orbits(potential, energy):
+        curves[orbit.channel - 1] = orbit.curve
+    return curves
+
+
+def exit_gates(curves: np.ndarray) -> np.ndarray:
+    """(channels, 3) straight lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
+    rows = curves.reshape(-1, *curves.shape[-2:])
+    s = np.linspace(-1.0, 1.0, 201)
+    heights = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
+    lowest = np.nanmin(np.where(np.isfinite(rows[..., events.COEFFICIENTS, None]), heights, np.inf), axis=(0, -1))
+    outward = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
+    saddles = rows[0, :, events.SADDLE_X : events.SADDLE_Y + 1]
+    offset = np.sum(outward * saddles, axis=1) + lowest - _GATE_MARGIN
+    return np.column_stack([outward, offset])

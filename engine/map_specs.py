@@ -1,0 +1,91 @@
+"""The request for a map: frozen, validated and hashable, so that it is also the key under which the answer is kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.planes import Plane, Window, default_window
+from engine.potentials import Potential
+
+LARGEST_SIDE = 4096
+"""Most columns or rows of a map."""
+
+LONGEST_TIME = 1e8
+"""Largest t_max; at this time the rounding of t itself reaches 1e-8."""
+
+
+@dataclass(frozen=True)
+class MapSpec:
+    """A map of escapes: which orbits, seen how finely, followed how long.
+
+    Parameters
+    ----------
+    potential
+        The `Potential`.
+    plane
+        Plane of initial conditions.
+    energy
+        h, finite, dimensionless; on (x, h) a (low, high) pair. At or below the escape energy nothing leaves.
+    resolution
+        (columns, rows), each 1 to 4096.
+    window
+        `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior. On (x, h) the ordinate
+        is the energy.
+    t_max
+        How long an orbit is followed, 0 < t_max ≤ 1e8.
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter, its value and what is legal.
+    """
+
+    potential: Potential
+    plane: Plane
+    energy: float | tuple[float, float]
+    resolution: tuple[int, int] = (225, 225)
+    window: Window = None  # type: ignore[assignment]  # None is replaced below
+    t_max: float = 1e5
+
+    def __post_init__(self) -> None:
+        plane = Plane(self.plane)
+        energy = _checked_energy(plane, self.energy)
+        for name, value in (("plane", plane), ("energy", energy), ("resolution", _checked_resolution(self.resolution))):
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "t_max", checked_t_max(self.t_max))
+        window: Any = self.window
+        if window is None:
+            window = default_window(self.potential, plane, energy)
+        object.__setattr__(self, "window", window if isinstance(window, Window) else Window(*map(float, window)))
+
+    def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
+        """x (columns,) and ordinate (rows,) of the pixel centres."""
+        return self.window.pixel_centres(*self.resolution)
+
+
+def checked_t_max(t_max: float) -> float:
+    """`t_max` as a float; ValueError unless 0 < t_max ≤ LONGEST_TIME."""
+    if not 0 < t_max <= LONGEST_TIME:
+        raise ValueError(f"t_max={t_max}: must be above 0 and at most {LONGEST_TIME:g}")
+    return float(t_max)
+
+
+def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
+    if plane is not Plane.X_H:
+        if not np.isscalar(energy) or not np.isfinite(energy):
+            raise ValueError(f"energy={energy!r}: on {plane.value} it must be one finite number")
+        return float(energy)  # type: ignore[arg-type]
+    values = tuple(float(h) for h in np.ravel(energy))
+    if len(values) != 2 or not (np.all(np.isfinite(values)) and values[0] < values[1]):
+        raise ValueError(f"energy={energy!r}: on {plane.value} it must be a pair (low, high) of finite numbers")
+    return values[0], values[1]
+
+
+def _checked_resolution(resolution: Any) -> tuple[int, int]:
+    sides = tuple(int(side) for side in resolution)
+    if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
+        raise ValueError(f"resolution={resolution!r}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
+    return sides

@@ -1,0 +1,166 @@
+"""Many orbits on their way: their state in arrays, and the carrying on of any of them, tile by tile, on any executor."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, fields, replace
+from functools import cache
+
+import numpy as np
+
+from engine.fates import Fate
+from engine.lyapunov_orbits import exit_gates
+from engine.potentials import Potential
+from engine.taylor.build import load_kernels
+from engine.taylor.codegen import TOLERANCE
+from engine.taylor.events import find_outside
+
+LANES = 64
+LARGEST_TILE = 2048
+# Steps a tile may take before it comes back: about 50 ms, the grain of cancelling and of frames.
+BUDGET = 2_000_000
+
+
+@cache
+def default_executor() -> ThreadPoolExecutor:
+    """The one bounded pool of this process: a thread for each core it may use; kernels hold no GIL."""
+    return ThreadPoolExecutor(os.process_cpu_count() or 1, thread_name_prefix="orbits")
+
+
+@dataclass
+class OrbitBatch:
+    """State of n orbits, resumable at any time.
+
+    Attributes
+    ----------
+    state
+        (n, 4) x, y, px, py at time `t`: where the orbit left, or the start of the step that goes on from here.
+    t
+        (n,) time reached; the escape time of an orbit that has left.
+    crossings
+        (n,) upward crossings of y = 0 until `t`.
+    last_crossings
+        (n,) those between `t` and t_max, of a bounded orbit.
+    fate
+        (n,) int8 codes, see `Fate`.
+    curve_row
+        (n,) the row of `curves` that holds the exits of this orbit's energy.
+    outside
+        (n,) int8: the channel beyond whose Lyapunov orbit the start lies, 0 inside.
+    """
+
+    state: np.ndarray
+    t: np.ndarray
+    crossings: np.ndarray
+    last_crossings: np.ndarray
+    fate: np.ndarray
+    curve_row: np.ndarray
+    outside: np.ndarray
+
+    @classmethod
+    def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
+        """Orbits at t = 0; a start whose state is not finite is forbidden. Outside starts are found by `mark_outside`."""
+        n = len(states)
+        fate = np.where(np.isfinite(states).all(axis=1), Fate.NOT_COMPUTED, Fate.FORBIDDEN).astype(np.int8)
+        counts = np.zeros((2, n), np.int64)
+        return cls(states.copy(), np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), np.zeros(n, np.int8))
+
+    def mark_outside(self, which: np.ndarray, curves: np.ndarray) -> None:
+        """Find those of the starts `which` that lie beyond an exit curve, and settle their fate."""
+        x, y = self.state[which, 0], self.state[which, 1]
+        channel = find_outside(x, y, curves, self.curve_row[which])
+        channel[self.fate[which] == Fate.FORBIDDEN] = 0
+        self.outside[which] = channel
+        self.fate[which[channel > 0]] = Fate.OUTSIDE
+
+    def reopen_bounded(self) -> None:
+        """Make bounded orbits undecided again, so that they can be carried on to a later t_max."""
+        bounded = self.fate == Fate.BOUNDED
+        self.fate[bounded] = Fate.NOT_COMPUTED
+        self.last_crossings[bounded] = 0
+
+    def copy(self) -> OrbitBatch:
+        return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
+
+
+@dataclass
+class _Tile:
+    """A part of a batch on its way to a worker and back."""
+
+    orbits: np.ndarray
+    batch: OrbitBatch
+    waiting: np.ndarray
+
+
+def _advance_tile(potential: Potential, curves: np.ndarray, gates: np.ndarray, tile: _Tile, horizon: float, final: bool) -> _Tile:
+    """The work of a worker: one budget's worth of steps."""
+    kernels = load_kernels(potential.terms, potential.channels)
+    todo = np.flatnonzero(tile.waiting)
+    b = tile.batch
+    kernels.advance(
+        todo, horizon, final, TOLERANCE, BUDGET, LANES, gates, curves, b.curve_row,
+        b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.waiting,
+    )  # fmt: skip
+    return tile
+
+
+def _tiles(batch: OrbitBatch, which: np.ndarray, workers: int) -> Iterator[_Tile]:
+    share = -(-which.size // (4 * workers))
+    size = int(np.clip(-(-share // LANES) * LANES, LANES, LARGEST_TILE))
+    for orbits in (which[begin : begin + size] for begin in range(0, which.size, size)):
+        part = OrbitBatch(**{field.name: getattr(batch, field.name)[orbits] for field in fields(batch)})
+        yield _Tile(orbits, part, np.ones(orbits.size, np.uint8))
+
+
+def carry_on(
+    potential: Potential,
+    curves: np.ndarray,
+    batch: OrbitBatch,
+    which: np.ndarray,
+    horizon: float,
+    *,
+    final: bool,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+    on_progress: Callable[[], None] | None = None,
+) -> bool:
+    """Carry the undecided orbits among `which` on until they leave or reach `horizon`; the batch is changed in place.
+
+    With `final` the horizon is t_max, and orbits still inside are bounded. Returns False when cancelled on the way, which leaves
+    the batch in a state to go on from. The outcome of each orbit is the same to the bit whatever the executor and the
+    interruptions.
+    """
+    executor = executor or default_executor()
+    workers = getattr(executor, "_max_workers", 2)
+    gates = exit_gates(curves)
+    todo = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
+    tiles = _tiles(batch, todo, workers)
+    running: set[Future[_Tile]] = set()
+
+    def submit(tile: _Tile) -> None:
+        running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final))
+
+    for tile in tiles:
+        submit(tile)
+        if len(running) >= 2 * workers:
+            break
+    while running:
+        done, running = wait(running, return_when=FIRST_COMPLETED)
+        stopped = cancel is not None and cancel.is_set()
+        for future in done:
+            tile = future.result()
+            _put_back(batch, tile)
+            following = tile if tile.waiting.any() else next(tiles, None)
+            if following is not None and not stopped:
+                submit(following)
+        if on_progress is not None and not stopped:
+            on_progress()
+    return not (cancel is not None and cancel.is_set())
+
+
+def _put_back(batch: OrbitBatch, tile: _Tile) -> None:
+    for field in fields(batch):
+        getattr(batch, field.name)[tile.orbits] = getattr(tile.batch, field.name)

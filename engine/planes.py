@@ -1,0 +1,159 @@
+"""Planes of initial conditions: what a point of a picture starts as, and where nothing can start.
+
+| plane   | start                                | ordinate |
+|---------|--------------------------------------|----------|
+| (x, y)  | px = 0, py > 0 from the energy       | y        |
+| (x, px) | y = 0, py > 0 from the energy        | px       |
+| (x, h)  | y = px = 0, py > 0 from the energy   | h        |
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import contourpy
+import numpy as np
+
+from engine.lyapunov_orbits import exit_curves, find_lyapunov_orbits
+from engine.potentials import Potential
+from engine.taylor.events import find_outside
+
+# The default window leaves this share of its side free around what it shows.
+_MARGIN = 0.03
+_SCAN = 801
+_FURTHEST = 4.0
+_CONTOUR_SAMPLES = 401
+
+
+class Plane(Enum):
+    """A plane of initial conditions; the value is its name on paper."""
+
+    X_Y = "(x, y)"
+    X_PX = "(x, px)"
+    X_H = "(x, h)"
+
+    @property
+    def ordinate(self) -> str:
+        """Name of the vertical coordinate."""
+        return {Plane.X_Y: "y", Plane.X_PX: "px", Plane.X_H: "h"}[self]
+
+
+@dataclass(frozen=True)
+class Window:
+    """A rectangle of a plane, edges included, dimensionless.
+
+    Raises ValueError when an edge is not finite or a side is empty or reversed.
+    """
+
+    x_low: float
+    x_high: float
+    ordinate_low: float
+    ordinate_high: float
+
+    def __post_init__(self) -> None:
+        for name, low, high in (
+            ("x", self.x_low, self.x_high),
+            ("ordinate", self.ordinate_low, self.ordinate_high),
+        ):
+            if not (np.isfinite(low) and np.isfinite(high) and low < high):
+                raise ValueError(f"window {name} range {low} … {high}: needs two finite numbers, the lower one first")
+
+    def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
+        """x (columns,) and ordinate (rows,) of the pixel centres; exactly symmetric in a symmetric window."""
+        return _centres(self.x_low, self.x_high, columns), _centres(self.ordinate_low, self.ordinate_high, rows)
+
+
+def _centres(low: float, high: float, count: int) -> np.ndarray:
+    offsets = (2 * np.arange(count) + 1 - count) / (2 * count)
+    return 0.5 * (low + high) + (high - low) * offsets
+
+
+def start_states(potential: Potential, plane: Plane, energy: float | np.ndarray, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
+    """(n, 4) states x, y, px, py of starts (x, ordinate) on a plane; py is NaN where the start is forbidden.
+
+    `energy` is h, or for (x, h) ignored: there the ordinate is the energy.
+    """
+    zero = np.zeros_like(x)
+    y, px = (ordinate, zero) if plane is Plane.X_Y else (zero, ordinate if plane is Plane.X_PX else zero)
+    h = ordinate if plane is Plane.X_H else energy
+    doubled = 2.0 * (h - potential.value(x, y)) - px * px
+    return np.column_stack([x, y, px, np.sqrt(np.where(doubled >= 0, doubled, np.nan))])
+
+
+def required_energy(potential: Potential, plane: Plane, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
+    """The lowest energy at which a start exists; for (x, h), V(x, 0) − h, which is positive where it does not."""
+    if plane is Plane.X_Y:
+        return potential.value(x, ordinate)
+    if plane is Plane.X_PX:
+        return 0.5 * ordinate**2 + potential.value(x, np.zeros_like(x))
+    return potential.value(x, np.zeros_like(x)) - ordinate
+
+
+def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float, window: Window) -> list[np.ndarray]:
+    """The limiting curve of a plane inside a window, as (n, 2) pieces: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
+
+    For (x, y) other energies give other equipotentials. For (x, h) `energy` is ignored.
+    """
+    x, ordinate = (
+        np.linspace(low, high, _CONTOUR_SAMPLES)
+        for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
+    )
+    needed = required_energy(potential, plane, *np.meshgrid(x, ordinate))
+    level = 0.0 if plane is Plane.X_H else energy
+    return [np.asarray(line) for line in contourpy.contour_generator(x, ordinate, needed).lines(level)]
+
+
+def default_window(potential: Potential, plane: Plane, energy: float | tuple[float, float]) -> Window:
+    """The window that shows the whole interior: all starts that exist and are not outside.
+
+    For (x, y) and (x, px) it is a square; for (x, h) `energy` is the pair of lowest and highest h.
+    """
+    highest = energy[1] if isinstance(energy, tuple) else energy
+    if plane is Plane.X_Y:
+        return _square(*_interior_extent(potential, highest))
+    x_low, x_high = _interior_interval(potential, highest)
+    if isinstance(energy, tuple):
+        margin = _MARGIN * (x_high - x_low)
+        return Window(x_low - margin, x_high + margin, *energy)
+    x = np.linspace(x_low, x_high, _SCAN)
+    px = np.sqrt(2.0 * max(highest - np.min(potential.value(x, np.zeros_like(x))), 0.0))
+    return _square(x_low, x_high, -float(px), float(px))
+
+
+def _square(x_low: float, x_high: float, low: float, high: float) -> Window:
+    half = 0.5 * max(x_high - x_low, high - low) * (1.0 + 2.0 * _MARGIN)
+    x, ordinate = 0.5 * (x_low + x_high), 0.5 * (low + high)
+    return Window(x - half, x + half, ordinate - half, ordinate + half)
+
+
+def _connected_run(allowed: np.ndarray) -> slice:
+    """The run of True around the middle of a scan."""
+    middle = allowed.size // 2
+    blocked = np.flatnonzero(~allowed)
+    low = blocked[blocked < middle].max(initial=-1) + 1
+    high = blocked[blocked > middle].min(initial=allowed.size)
+    return slice(low, high)
+
+
+def _interior_interval(potential: Potential, energy: float) -> tuple[float, float]:
+    """The x between which the axis y = 0 lies in the interior, to about a thousandth."""
+    x = np.linspace(-_FURTHEST, _FURTHEST, 4 * _SCAN)
+    zero = np.zeros_like(x)
+    outside = find_outside(x, zero, exit_curves(potential, energy)[None], np.zeros(x.size, np.int64))
+    run = _connected_run((potential.value(x, zero) <= energy) & (outside == 0))
+    return float(x[run][0]), float(x[run][-1])
+
+
+def _interior_extent(potential: Potential, energy: float) -> tuple[float, float, float, float]:
+    """The box around the interior of the (x, y) plane: rays from the well's bottom to its walls, and the exits."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 721)
+    radius = np.linspace(0.0, _FURTHEST, _SCAN)
+    x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
+    row = np.zeros(x.size, np.int64)
+    outside = find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row).reshape(x.shape)
+    inside = np.logical_and.accumulate((potential.value(x, y) <= energy) & (outside == 0), axis=1)
+    x, y = x[inside], y[inside]
+    for orbit in find_lyapunov_orbits(potential, energy):
+        x, y = np.append(x, orbit.x), np.append(y, orbit.y)
+    return float(x.min()), float(x.max()), float(y.min()), float(y.max())

@@ -1,0 +1,108 @@
+"""One orbit in full: its path from the dense output, and its deviation vectors from the linearised recurrence."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+import numpy as np
+
+from engine.taylor.codegen import ORDER, TOLERANCE
+from engine.taylor.compilation import kernel
+
+_CHUNK = 8192
+
+
+def trace_steps(kernels: ModuleType, state: np.ndarray, t_end: float, channels: int) -> np.ndarray:
+    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
+    gates = np.full((channels, 3), np.inf)
+    gates[:, :2] = 0.0
+    pieces = []
+    begin, start, count = 0.0, state, _CHUNK
+    while count == _CHUNK:
+        piece = np.empty((_CHUNK, 5))
+        count = kernels.trace(start, begin, t_end, TOLERANCE, gates, piece)
+        # A full piece ends where the next begins.
+        pieces.append(piece[: count - 1] if count == _CHUNK else piece[:count])
+        start, begin = piece[count - 1, :4].copy(), float(piece[count - 1, 4])
+    return np.concatenate(pieces)
+
+
+def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """(4, n) x, y, px, py at increasing `times`, from the series of the steps they fall into."""
+    row = np.searchsorted(steps[:, 4], times, side="right") - 1
+    path = np.empty((4, times.size))
+    for begin in range(0, len(steps), _CHUNK):
+        part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
+        jets = np.empty((2, ORDER + 1, part.shape[1]))
+        kernels.jets(part.shape[1], *part[:4], *jets)
+        inside = slice(*np.searchsorted(row, [begin, begin + part.shape[1]]))
+        local = row[inside] - begin
+        path[:, inside] = _evaluate(jets, local, times[inside] - part[4, local])
+    return path
+
+
+@kernel
+def _evaluate(jets, row, tau):
+    order = jets.shape[1] - 1
+    out = np.empty((4, row.size))
+    for n in range(row.size):
+        for axis in range(2):
+            value = jets[axis, order, row[n]]
+            slope = 0.0
+            for k in range(order - 1, -1, -1):
+                slope = slope * tau[n] + value
+                value = value * tau[n] + jets[axis, k, row[n]]
+            out[axis, n] = value
+            out[axis + 2, n] = slope
+    return out
+
+
+def carry_deviations(kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """SALI (n,) at `times` along a path (4, n), from two deviation vectors (2, 4) = δx, δy, δpx, δpy at its start.
+
+    The map of deviations over each interval is found for all intervals at once, then they are applied in turn, each
+    vector brought back to unit length every time. `times` may be at most a step of the integrator apart.
+    """
+    sali = np.empty(times.size)
+    w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
+    sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
+    for begin in range(0, times.size - 1, _CHUNK):
+        end = min(begin + _CHUNK, times.size - 1)
+        matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
+        _apply(matrices, w, sali[begin + 1 : end + 1])
+    return sali
+
+
+def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """(4, 4, n): [row, column, interval] of the linearised flow over each interval."""
+    n = durations.size
+    state = [np.ascontiguousarray(row) for row in path]
+    matrices = np.zeros((4, 4, n))
+    for column in range(4):
+        w = np.zeros((4, n))
+        w[column] = 1.0
+        kernels.tangent(n, durations, *state, *w)
+        matrices[:, column] = w
+    return matrices
+
+
+@kernel
+def _apply(matrices, w, sali):
+    moved = np.empty((2, 4))
+    for n in range(sali.size):
+        for v in range(2):
+            square = 0.0
+            for row in range(4):
+                total = 0.0
+                for column in range(4):
+                    total += matrices[row, column, n] * w[v, column]
+                moved[v, row] = total
+                square += total * total
+            for row in range(4):
+                w[v, row] = moved[v, row] / np.sqrt(square)
+        apart = 0.0
+        opposed = 0.0
+        for row in range(4):
+            apart += (w[0, row] - w[1, row]) ** 2
+            opposed += (w[0, row] + w[1, row]) ** 2
+        sali[n] = np.sqrt(min(apart, opposed))
