@@ -2,6 +2,7 @@
 
 from engine.escape_maps import EscapeMap, Outcomes, classify_orbits, compute_map
 from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
+from engine.jobs import Jobs, OrbitSpec, Ticket
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
 from engine.orbits import Orbit, integrate_orbit
@@ -15,13 +16,16 @@ __all__ = [
     "LONGEST_TIME",
     "EscapeMap",
     "Fate",
+    "Jobs",
     "LyapunovOrbit",
     "MapSpec",
     "Orbit",
+    "OrbitSpec",
     "Outcomes",
     "Plane",
     "Potential",
     "Regularity",
+    "Ticket",
     "Window",
     "classify_orbits",
     "compute_map",

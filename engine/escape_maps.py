@@ -107,6 +107,12 @@ class EscapeMap:
         errors = self.energy_error[np.isfinite(self.energy_error)]
         return float(errors.max()) if errors.size else float("nan")
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays, the state to go on from included."""
+        arrays = (self.fate, self.escape_time, self.crossings, self.energy_error, self.outside, self.started)
+        return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
+
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
         """Share of the starts for each channel, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
 

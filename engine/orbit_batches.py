@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, fields, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,19 @@ BUDGET = 2_000_000
 def default_executor() -> ThreadPoolExecutor:
     """The one bounded pool of this process: a thread for each core it may use; kernels hold no GIL."""
     return ThreadPoolExecutor(os.process_cpu_count() or 1, thread_name_prefix="orbits")
+
+
+class SerialExecutor(Executor):
+    """Runs everything at once in the calling thread: for one orbit, or inside a worker of a pool."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """The future of a call that is already over."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
 
 
 @dataclass
@@ -81,6 +95,11 @@ class OrbitBatch:
         bounded = self.fate == Fate.BOUNDED
         self.fate[bounded] = Fate.NOT_COMPUTED
         self.last_crossings[bounded] = 0
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays."""
+        return sum(getattr(self, field.name).nbytes for field in fields(self))
 
     def copy(self) -> OrbitBatch:
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from engine.escape_maps import classify_orbits
 from engine.fates import Fate, Regularity, describe_fate, judge_regularity
 from engine.map_specs import checked_t_max
+from engine.orbit_batches import SerialExecutor
 from engine.potentials import Potential
 from engine.taylor.build import load_kernels
 from engine.taylor.dense import carry_deviations, sample_path, trace_steps
@@ -61,6 +63,11 @@ class Orbit:
     energy: float
 
     @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays."""
+        return sum(array.nbytes for array in (self.t, self.x, self.y, self.px, self.py, self.sali, self.r2))
+
+    @property
     def regularity(self) -> Regularity | None:
         """Regular or chaotic by the SALI at t_max, for a bounded orbit; None for one that escapes."""
         return judge_regularity(float(self.sali[-1])) if self.fate == Fate.BOUNDED else None
@@ -75,7 +82,7 @@ class Orbit:
         return describe_fate(self.fate)
 
 
-def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5) -> Orbit:
+def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, cancel: threading.Event | None = None) -> Orbit:
     """Integrate one orbit until it escapes or `t_max`.
 
     Fate, escape time and crossings are those that a map gives for the same start. The deviation vectors obey eq. 4 of
@@ -91,8 +98,13 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5) -> Orb
         How long to follow it, 0 < t_max ≤ 1e8. Beyond 1e5 or so samples are up to a step of the integrator apart and take
         some 300 bytes a time unit.
 
+    cancel
+        When set, the work stops within about 0.1 s.
+
     Raises
     ------
+    concurrent.futures.CancelledError
+        When cancelled.
     ValueError
         When `state` is not four finite numbers, or `t_max` is out of its range.
     """
@@ -101,10 +113,10 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5) -> Orb
         raise ValueError(f"state={state!r}: must be four finite numbers x, y, px, py")
     t_max = checked_t_max(t_max)
     energy = float(potential.energy(start))
-    outcome = classify_orbits(potential, energy, start[None], t_max)
+    outcome = classify_orbits(potential, energy, start[None], t_max, executor=SerialExecutor(), cancel=cancel)
     fate = int(outcome.fate[0])
     t_end = 0.0 if fate == Fate.OUTSIDE else float(outcome.escape_time[0]) if fate >= 1 else t_max
-    times, path, sali = _follow(potential, start, t_end)
+    times, path, sali = _follow(potential, start, t_end, cancel)
     x, y, px, py = path
     arrays = (times, x, y, px, py, sali, x * x + y * y)
     for array in arrays:
@@ -114,15 +126,17 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5) -> Orb
     )  # fmt: skip
 
 
-def _follow(potential: Potential, start: np.ndarray, t_end: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _follow(
+    potential: Potential, start: np.ndarray, t_end: float, cancel: threading.Event | None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Times, path and SALI from 0 to `t_end`."""
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0))
     kernels = load_kernels(potential.terms, potential.channels)
-    steps = trace_steps(kernels, start, t_end, potential.channels)
+    steps = trace_steps(kernels, start, t_end, potential.channels, cancel)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
-    path = sample_path(kernels, steps, times)
-    return times, path, carry_deviations(kernels, path, times, DEVIATION_VECTORS)
+    path = sample_path(kernels, steps, times, cancel)
+    return times, path, carry_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
 
 
 def _sample_count(t_end: float, steps: int) -> int:

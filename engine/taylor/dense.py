@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import CancelledError
+from threading import Event
 from types import ModuleType
 
 import numpy as np
@@ -12,13 +14,19 @@ from engine.taylor.compilation import kernel
 _CHUNK = 8192
 
 
-def trace_steps(kernels: ModuleType, state: np.ndarray, t_end: float, channels: int) -> np.ndarray:
+def _stop_if(cancel: Event | None) -> None:
+    if cancel is not None and cancel.is_set():
+        raise CancelledError
+
+
+def trace_steps(kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None) -> np.ndarray:
     """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0
     pieces = []
     begin, start, count = 0.0, state, _CHUNK
     while count == _CHUNK:
+        _stop_if(cancel)
         piece = np.empty((_CHUNK, 5))
         count = kernels.trace(start, begin, t_end, TOLERANCE, gates, piece)
         # A full piece ends where the next begins.
@@ -27,11 +35,12 @@ def trace_steps(kernels: ModuleType, state: np.ndarray, t_end: float, channels: 
     return np.concatenate(pieces)
 
 
-def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray) -> np.ndarray:
+def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cancel: Event | None = None) -> np.ndarray:
     """(4, n) x, y, px, py at increasing `times`, from the series of the steps they fall into."""
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
+        _stop_if(cancel)
         part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
         jets = np.empty((2, ORDER + 1, part.shape[1]))
         kernels.jets(part.shape[1], *part[:4], *jets)
@@ -57,7 +66,9 @@ def _evaluate(jets, row, tau):
     return out
 
 
-def carry_deviations(kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+def carry_deviations(
+    kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, cancel: Event | None = None
+) -> np.ndarray:
     """SALI (n,) at `times` along a path (4, n), from two deviation vectors (2, 4) = δx, δy, δpx, δpy at its start.
 
     The map of deviations over each interval is found for all intervals at once, then they are applied in turn, each
@@ -67,6 +78,7 @@ def carry_deviations(kernels: ModuleType, path: np.ndarray, times: np.ndarray, v
     w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
     for begin in range(0, times.size - 1, _CHUNK):
+        _stop_if(cancel)
         end = min(begin + _CHUNK, times.size - 1)
         matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
         _apply(matrices, w, sali[begin + 1 : end + 1])

@@ -1,0 +1,235 @@
+"""Requests from many people to one pool: in the background, shared while in flight, cancellable, kept in bounded memory."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
+from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+from engine.escape_maps import EscapeMap, compute_map
+from engine.map_specs import MapSpec
+from engine.orbit_batches import default_executor
+from engine.orbits import Orbit, integrate_orbit
+from engine.potentials import Potential
+
+DEFAULT_CACHE_BYTES = 512 * 2**20
+# Threads that only wait for the pool and hand frames on; more jobs than this wait for their turn.
+_COORDINATORS = 32
+
+log = logging.getLogger(__name__)
+
+
+class Sized(Protocol):
+    """A result that knows its size in memory."""
+
+    @property
+    def nbytes(self) -> int: ...
+
+
+@dataclass(frozen=True)
+class OrbitSpec:
+    """The request for one orbit: `integrate_orbit`'s arguments, hashable."""
+
+    potential: Potential
+    state: tuple[float, float, float, float]
+    t_max: float
+
+
+class Ticket:
+    """One person's claim on a job. Cancelling it stops the job when nobody else waits for it."""
+
+    def __init__(self, release: Callable[[Ticket], None], on_result: Callable[[Any], None], on_error: Callable[[Exception], None]):
+        self._release = release
+        self._on_result = on_result
+        self._on_error = on_error
+        self._open = True
+
+    def cancel(self) -> None:
+        """Hear no more of it; at once, and as often as you like."""
+        self._open = False
+        self._release(self)
+
+    def deliver(self, result: Any) -> None:
+        self._call(self._on_result, result)
+
+    def fail(self, error: Exception) -> None:
+        self._call(self._on_error, error)
+
+    def _call(self, receive: Callable[[Any], None], what: Any) -> None:
+        if not self._open:
+            return
+        try:
+            receive(what)
+        except Exception:
+            # One listener's fault is no other listener's.
+            log.exception("a listener failed")
+
+
+@dataclass(eq=False)
+class _Job:
+    key: Hashable
+    tickets: list[Ticket]
+    cancel: threading.Event = field(default_factory=threading.Event)
+    latest: Any = None
+
+
+class ResultCache:
+    """Least recently used results, together at most `limit` bytes."""
+
+    def __init__(self, limit: int) -> None:
+        self.limit = limit
+        self.nbytes = 0
+        self._results: OrderedDict[Hashable, Any] = OrderedDict()
+
+    def get(self, key: Hashable) -> Any:
+        """The result, None when it is not kept."""
+        if key in self._results:
+            self._results.move_to_end(key)
+        return self._results.get(key)
+
+    def put(self, key: Hashable, result: Sized) -> None:
+        """Keep a result, at the cost of the ones not used for longest; one larger than the limit is not kept."""
+        self._drop(key)
+        if result.nbytes > self.limit:
+            return
+        self._results[key] = result
+        self.nbytes += result.nbytes
+        while self.nbytes > self.limit:
+            self._drop(next(iter(self._results)))
+
+    def keys(self) -> list[Hashable]:
+        return list(self._results)
+
+    def _drop(self, key: Hashable) -> None:
+        if key in self._results:
+            self.nbytes -= self._results.pop(key).nbytes
+
+
+class Jobs:
+    """The background work of a process.
+
+    Parameters
+    ----------
+    executor
+        Any `concurrent.futures.Executor` for the computing; None for the pool of this process.
+    cache_bytes
+        Most memory for finished and interrupted results, in bytes.
+    """
+
+    def __init__(self, executor: Executor | None = None, cache_bytes: int = DEFAULT_CACHE_BYTES) -> None:
+        self._executor = executor
+        self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
+        self._lock = threading.RLock()
+        self._in_flight: dict[Hashable, _Job] = {}
+        self.cache = ResultCache(cache_bytes)
+
+    def request_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]) -> Ticket:
+        """Ask for a map; frames come to `on_frame` from another thread, the last one with ``complete`` True.
+
+        A map that is kept comes at once; one that somebody already waits for is shared; one that was interrupted, or is kept
+        to a shorter t_max, goes on from there.
+        """
+        return self._request(spec, on_frame, on_error, self._run_map)
+
+    def request_orbit(self, spec: OrbitSpec, on_orbit: Callable[[Orbit], None], on_error: Callable[[Exception], None]) -> Ticket:
+        """Ask for an orbit; it comes to `on_orbit` from another thread."""
+        return self._request(spec, on_orbit, on_error, self._run_orbit)
+
+    @property
+    def in_flight(self) -> int:
+        """Number of jobs under way."""
+        return len(self._in_flight)
+
+    def _request(
+        self,
+        key: Hashable,
+        on_result: Callable[[Any], None],
+        on_error: Callable[[Exception], None],
+        run: Callable[[_Job], Sized],
+    ) -> Ticket:
+        ticket = Ticket(lambda ticket: self._leave(key, ticket), on_result, on_error)
+        with self._lock:
+            kept = self.cache.get(key)
+            if kept is not None and getattr(kept, "complete", True):
+                latest = kept
+            elif key in self._in_flight:
+                self._in_flight[key].tickets.append(ticket)
+                latest = self._in_flight[key].latest
+            else:
+                latest = None
+                job = self._in_flight[key] = _Job(key, [ticket])
+                self._coordinators.submit(self._work, job, run)
+        if latest is not None:
+            ticket.deliver(latest)
+        return ticket
+
+    def _leave(self, key: Hashable, ticket: Ticket) -> None:
+        with self._lock:
+            job = self._in_flight.get(key)
+            if job is None or ticket not in job.tickets:
+                return
+            job.tickets.remove(ticket)
+            if not job.tickets:
+                job.cancel.set()
+                del self._in_flight[key]
+
+    def _work(self, job: _Job, run: Callable[[_Job], Sized]) -> None:
+        error: Exception | None = None
+        result: Sized | None = None
+        try:
+            if not job.cancel.is_set():
+                result = run(job)
+        except CancelledError:
+            pass
+        except Exception as raised:
+            log.info("job %s ended with %r", job.key, raised)
+            error = raised
+        with self._lock:
+            if result is not None and not _is_less_than_kept(result, self.cache.get(job.key)):
+                self.cache.put(job.key, result)
+            if self._in_flight.get(job.key) is job:
+                del self._in_flight[job.key]
+            tickets = list(job.tickets)
+        for ticket in tickets:
+            if error is not None:
+                ticket.fail(error)
+            elif result is not None:
+                ticket.deliver(result)
+
+    def _run_map(self, job: _Job) -> EscapeMap:
+        spec = job.key
+        assert isinstance(spec, MapSpec)
+
+        def publish(frame: EscapeMap) -> None:
+            if frame.complete:
+                # The result itself, with the state to go on from, follows at once.
+                return
+            with self._lock:
+                job.latest = frame
+                tickets = list(job.tickets)
+            for ticket in tickets:
+                ticket.deliver(frame)
+
+        return compute_map(spec, publish, job.cancel, self._executor, resume=self._find_resumable(spec))
+
+    def _run_orbit(self, job: _Job) -> Orbit:
+        spec = job.key
+        assert isinstance(spec, OrbitSpec)
+        executor = self._executor or default_executor()
+        return executor.submit(integrate_orbit, spec.potential, spec.state, spec.t_max, cancel=job.cancel).result()
+
+    def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
+        """The kept map of the same picture that has been followed longest, though not beyond t_max."""
+        with self._lock:
+            candidates = [key for key in self.cache.keys() if isinstance(key, MapSpec) and replace(key, t_max=spec.t_max) == spec]
+            earlier = [key for key in candidates if key.t_max <= spec.t_max]
+            return self.cache.get(max(earlier, key=lambda key: key.t_max)) if earlier else None
+
+
+def _is_less_than_kept(result: Sized, kept: Any) -> bool:
+    """An interrupted result never replaces a finished one."""
+    return kept is not None and getattr(kept, "complete", True) and not getattr(result, "complete", True)
