@@ -1,0 +1,133 @@
+"""From the view state to jobs, and from their frames to the views. Callbacks submit and return; nothing is computed here."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+
+from app.map_columns import map_columns
+from app.view_state import ViewState
+from engine import EscapeMap, Fate, Jobs, Orbit, OrbitSpec, Potential, Ticket, describe_fate
+
+log = logging.getLogger(__name__)
+
+Locked = Callable[[Callable[..., None]], Callable[..., None]]
+
+
+class MapListener(Protocol):
+    """What shows a map on its way."""
+
+    def map_requested(self) -> None: ...
+    def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None: ...
+    def map_stopped(self) -> None: ...
+    def map_failed(self, sentence: str) -> None: ...
+    def orbit_requested(self, start: tuple[float, float]) -> None: ...
+    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None: ...
+    def orbit_refused(self, sentence: str) -> None: ...
+
+
+class Controller:
+    """One session's requests.
+
+    `locked` turns a function into one that any thread may call, that returns at once and runs under the session's lock
+    (Bokeh's ``Document.locked_callback``).
+    """
+
+    def __init__(self, state: ViewState, jobs: Jobs, listener: MapListener, locked: Locked) -> None:
+        self._state, self._jobs, self._listener = state, jobs, listener
+        self._map_ticket: Ticket | None = None
+        self._orbit_ticket: Ticket | None = None
+        self._generation = 0
+        self._show_map = locked(self._map_arrived)
+        self._show_map_problem = locked(self._map_failed)
+        self._show_orbit = locked(self._orbit_arrived)
+        self._show_orbit_problem = locked(self._orbit_failed)
+        state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution"])
+        state.param.watch(lambda *events: self.request_orbit(), ["start", "energy", "t_max"])
+
+    def request_map(self) -> None:
+        """Ask for the map in view; whatever was on its way for this session is cancelled."""
+        self.cancel_map()
+        self._generation += 1
+        generation = self._generation
+        try:
+            spec = self._state.map_spec()
+        except ValueError as error:
+            self._listener.map_failed(str(error))
+            return
+        self._listener.map_requested()
+        self._map_ticket = self._jobs.request_map(
+            spec,
+            lambda frame: self._show_map(generation, frame, map_columns(frame)),
+            lambda error: self._show_map_problem(generation, error),
+        )
+
+    def cancel_map(self) -> None:
+        """Stop the map on its way, if any."""
+        if self._map_ticket is not None:
+            self._map_ticket.cancel()
+            self._map_ticket = None
+
+    def stop_map(self) -> None:
+        """The user's cancel: stop, and paint no late frame."""
+        self.cancel_map()
+        self._generation += 1
+        self._listener.map_stopped()
+
+    def request_orbit(self) -> None:
+        """Ask for the orbit of the chosen start; a start that no orbit has is refused in words."""
+        if self._orbit_ticket is not None:
+            self._orbit_ticket.cancel()
+            self._orbit_ticket = None
+        start = self._state.start
+        if start is None:
+            return
+        self._listener.orbit_requested(start)
+        state = self._state.start_state()
+        if not np.isfinite(state).all():
+            self._listener.orbit_refused(describe_fate(Fate.FORBIDDEN))
+            return
+        spec = OrbitSpec(self._state.potential, state, self._state.t_max)
+        self._orbit_ticket = self._jobs.request_orbit(
+            spec,
+            lambda orbit: self._show_orbit(spec, orbit),
+            lambda error: self._show_orbit_problem(spec, error),
+        )
+
+    def close(self, *_: Any) -> None:
+        """The session is over: nobody waits for its jobs any more."""
+        self._generation += 1
+        self.cancel_map()
+        if self._orbit_ticket is not None:
+            self._orbit_ticket.cancel()
+
+    def _map_arrived(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        if generation == self._generation:
+            self._listener.map_arrived(frame, columns)
+
+    def _map_failed(self, generation: int, error: Exception) -> None:
+        if generation == self._generation:
+            self._listener.map_failed(_sentence(error))
+
+    def _orbit_arrived(self, spec: OrbitSpec, orbit: Orbit) -> None:
+        if self._is_wanted(spec):
+            self._listener.orbit_arrived(spec.potential, orbit)
+
+    def _orbit_failed(self, spec: OrbitSpec, error: Exception) -> None:
+        if self._is_wanted(spec):
+            self._listener.orbit_refused(_sentence(error))
+
+    def _is_wanted(self, spec: OrbitSpec) -> bool:
+        state = self._state
+        return state.start is not None and spec == OrbitSpec(state.potential, state.start_state(), state.t_max)
+
+
+def _sentence(error: Exception) -> str:
+    """What a person may read of an error; the rest goes to the log."""
+    if isinstance(error, ValueError):
+        return str(error)
+    log.error("a job failed", exc_info=error)
+    return "This could not be computed; the server's log says why."

@@ -1,0 +1,82 @@
+"""The page of one session: view state, controller and views, put together."""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.controller import Controller
+from app.view_state import ViewState
+from app.views.controls import Controls
+from app.views.maps import MapsView
+from app.views.orbit_panes import OrbitPanes
+from app.views.progress import ProgressView
+from app.views.verdict import VerdictView
+from engine import EscapeMap, Jobs, Orbit, Potential
+
+
+@cache
+def shared_jobs() -> Jobs:
+    """The background work of this process, shared by all sessions."""
+    return Jobs()
+
+
+class Explorer:
+    """The explorer of escapes; one for each visitor."""
+
+    def __init__(self) -> None:
+        document = pn.state.curdoc
+        assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
+        self.state = ViewState()
+        self.maps = MapsView(self._choose_start)
+        self.panes = OrbitPanes()
+        self.verdict = VerdictView(self._choose_start)
+        self.controls = Controls(self.state)
+        self.controller = Controller(self.state, shared_jobs(), self, partial(document.locked_callback, policy="latest"))
+        self.progress = ProgressView(self.controller.stop_map, self.controller.request_map)
+        self.state.param.watch(lambda event: self.verdict.follow_plane(event.new), "plane")
+        self.state.param.watch(lambda event: self.maps.mark_start(event.new), "start")
+        self.verdict.follow_plane(self.state.plane)
+        pn.state.on_session_destroyed(self.controller.close)
+        pn.state.onload(self.controller.request_map)
+
+    def layout(self) -> pn.viewable.Viewable:
+        """The whole page."""
+        orbit = pn.FlexBox(
+            self.verdict.layout(), self.panes.path, self.panes.sali, self.panes.r2, justify_content="center", gap="4px"
+        )
+        main = pn.Column(
+            self.controls.layout(), self.progress.layout(), self.maps.layout(), orbit, sizing_mode="stretch_width", margin=(0, 10)
+        )
+        return pmui.Page(title="Escape Explorer", main=[main], theme_toggle=False)
+
+    def _choose_start(self, x: float, ordinate: float) -> None:
+        self.state.start = (x, ordinate)
+
+    def map_requested(self) -> None:
+        self.progress.start()
+
+    def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        with pn.io.hold():
+            self.maps.show(frame, columns)
+            self.progress.show(frame)
+
+    def map_stopped(self) -> None:
+        self.progress.stop()
+
+    def map_failed(self, sentence: str) -> None:
+        self.progress.fail(sentence)
+
+    def orbit_requested(self, start: tuple[float, float]) -> None:
+        self.verdict.expect(start)
+
+    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
+        with pn.io.hold():
+            self.verdict.show(orbit)
+            self.panes.show(potential, orbit)
+
+    def orbit_refused(self, sentence: str) -> None:
+        self.verdict.say(sentence)

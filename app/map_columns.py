@@ -1,0 +1,50 @@
+"""From a map to the columns of the one data source that all four pictures share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.palette import CROSSING_CLASSES, OUTCOMES
+from engine import EscapeMap, Fate
+
+_OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
+_FIRST_CLASS = len(OUTCOMES)
+_LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
+
+
+def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
+    """One image a column, in the smallest types that hold it, and the place of the image in the plane."""
+    shown = frame.stretched()
+    fate, crossings = shown["fate"], shown["crossings"]
+    window = frame.spec.window
+    return {
+        "fate": [_codes(fate, fate - 1)],
+        "crossing_class": [_codes(fate, np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1)],
+        "crossings": [crossings.astype(np.int32)],
+        "escape_time": [shown["escape_time"].astype(np.float32)],
+        "x": [window.x_low],
+        "y": [window.ordinate_low],
+        "dw": [window.x_high - window.x_low],
+        "dh": [window.ordinate_high - window.ordinate_low],
+        "complete": [frame.complete],
+    }
+
+
+def _codes(fate: np.ndarray, escaped_class: np.ndarray) -> np.ndarray:
+    """Pixel codes: outcomes by their place in the palette, escaped pixels by a class of their own after those."""
+    codes = (_FIRST_CLASS + escaped_class).astype(np.uint8)
+    for outcome, code in _OUTCOME_CODES.items():
+        codes[fate == outcome] = code
+    return codes
+
+
+def longest_typical_time(frame: EscapeMap) -> float:
+    """The escape time that all but the slowest hundredth of the escaped pixels stay below, rounded up to 1, 2 or 5 · 10^k."""
+    times = frame.escape_time[frame.fate > Fate.BOUNDED]
+    if times.size == 0:
+        return 100.0
+    high = max(float(np.quantile(times, 0.99)), 10.0)
+    power = 10.0 ** np.floor(np.log10(high))
+    return float(power * next(step for step in (1.0, 2.0, 5.0, 10.0) if step * power >= high))
