@@ -27,6 +27,9 @@ CRITICAL_EQUIPOTENTIAL = "#d62728"
 START = "#111111"
 START_HALO = "#ffffff"
 ORBIT = "#1d4e89"
+ORBIT_DENSITY = ["#a9c6e8", "#1d4e89", "#081c3a"]
+"""Seldom to often visited, for orbits drawn by datashader."""
+
 THRESHOLD = "#d62728"
 
 

@@ -225,7 +225,7 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
     off = np.abs(potential.energy(states) - energy)
     if np.any(off > ENERGY_TOLERANCE):
         row = int(np.argmax(off))
-        raise ValueError(f"states: row {row} has energy {potential.energy(states[row])!r}; all must have energy={energy} to {ENERGY_TOLERANCE:g}")
+        raise ValueError(f"states: row {row} has energy {float(potential.energy(states[row]))!r}; all must have energy={energy} to {ENERGY_TOLERANCE:g}")
     return states
 
 
@@ -286,21 +286,19 @@ class _MapRun:
         self.horizon = min(SHORTEST_HORIZON, spec.t_max)
         self.unsolved = set(range(len(self.curves)))
 
-    def levels(self) -> Iterator[np.ndarray]:
-        """Pixels of each refinement, coarse to fine, those of earlier levels left out; the last one holds all pixels."""
+    def levels(self) -> Iterator[tuple[np.ndarray, int]]:
+        """(pixels, stride) of each refinement, coarse to fine, those of earlier levels left out; the last one holds all pixels."""
         numbers = np.arange(self.started.size).reshape(self.shape)
         stride = 1 if self.started.all() else self.stride
         while stride > 1:
             rows, columns = (np.unique(_anchors(size, stride)) for size in self.shape)
-            self.stride = stride
-            yield numbers[np.ix_(rows, columns)].ravel()
+            yield numbers[np.ix_(rows, columns)].ravel(), stride
             stride //= 2
-        self.stride = 1
-        yield numbers.ravel()
+        yield numbers.ravel(), 1
 
-    def begin(self, pixels: np.ndarray, horizon: float) -> np.ndarray:
+    def begin(self, pixels: np.ndarray, stride: int, horizon: float) -> np.ndarray:
         """Start a stage: find the exits that its pixels need, mark starts that lie outside, and return the exit curves."""
-        self.horizon = horizon
+        self.stride, self.horizon = stride, horizon
         for row in self.unsolved.intersection(np.unique(self.curve_row[pixels]).tolist()):
             self.curves[row] = exit_curves(self.spec.potential, self._row_energy(row))
             self.unsolved.discard(row)
@@ -380,10 +378,10 @@ def compute_map(
             on_frame(run.frame())
             last = time.monotonic()
 
-    for pixels, horizon in _stages(run):
+    for pixels, stride, horizon in _stages(run):
         if cancel is not None and cancel.is_set():
             break
-        curves = run.begin(pixels, horizon)
+        curves = run.begin(pixels, stride, horizon)
         carry_on(
             spec.potential, curves, run.batch, pixels, horizon,
             final=horizon == spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: publish(FRAME_PAUSE),
@@ -392,14 +390,14 @@ def compute_map(
     return run.result()
 
 
-def _stages(run: _MapRun) -> Iterator[tuple[np.ndarray, float]]:
-    """(pixels, horizon): every level at the shortest horizon, then all pixels at longer ones."""
+def _stages(run: _MapRun) -> Iterator[tuple[np.ndarray, int, float]]:
+    """(pixels, stride, horizon): every level at the shortest horizon, then all pixels at longer ones."""
     horizons = _horizons(run.spec.t_max)
-    for pixels in run.levels():
-        yield pixels, horizons[0]
+    for pixels, stride in run.levels():
+        yield pixels, stride, horizons[0]
     everything = np.arange(run.started.size)
     for horizon in horizons[1:]:
-        yield everything, horizon
+        yield everything, 1, horizon
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:

@@ -30,6 +30,10 @@ _SAMPLES_PER_SWING = 100
 _LARGEST_MISFIT = 1e-11
 _GATE_MARGIN = 1e-3
 _MOST_STEPS = 400
+# Column k holds the power series of the Chebyshev polynomial T_k.
+_CHEBYSHEV_TO_POWER = np.column_stack([
+    np.pad(chebyshev.cheb2poly(row[: k + 1]), (0, events.CURVE_DEGREE - k)) for k, row in enumerate(np.eye(events.CURVE_DEGREE + 1))
+])
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +92,7 @@ def _find_all(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     return tuple(_find(potential, energy, channel) for channel in potential.open_channels(energy))
 
 
+@functools.cache
 def channel_axes(potential: Potential, channel: int) -> np.ndarray:
     """Unit vector along the unstable direction of a channel's saddle, pointing away from the well."""
     saddle = potential.saddles[channel - 1]
@@ -164,26 +169,31 @@ def _exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: np.nd
     s = (q - middle) / half_width
     if np.any(np.diff(s) <= 0):
         return None
-    fit = chebyshev.chebfit(s, u, events.CURVE_DEGREE)
-    if np.max(np.abs(chebyshev.chebval(s, fit) - u)) > _LARGEST_MISFIT:
+    basis = chebyshev.chebvander(s, events.CURVE_DEGREE)
+    fit = np.linalg.lstsq(basis, u, rcond=None)[0]
+    if np.max(np.abs(basis @ fit - u)) > _LARGEST_MISFIT:
         return None
-    slope = chebyshev.chebder(fit)
+    power = _CHEBYSHEV_TO_POWER @ fit
+    degrees = np.arange(events.CURVE_DEGREE + 1)
+    slopes = [float(np.sum(power * degrees * side ** (degrees - 1))) for side in (-1.0, 1.0)]
     curve = np.empty(events.CURVE_COLUMNS)
     curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *chebyshev.chebval([-1.0, 1.0], slope)
-    curve[events.COEFFICIENTS :] = chebyshev.cheb2poly(np.pad(fit, (0, events.CURVE_DEGREE + 1 - fit.size)))
+    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *slopes
+    curve[events.COEFFICIENTS :] = power
     return curve
 
 
 def closed_curves(potential: Potential) -> np.ndarray:
-    """(channels, columns) exit curves of channels that are all closed: at infinity."""
+    """(channels, columns) curves of channels that are all closed: straight across their saddles.
+
+    No orbit of lower energy than the saddle gets there from inside; what such an energy allows beyond is outside.
+    """
     curves = np.zeros((potential.channels, events.CURVE_COLUMNS))
     for k, saddle in enumerate(potential.saddles):
         curves[k, events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *channel_axes(potential, k + 1)
         curves[k, events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
     curves[:, events.HALF_WIDTH] = 1.0
-    curves[:, events.COEFFICIENTS] = np.inf
     return curves
 
 
@@ -199,8 +209,7 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
     """(channels, 3) straight lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
     rows = curves.reshape(-1, *curves.shape[-2:])
     s = np.linspace(-1.0, 1.0, 201)
-    heights = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
-    lowest = np.nanmin(np.where(np.isfinite(rows[..., events.COEFFICIENTS, None]), heights, np.inf), axis=(0, -1))
+    lowest = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))
     outward = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
     saddles = rows[0, :, events.SADDLE_X : events.SADDLE_Y + 1]
     offset = np.sum(outward * saddles, axis=1) + lowest - _GATE_MARGIN

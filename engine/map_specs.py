@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
 from typing import Any
 
@@ -65,6 +66,13 @@ class MapSpec:
         """x (columns,) and ordinate (rows,) of the pixel centres."""
         return self.window.pixel_centres(*self.resolution)
 
+    def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
+        """(row, column) of the pixel that holds a point of the plane; None outside the window."""
+        window, (columns, rows) = self.window, self.resolution
+        column = int(np.floor((x - window.x_low) / (window.x_high - window.x_low) * columns))
+        row = int(np.floor((ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows))
+        return (row, column) if 0 <= row < rows and 0 <= column < columns else None
+
 
 def checked_t_max(t_max: float) -> float:
     """`t_max` as a float; ValueError unless 0 < t_max ≤ LONGEST_TIME."""
@@ -85,7 +93,10 @@ def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
 
 
 def _checked_resolution(resolution: Any) -> tuple[int, int]:
-    sides = tuple(int(side) for side in resolution)
+    try:
+        sides = tuple(operator.index(side) for side in resolution)
+    except TypeError:
+        sides = ()
     if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
         raise ValueError(f"resolution={resolution!r}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
     return sides

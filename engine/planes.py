@@ -23,6 +23,7 @@ from engine.taylor.events import find_outside
 _MARGIN = 0.03
 _SCAN = 801
 _FURTHEST = 4.0
+_RAYS = 180
 _CONTOUR_SAMPLES = 401
 
 
@@ -147,8 +148,8 @@ def _interior_interval(potential: Potential, energy: float) -> tuple[float, floa
 
 def _interior_extent(potential: Potential, energy: float) -> tuple[float, float, float, float]:
     """The box around the interior of the (x, y) plane: rays from the well's bottom to its walls, and the exits."""
-    angle = np.linspace(0.0, 2.0 * np.pi, 721)
-    radius = np.linspace(0.0, _FURTHEST, _SCAN)
+    angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
+    radius = np.linspace(0.0, _FURTHEST, _SCAN // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
     row = np.zeros(x.size, np.int64)
     outside = find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row).reshape(x.shape)

@@ -17,6 +17,7 @@ _FORMULAS = {
     "III": "V = ½(x² + y²) − x² y²",
 }
 _ENERGY_STEP = 0.001
+_PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
 
 
 class Controls:
@@ -24,9 +25,9 @@ class Controls:
 
     def __init__(self, state: ViewState) -> None:
         self.state = state
-        self.case = pmui.RadioButtonGroup(label="Case", options=list(CASES), value=state.case, size="small")
+        self.case = pmui.RadioButtonGroup(label="Case", options=list(CASES), value=state.case, size="small", sx=_PLAIN)
         self.plane = pmui.RadioButtonGroup(
-            label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, size="small"
+            label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, size="small", sx=_PLAIN
         )
         self.energy = pmui.FloatSlider(label="Energy h", step=_ENERGY_STEP, format="0.000", sizing_mode="stretch_width")
         self.exact_energy = pmui.FloatInput(label="h exactly", value=state.energy, step=_ENERGY_STEP, format="0.[0000000000000000]", width=130, size="small")

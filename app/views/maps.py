@@ -20,7 +20,6 @@ from bokeh.models import (
     PanTool,
     Range1d,
     ResetTool,
-    SaveTool,
     Span,
     WheelZoomTool,
 )
@@ -30,7 +29,7 @@ from app import palette
 from app.map_columns import longest_typical_time
 from app.views.legends import legend
 from app.views.outlines import Outlines
-from engine import EscapeMap, Window
+from engine import EscapeMap, Fate, MapSpec, Window
 
 FRAME = 300
 """Side of each picture in pixels: four fit a screen of 1600, one fits a phone of 420."""
@@ -51,14 +50,14 @@ class MapsView:
         self.start = ColumnDataSource({"x": [], "y": []}, name="start")
         self.outlines = Outlines()
         self._time_mapper = LogColorMapper(palette=palette.ESCAPE_TIME, low=1.0, high=100.0, nan_color="rgba(0,0,0,0)")
-        self._home: Window | None = None
+        self._spec: MapSpec | None = None
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._spans = Span(dimension="width", line_alpha=0.35), Span(dimension="height", line_alpha=0.35)
-        self._hover_rows = _hover_rows()
+        self._hover_text = _hover_text(self.source)
         self.figures = {name: self._figure(name, title) for name, title in TITLES.items()}
         self._paint()
         for plot in self.figures.values():
-            plot.on_event(Tap, lambda event: on_tap(event.x, event.y))
+            plot.on_event(Tap, lambda event: on_tap(*self._snapped(event.x, event.y)))
         self._legends = {name: pn.pane.HTML(width=FRAME + 60, margin=(0, 5)) for name in TITLES}
 
     def layout(self) -> pn.viewable.Viewable:
@@ -71,14 +70,10 @@ class MapsView:
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame; the ranges follow a new window unless the user has zoomed away from the old one."""
-        window = frame.spec.window
-        if window != self._home:
-            if self._home is None or self._is_at(self._home):
-                self._go_to(window)
-            self._home = window
-            for axis, low, high in zip(self._ranges, (window.x_low, window.ordinate_low), (window.x_high, window.ordinate_high), strict=True):
-                axis.reset_start, axis.reset_end = low, high
-            self._describe(frame)
+        if frame.spec != self._spec:
+            self._follow(frame.spec)
+            self._describe(frame.spec)
+            self._spec = frame.spec
         if frame.stride == 1:
             self._time_mapper.high = longest_typical_time(frame)
         self.source.data = columns
@@ -87,6 +82,24 @@ class MapsView:
         """Put the cross of the chosen start on every picture, or take it away."""
         x, y = ([start[0]], [start[1]]) if start is not None else ([], [])
         self.start.data = {"x": x, "y": y}
+
+    def _snapped(self, x: float, ordinate: float) -> tuple[float, float]:
+        """The centre of the pixel clicked, so that the orbit is the very one whose colour was clicked."""
+        pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
+        if self._spec is None or pixel is None:
+            return x, ordinate
+        columns, rows = self._spec.pixel_centres()
+        return float(columns[pixel[1]]), float(rows[pixel[0]])
+
+    def _follow(self, spec: MapSpec) -> None:
+        """Move the ranges to a new window, unless they are zoomed into the same plane of the same potential."""
+        window, old = spec.window, self._spec
+        same_plane = old is not None and (old.potential, old.plane) == (spec.potential, spec.plane)
+        if old is None or not same_plane or self._is_at(old.window):
+            self._go_to(window)
+        x, y = self._ranges
+        x.update(reset_start=window.x_low, reset_end=window.x_high)
+        y.update(reset_start=window.ordinate_low, reset_end=window.ordinate_high)
 
     def _is_at(self, window: Window) -> bool:
         x, y = self._ranges
@@ -97,9 +110,8 @@ class MapsView:
         x.update(start=window.x_low, end=window.x_high)
         y.update(start=window.ordinate_low, end=window.ordinate_high)
 
-    def _describe(self, frame: EscapeMap) -> None:
+    def _describe(self, spec: MapSpec) -> None:
         """Axis names, outlines and legends of a new plane, case or energy."""
-        spec = frame.spec
         for plot in self.figures.values():
             plot.yaxis.axis_label = spec.plane.ordinate
         self.outlines.show(spec)
@@ -116,7 +128,7 @@ class MapsView:
 
     def _figure(self, name: str, title: str) -> figure:
         wheel = WheelZoomTool()
-        tools = [PanTool(), wheel, BoxZoomTool(match_aspect=True), ResetTool(), SaveTool(), CrosshairTool(overlay=self._spans)]
+        tools = [PanTool(), wheel, BoxZoomTool(match_aspect=True), ResetTool(), CrosshairTool(overlay=self._spans, visible=False)]
         plot = figure(
             name=name, title=title, tools=tools, active_scroll=wheel, toolbar_location="above",
             frame_width=FRAME, frame_height=FRAME, x_range=self._ranges[0], y_range=self._ranges[1],
@@ -140,7 +152,8 @@ class MapsView:
         for name, plot in self.figures.items():
             for column, mapper in layers[name]:
                 image = plot.image(column, "x", "y", "dw", "dh", source=self.source, color_mapper=mapper)
-            plot.add_tools(HoverTool(renderers=[image], tooltips=self._hover_rows[0], formatters=self._hover_rows[1]))
+            text, formatters = self._hover_text
+            plot.add_tools(HoverTool(renderers=[image], tooltips=text, formatters=formatters, attachment="vertical", visible=False))
             self.outlines.draw(plot, full=name == "curves")
             plot.scatter("x", "y", source=self.start, marker="cross", size=16, line_width=5, line_color=palette.START_HALO)
             plot.scatter("x", "y", source=self.start, marker="cross", size=14, line_width=2, line_color=palette.START)
@@ -160,16 +173,28 @@ def _blank() -> dict[str, list[Any]]:
     return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "complete": [False]}
 
 
-def _hover_rows() -> tuple[list[tuple[str, str]], dict[str, CustomJSHover]]:
-    """What a hover reads out of a pixel, the same on all pictures."""
+_HOVER_DETAILS = """
+const {flat_index} = special_vars.image_index
+const fate = source.data.fate[0][flat_index]
+if (fate < bounded) return ""
+const time = source.data.escape_time[0][flat_index]
+const crossings = `crossings of y = 0: ${source.data.crossings[0][flat_index]}`
+return Number.isFinite(time) ? `escape time ${time.toPrecision(5)}, ${crossings}` : crossings
+"""
+
+
+def _hover_text(source: ColumnDataSource) -> tuple[str, dict[str, CustomJSHover]]:
+    """What a hover reads out of a pixel, the same on all pictures.
+
+    One formatter reads all columns: Bokeh hands a NaN, the escape time of a bounded orbit, to no formatter.
+    """
     names = [entry.label for entry in palette.OUTCOMES.values()]
     names += [f"escapes through channel {k + 1}" for k in range(len(palette.CHANNELS))]
-    fate = CustomJSHover(args={"names": names}, code="return names[value] ?? 'not decided yet'")
-    time = CustomJSHover(code="return Number.isFinite(value) ? value.toPrecision(5) : '–'")
-    rows = [
-        ("start", "($x{0.00000}, $y{0.00000})"),
-        ("fate", "@fate{custom}"),
-        ("escape time", "@escape_time{custom}"),
-        ("crossings", "@crossings"),
-    ]
-    return rows, {"@fate": fate, "@escape_time": time}
+    fate = CustomJSHover(args={"names": names}, code="return names[value] ?? names[0]")
+    bounded = list(palette.OUTCOMES).index(Fate.BOUNDED)
+    details = CustomJSHover(args={"source": source, "bounded": bounded}, code=_HOVER_DETAILS)
+    text = (
+        '<div style="font-size:11px;line-height:14px"><b>@fate{custom}</b><br>'
+        "@crossing_class{custom}<br>($x{0.0000}, $y{0.0000})</div>"
+    )
+    return text, {"@fate": fate, "@crossing_class": details}

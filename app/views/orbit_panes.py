@@ -10,11 +10,22 @@ import panel as pn
 from holoviews.operation.datashader import datashade, dynspread
 
 from app import palette
-from engine import CHAOS_THRESHOLD, Orbit, Plane, Potential, default_window, find_lyapunov_orbits, trace_zero_velocity_curve
+from engine import (
+    CASES,
+    CHAOS_THRESHOLD,
+    Orbit,
+    Plane,
+    Potential,
+    default_window,
+    find_lyapunov_orbits,
+    integrate_orbit,
+    start_states,
+    trace_zero_velocity_curve,
+)
 
 hv.extension("bokeh")
 
-FRAME = 300
+FRAME = 280
 # Longer paths than this are drawn by datashader.
 MOST_LINE_POINTS = 20_000
 # Each of this many bins of a history shows its least and greatest value.
@@ -37,28 +48,43 @@ class OrbitPanes:
         self.r2.object = _draw_r2(orbit)
 
 
+def prepare() -> None:
+    """Draw a long path once: datashader compiles its own code at first use."""
+    potential = CASES["III"]
+    state = start_states(potential, Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
+    orbit = integrate_orbit(potential, state, MOST_LINE_POINTS / 4)
+    hv.render(_draw_path(potential, orbit))
+
+
+def _plain_toolbar(plot: Any, _element: Any) -> None:
+    """The toolbar of the maps: no logo, out of the way until wanted."""
+    plot.state.toolbar.logo = None
+    plot.state.toolbar.autohide = True
+
+
 def _options(title: str, xlabel: str, ylabel: str, **more: Any) -> dict[str, Any]:
     return {
         "title": title, "xlabel": xlabel, "ylabel": ylabel, "frame_width": FRAME, "frame_height": FRAME,
-        "toolbar": "above", "fontsize": {"title": 11}, "axiswise": True, "framewise": True, **more,
+        "toolbar": "above", "fontsize": {"title": "14px", "labels": "12px", "ticks": "11px"}, "hooks": [_plain_toolbar], "axiswise": True, "framewise": True, **more,
     }  # fmt: skip
 
 
-def _draw_path(potential: Potential, orbit: Orbit) -> hv.Overlay:
+def _draw_path(potential: Potential, orbit: Orbit) -> hv.Overlay | hv.DynamicMap:
     window = default_window(potential, Plane.X_Y, orbit.energy)
     path = hv.Path([np.column_stack([orbit.x, orbit.y])], ["x", "y"])
     if orbit.t.size > MOST_LINE_POINTS:
-        drawn: Any = dynspread(datashade(path, cmap=[palette.ORBIT], aggregator="any"), max_px=1)
+        drawn: Any = dynspread(datashade(path, cmap=palette.ORBIT_DENSITY), max_px=1)
     else:
         drawn = path.opts(color=palette.ORBIT, line_width=1)
-    limit = hv.Path(trace_zero_velocity_curve(potential, Plane.X_Y, orbit.energy, window), ["x", "y"])
-    layers = [drawn, limit.opts(color=palette.LIMITING_CURVE, line_width=2)]
+    drawn = drawn * hv.Path(trace_zero_velocity_curve(potential, Plane.X_Y, orbit.energy, window), ["x", "y"]).opts(
+        color=palette.LIMITING_CURVE, line_width=2
+    )
     for exit_orbit in find_lyapunov_orbits(potential, orbit.energy):
         curve = hv.Path([np.column_stack([exit_orbit.x, exit_orbit.y])], ["x", "y"])
-        layers.append(curve.opts(color=palette.CHANNELS[exit_orbit.channel - 1], line_width=4))
+        drawn = drawn * curve.opts(color=palette.CHANNELS[exit_orbit.channel - 1], line_width=4)
     start = hv.Scatter([(orbit.x[0], orbit.y[0])], "x", "y").opts(color=palette.START, marker="cross", size=14, line_width=2)
     sides = {"xlim": (window.x_low, window.x_high), "ylim": (window.ordinate_low, window.ordinate_high)}
-    return hv.Overlay([*layers, start]).opts(show_legend=False, **_options("The orbit", "x", "y", **sides))
+    return (drawn * start).opts(show_legend=False, **_options("The orbit", "x", "y", **sides))
 
 
 def _draw_sali(orbit: Orbit) -> hv.Overlay:

@@ -23,9 +23,9 @@ class ProgressView:
         self.button.on_click(lambda event: self._press())
 
     def layout(self) -> pn.viewable.Viewable:
-        """One line that wraps, and room for a sentence about what went wrong."""
-        line = pn.FlexBox(self.button, self.bar, self.text, align_items="center", gap="4px", sizing_mode="stretch_width")
-        return pn.Column(line, self.problem, sizing_mode="stretch_width")
+        """The bar, the stage, and room for a sentence about what went wrong."""
+        line = pn.Row(self.button, self.bar, sizing_mode="stretch_width")
+        return pn.Column(line, self.text, self.problem, sizing_mode="stretch_width")
 
     def start(self) -> None:
         """A new map has been asked for."""

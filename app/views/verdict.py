@@ -18,16 +18,16 @@ class VerdictView:
     def __init__(self, on_start: Callable[[float, float], None]) -> None:
         self._on_start = on_start
         number = "0.[0000000000000000]"
-        self.x = pmui.FloatInput(label="x", value=0.0, step=0.01, format=number, width=140, size="small")
-        self.ordinate = pmui.FloatInput(label="px", value=0.0, step=0.01, format=number, width=140, size="small")
-        self.button = pmui.Button(label="Integrate this start", variant="contained", size="small", width=200)
+        self.x = pmui.FloatInput(label="x", value=0.0, step=0.01, format=number, width=300, size="small")
+        self.ordinate = pmui.FloatInput(label="px", value=0.0, step=0.01, format=number, width=300, size="small")
+        self.button = pmui.Button(label="Integrate this start", variant="contained", size="small", width=300)
         self.text = pn.pane.HTML(HINT, name="verdict", sizing_mode="stretch_width")
         self.button.on_click(lambda event: self._submit())
 
     def layout(self) -> pn.viewable.Viewable:
         """A column as wide as a picture."""
         title = pn.pane.HTML("<b>One orbit</b>", styles={"font-size": "15px"})
-        return pn.Column(title, pn.Row(self.x, self.ordinate), self.button, self.text, width=340, margin=(0, 6))
+        return pn.Column(title, self.x, self.ordinate, self.button, self.text, width=340, margin=(0, 6))
 
     def follow_plane(self, plane: Plane) -> None:
         """Name the second box after the plane's ordinate and forget the last verdict."""

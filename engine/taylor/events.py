@@ -2,7 +2,7 @@
 
 An exit curve is a row of numbers. In the axes of its saddle, u outward along the unstable direction and q across (90°
 counterclockwise from u), the Lyapunov orbit is the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond
-its ends, on the walls, it goes on straight up the hill, where no orbit can be. A closed channel has f = ∞.
+its ends, on the walls, it goes on straight up the hill, where no orbit can be. A closed channel has f = 0.
 """
 
 from __future__ import annotations
@@ -116,7 +116,9 @@ def count_upward_crossings(y_jet, i, duration):
         high = duration * part / _PARTS
         y_high = series_value(y_jet, i, high)
         slope_high = series_slope(y_jet, i, high)
-        if y_low < 0.0 and y_high >= 0.0:
+        # An orbit that starts on y = 0 on its way down is below it from then on.
+        below = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
+        if below and y_high >= 0.0:
             count += 1
         elif y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
             turning = series_value(y_jet, i, _extremum(y_jet, i, low, high))

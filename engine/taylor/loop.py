@@ -35,8 +35,8 @@ _LEAVES, _STAYS = 0, 1
 
 
 @kernel
-def resolve(n, orbit, leaves, start, h, curves, curve_row, state, t, crossings, last_crossings, fate):
-    """Look into `n` steps set aside: count their upward crossings and, for orbits that leave, settle the fate."""
+def resolve(n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, crossings, last_crossings, fate):
+    """Look into `n` whole steps set aside: count their upward crossings and, for orbits that leave, settle the fate."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     jets(start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
@@ -47,12 +47,13 @@ def resolve(n, orbit, leaves, start, h, curves, curve_row, state, t, crossings, 
             continue
         curve = curves[curve_row[j]]
         channel = outside_channel(series_value(x_jet, i, h[i]), series_value(y_jet, i, h[i]), curve)
-        if channel == 0:
+        # The whole step decides, so that an exit has the same time to the bit whatever the horizon.
+        tau = find_exit_time(x_jet, y_jet, i, h[i], curve[channel - 1]) if channel > 0 else h[i]
+        if channel == 0 or t[j] + tau > horizon:
             # Resumable: the state stays at the start of the step that would pass t_max.
-            last_crossings[j] = count_upward_crossings(y_jet, i, h[i])
+            last_crossings[j] = count_upward_crossings(y_jet, i, horizon - t[j])
             fate[j] = BOUNDED
             continue
-        tau = find_exit_time(x_jet, y_jet, i, h[i], curve[channel - 1])
         crossings[j] += count_upward_crossings(y_jet, i, tau)
         t[j] += tau
         state[j, 0] = series_value(x_jet, i, tau)
@@ -130,13 +131,13 @@ def advance(
             if look and not failed:
                 for c in range(4):
                     aside_start[c, aside] = now[c, i]
-                aside_h[aside] = horizon - now[4, i] if late else h[i]
+                aside_h[aside] = h[i]
                 aside_orbit[aside] = j
                 aside_leaves[aside] = _LEAVES if leaves else _STAYS
                 aside += 1
                 if aside == lanes:
                     resolve(
-                        aside, aside_orbit, aside_leaves, aside_start, aside_h,
+                        aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
                         curves, curve_row, state, t, crossings, last_crossings, fate,
                     )  # fmt: skip
                     aside = 0
@@ -161,7 +162,7 @@ def advance(
         now, new = new, now
     if aside > 0:
         resolve(
-            aside, aside_orbit, aside_leaves, aside_start, aside_h,
+            aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
             curves, curve_row, state, t, crossings, last_crossings, fate,
         )  # fmt: skip
     for i in range(riding):

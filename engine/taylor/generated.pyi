@@ -1,0 +1,37 @@
+"""What `codegen` writes for each potential, for the type checker: `loop` and `swing` are compiled behind it, never beside it."""
+
+from numpy import ndarray
+
+def step(
+    n: int,
+    tolerance: float,
+    horizon: float,
+    gates: ndarray,
+    x: ndarray,
+    y: ndarray,
+    px: ndarray,
+    py: ndarray,
+    t: ndarray,
+    x_new: ndarray,
+    y_new: ndarray,
+    px_new: ndarray,
+    py_new: ndarray,
+    t_new: ndarray,
+    h_taken: ndarray,
+    flag: ndarray,
+    crossed: ndarray,
+) -> None: ...
+def jets(n: int, x: ndarray, y: ndarray, px: ndarray, py: ndarray, x_jet: ndarray, y_jet: ndarray) -> None: ...
+def tangent(
+    n: int,
+    duration: ndarray,
+    x: ndarray,
+    y: ndarray,
+    px: ndarray,
+    py: ndarray,
+    wx: ndarray,
+    wy: ndarray,
+    wpx: ndarray,
+    wpy: ndarray,
+) -> None: ...
+def potential_value(x: float, y: float) -> float: ...
