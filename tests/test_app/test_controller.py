@@ -1,0 +1,142 @@
+"""The controller submits, drops what is stale, and says what went wrong; no server is needed to see that."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from app.controller import Controller
+from app.view_state import ViewState
+from engine import EscapeMap, Jobs, Orbit, Plane, Potential
+
+
+class Recorder:
+    """A listener that writes down what it is told."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, Any]] = []
+        self.changed = threading.Condition()
+
+    def tell(self, what: str, value: Any = None) -> None:
+        with self.changed:
+            self.told.append((what, value))
+            self.changed.notify_all()
+
+    def names(self) -> list[str]:
+        return [what for what, _ in self.told]
+
+    def wait_for(self, true: Callable[[], bool], seconds: float = 30.0) -> None:
+        with self.changed:
+            assert self.changed.wait_for(true, seconds), self.names()
+
+    def map_requested(self) -> None:
+        self.tell("map requested")
+
+    def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        self.tell("map arrived", frame)
+
+    def map_stopped(self) -> None:
+        self.tell("map stopped")
+
+    def map_failed(self, sentence: str) -> None:
+        self.tell("map failed", sentence)
+
+    def orbit_requested(self, start: tuple[float, float]) -> None:
+        self.tell("orbit requested", start)
+
+    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
+        self.tell("orbit arrived", orbit)
+
+    def orbit_refused(self, sentence: str) -> None:
+        self.tell("orbit refused", sentence)
+
+    def last_frame(self) -> EscapeMap | None:
+        frames = [value for what, value in self.told if what == "map arrived"]
+        return frames[-1] if frames else None
+
+    def complete(self) -> bool:
+        frame = self.last_frame()
+        return frame is not None and frame.complete
+
+
+@pytest.fixture
+def session() -> Iterator[tuple[ViewState, Controller, Recorder, Jobs]]:
+    state, recorder, jobs = ViewState(case="I", energy=0.3, resolution=113, t_max=1e2), Recorder(), Jobs()
+    controller = Controller(state, jobs, recorder, lambda function: function)
+    yield state, controller, recorder, jobs
+    controller.close()
+
+
+Session = tuple[ViewState, Controller, Recorder, Jobs]
+
+
+def test_a_map_comes_in_frames_and_ends_complete(session: Session) -> None:
+    _, controller, recorder, _ = session
+    controller.request_map()
+    recorder.wait_for(recorder.complete)
+    assert recorder.names()[0] == "map requested"
+    assert recorder.names().count("map arrived") >= 2
+
+
+def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> None:
+    state, controller, recorder, _ = session
+    state.t_max = 1e4
+    for energy in (0.31, 0.32, 0.33):
+        state.energy = energy
+    recorder.wait_for(lambda: recorder.complete() and recorder.last_frame().spec.energy == 0.33)  # type: ignore[union-attr]
+    seen = [value.spec.energy for what, value in recorder.told if what == "map arrived"]
+    assert seen == sorted(seen)
+
+
+def test_cancelling_stops_the_job_and_going_on_finishes_it(session: Session) -> None:
+    state, controller, recorder, jobs = session
+    state.param.update(case="III", energy=0.26, t_max=1e5)
+    recorder.wait_for(lambda: recorder.last_frame() is not None)
+    controller.stop_map()
+    assert jobs.in_flight == 0
+    frames = recorder.names().count("map arrived")
+    time.sleep(0.5)
+    assert recorder.names().count("map arrived") == frames
+    assert recorder.names()[-1] == "map stopped"
+
+
+def test_an_energy_without_exits_is_refused_in_words(session: Session) -> None:
+    state, _, recorder, _ = session
+    state.energy = 50.0
+    recorder.wait_for(lambda: "map failed" in recorder.names())
+    sentence = next(value for what, value in recorder.told if what == "map failed")
+    assert "energy=50.0" in sentence
+
+
+def test_the_orbit_of_a_start_agrees_with_its_pixel(session: Session) -> None:
+    state, controller, recorder, _ = session
+    controller.request_map()
+    recorder.wait_for(recorder.complete)
+    frame = recorder.last_frame()
+    assert frame is not None
+    row, column = 40, 70
+    state.start = (float(frame.x[column]), float(frame.ordinate[row]))
+    recorder.wait_for(lambda: "orbit arrived" in recorder.names())
+    orbit = recorder.told[-1][1]
+    assert orbit.fate == frame.fate[row, column]
+    assert orbit.escape_time == frame.escape_time[row, column]
+    assert orbit.crossings == frame.crossings[row, column]
+
+
+def test_a_forbidden_start_is_refused_in_words(session: Session) -> None:
+    state, _, recorder, _ = session
+    state.param.update(plane=Plane.X_PX, start=(0.0, 5.0))
+    recorder.wait_for(lambda: "orbit refused" in recorder.names())
+    assert "Forbidden" in recorder.told[-1][1]
+
+
+def test_a_session_that_ends_leaves_no_job_behind(session: Session) -> None:
+    state, controller, recorder, jobs = session
+    state.param.update(case="III", energy=0.26, t_max=1e6, start=(0.0, 0.1))
+    recorder.wait_for(lambda: recorder.last_frame() is not None)
+    controller.close()
+    assert jobs.in_flight == 0

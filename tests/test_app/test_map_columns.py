@@ -1,0 +1,63 @@
+"""Frames become images: the right code for each pixel, the right way up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app import palette
+from app.map_columns import longest_typical_time, map_columns
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    spec = MapSpec(CASES["II"], Plane.X_PX, 0.18, (81, 61), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0)
+    return compute_map(spec)
+
+
+def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
+    colours = np.array(palette.FATE_COLOURS)[map_columns(escape_map)["fate"][0]]
+    for channel in (1, 2, 3):
+        assert set(colours[escape_map.fate == channel]) == {palette.CHANNELS[channel - 1]}
+    for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE):
+        assert set(colours[escape_map.fate == fate]) == {palette.OUTCOMES[fate].colour}
+
+
+@pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (10, "3–10"), (11, "> 10")])
+def test_escaped_pixels_are_classed_by_crossings(escape_map: EscapeMap, crossings: int, label: str) -> None:
+    where = (escape_map.fate > 0) & (escape_map.crossings == crossings)
+    assert where.any()
+    codes = map_columns(escape_map)["crossing_class"][0][where]
+    labels = [entry.label for entry in palette.OUTCOMES.values()] + [entry.label for _, entry in palette.CROSSING_CLASSES]
+    assert {labels[code] for code in codes} == {label}
+
+
+def test_images_are_small_types_with_row_0_lowest(escape_map: EscapeMap) -> None:
+    columns = map_columns(escape_map)
+    assert [columns[name][0].dtype for name in ("fate", "crossing_class", "escape_time", "crossings")] == [
+        np.uint8,
+        np.uint8,
+        np.float32,
+        np.int32,
+    ]
+    assert (columns["x"], columns["y"], columns["dw"], columns["dh"]) == ([-1.0], [-0.8], [2.4], [1.6])
+    np.testing.assert_array_equal(columns["escape_time"][0], escape_map.escape_time.astype(np.float32))
+
+
+def test_a_coarse_frame_fills_the_picture() -> None:
+    frames: list[EscapeMap] = []
+    compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 120), t_max=50.0), on_frame=frames.append)
+    coarse = frames[0]
+    assert coarse.stride > 1
+    shown = map_columns(coarse)["fate"][0]
+    undecided = list(palette.OUTCOMES).index(Fate.NOT_COMPUTED)
+    interior = (frames[-1].fate != Fate.FORBIDDEN) & (frames[-1].fate != Fate.OUTSIDE)
+    assert np.mean(shown[interior] == undecided) < 0.02
+    assert np.mean(coarse.fate[interior] == Fate.NOT_COMPUTED) > 0.9
+
+
+def test_the_time_scale_ends_at_a_round_number_above_nearly_all_times(escape_map: EscapeMap) -> None:
+    high = longest_typical_time(escape_map)
+    assert high in {step * 10.0**k for step in (1.0, 2.0, 5.0) for k in range(1, 6)}
+    assert np.mean(escape_map.escape_time[escape_map.fate > 0] <= high) >= 0.99

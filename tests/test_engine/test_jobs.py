@@ -1,0 +1,179 @@
+"""Jobs: shared while in flight, kept when done, stopped when nobody waits, bounded in memory."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from engine import CASES, EscapeMap, Jobs, MapSpec, Orbit, OrbitSpec, Plane, compute_map, integrate_orbit
+from engine.jobs import ResultCache
+
+QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
+LONG = MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=1e6)
+
+
+class Inbox:
+    """Collects what a request delivers."""
+
+    def __init__(self) -> None:
+        self.results: list[EscapeMap | Orbit] = []
+        self.errors: list[Exception] = []
+        self.first, self.done = threading.Event(), threading.Event()
+
+    def result(self, result: EscapeMap | Orbit) -> None:
+        self.results.append(result)
+        self.first.set()
+        if getattr(result, "complete", True):
+            self.done.set()
+
+    def error(self, error: Exception) -> None:
+        self.errors.append(error)
+        self.done.set()
+
+
+def wait_until_idle(jobs: Jobs, seconds: float = 20.0) -> None:
+    end = time.monotonic() + seconds
+    while jobs.in_flight and time.monotonic() < end:
+        time.sleep(0.01)
+    assert jobs.in_flight == 0
+
+
+def test_the_last_frame_is_the_map() -> None:
+    inbox, jobs = Inbox(), Jobs()
+    jobs.request_map(QUICK, inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    expected = compute_map(QUICK)
+    np.testing.assert_array_equal(inbox.results[-1].fate, expected.fate)
+    np.testing.assert_array_equal(inbox.results[-1].escape_time, expected.escape_time)
+
+
+def test_a_finished_map_is_kept() -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    jobs.request_map(QUICK, first.result, first.error)
+    assert first.done.wait(30)
+    wait_until_idle(jobs)
+    jobs.request_map(QUICK, second.result, second.error)
+    assert second.results == [first.results[-1]]
+    assert jobs.in_flight == 0
+
+
+def test_two_people_share_one_job_and_it_outlives_the_first() -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    one = jobs.request_map(LONG, first.result, first.error)
+    two = jobs.request_map(LONG, second.result, second.error)
+    assert jobs.in_flight == 1
+    assert first.first.wait(30)
+    one.cancel()
+    assert jobs.in_flight == 1
+    count = len(second.results)
+    deadline = time.monotonic() + 20
+    while len(second.results) <= count and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert len(second.results) > count
+    two.cancel()
+    wait_until_idle(jobs)
+
+
+def test_a_cancelled_map_goes_on_from_where_it_was() -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    spec = MapSpec(CASES["III"], Plane.X_PX, 0.3, (96, 96), t_max=5e3)
+    ticket = jobs.request_map(spec, first.result, first.error)
+    assert first.first.wait(30)
+    ticket.cancel()
+    deadline = time.monotonic() + 20
+    while jobs.cache.get(spec) is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert jobs.cache.get(spec).complete is False
+    jobs.request_map(spec, second.result, second.error)
+    assert second.done.wait(60)
+    np.testing.assert_array_equal(second.results[-1].crossings, compute_map(spec).crossings)
+
+
+def test_a_longer_t_max_starts_from_the_kept_map(monkeypatch: pytest.MonkeyPatch) -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    jobs.request_map(QUICK, first.result, first.error)
+    assert first.done.wait(30)
+    wait_until_idle(jobs)
+    resumed = []
+
+    def spy(spec, *args, resume=None, **kwargs):  # type: ignore[no-untyped-def]
+        resumed.append(resume)
+        return compute_map(spec, *args, resume=resume, **kwargs)
+
+    monkeypatch.setattr("engine.jobs.compute_map", spy)
+    longer = MapSpec(QUICK.potential, QUICK.plane, QUICK.energy, QUICK.resolution, QUICK.window, 2e3)
+    jobs.request_map(longer, second.result, second.error)
+    assert second.done.wait(60)
+    assert resumed[0] is jobs.cache.get(QUICK)
+    np.testing.assert_array_equal(second.results[-1].fate, compute_map(longer).fate)
+
+
+def test_an_orbit_is_the_one_that_integrate_orbit_gives() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    spec = OrbitSpec(CASES["I"], (0.1, 0.0, 0.05, 0.5), 500.0)
+    jobs.request_orbit(spec, inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    np.testing.assert_array_equal(inbox.results[0].sali, integrate_orbit(spec.potential, spec.state, spec.t_max).sali)
+
+
+def test_a_cancelled_orbit_never_arrives() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    jobs.request_orbit(OrbitSpec(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e6), inbox.result, inbox.error).cancel()
+    wait_until_idle(jobs)
+    time.sleep(0.3)
+    assert not inbox.results
+    assert not inbox.errors
+
+
+def test_a_bad_request_is_answered_with_its_error() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    jobs.request_orbit(OrbitSpec(CASES["I"], (0.1, 0.0, 0.05, float("nan")), 500.0), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    assert isinstance(inbox.errors[0], ValueError)
+
+
+def test_a_listener_that_fails_harms_nobody_else() -> None:
+    jobs, inbox = Jobs(), Inbox()
+
+    def fail(_result: object) -> None:
+        raise RuntimeError("closed")
+
+    jobs.request_map(QUICK, fail, fail)
+    jobs.request_map(QUICK, inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    assert inbox.results[-1].complete
+
+
+def test_any_executor_serves() -> None:
+    with ThreadPoolExecutor(1) as executor:
+        jobs, inbox = Jobs(executor), Inbox()
+        jobs.request_map(QUICK, inbox.result, inbox.error)
+        assert inbox.done.wait(30)
+    np.testing.assert_array_equal(inbox.results[-1].fate, compute_map(QUICK).fate)
+
+
+class Weight:
+    """A result of a given size."""
+
+    def __init__(self, nbytes: int) -> None:
+        self.nbytes = nbytes
+
+
+def test_the_cache_stays_below_its_limit_and_drops_what_was_not_used() -> None:
+    cache = ResultCache(100)
+    for key in ("a", "b", "c"):
+        cache.put(key, Weight(40))
+        cache.get("a")
+    assert cache.nbytes == 80
+    assert set(cache.keys()) == {"a", "c"}
+
+
+def test_a_result_larger_than_the_cache_is_not_kept() -> None:
+    cache = ResultCache(100)
+    cache.put("a", Weight(40))
+    cache.put("b", Weight(101))
+    assert cache.keys() == ["a"]
