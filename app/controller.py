@@ -20,13 +20,26 @@ Locked = Callable[[Callable[..., None]], Callable[..., None]]
 class MapListener(Protocol):
     """What shows a map on its way."""
 
-    def map_requested(self) -> None: ...
-    def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None: ...
-    def map_stopped(self) -> None: ...
-    def map_failed(self, sentence: str) -> None: ...
-    def orbit_requested(self, start: tuple[float, float]) -> None: ...
-    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None: ...
-    def orbit_refused(self, sentence: str) -> None: ...
+    def map_requested(self) -> None:
+        """A map has been asked for."""
+
+    def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """A frame of it is here; the last one is complete."""
+
+    def map_stopped(self) -> None:
+        """The user has cancelled it."""
+
+    def map_failed(self, sentence: str) -> None:
+        """It cannot be had, for the reason given."""
+
+    def orbit_requested(self, start: tuple[float, float]) -> None:
+        """An orbit has been asked for."""
+
+    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
+        """Here it is."""
+
+    def orbit_refused(self, sentence: str) -> None:
+        """It cannot be had, for the reason given."""
 
 
 class Controller:

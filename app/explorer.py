@@ -57,26 +57,33 @@ class Explorer:
         self.state.start = (x, ordinate)
 
     def map_requested(self) -> None:
+        """Show that work has begun."""
         self.progress.start()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """Paint a frame."""
         with pn.io.hold():
             self.maps.show(frame, columns)
             self.progress.show(frame)
 
     def map_stopped(self) -> None:
+        """Show that the map has been cancelled."""
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:
+        """Say why there is no map; the last picture stays."""
         self.progress.fail(sentence)
 
     def orbit_requested(self, start: tuple[float, float]) -> None:
+        """Show which orbit is on its way."""
         self.verdict.expect(start)
 
     def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
+        """Draw an orbit and its verdict."""
         with pn.io.hold():
             self.verdict.show(orbit)
             self.panes.show(potential, orbit)
 
     def orbit_refused(self, sentence: str) -> None:
+        """Say why there is no orbit."""
         self.verdict.say(sentence)

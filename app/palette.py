@@ -64,9 +64,9 @@ CROSSING_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *(entry.colo
 # Under the escape times, which cover the escaped pixels.
 BACKGROUND_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *["#ffffff"] * len(CHANNELS)]
 # The plain interior of the first map.
-REGION_COLOURS = [
-    OUTCOMES[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else INTERIOR for fate in OUTCOMES
-] + [INTERIOR] * len(CHANNELS)
+REGION_COLOURS = [OUTCOMES[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else INTERIOR for fate in OUTCOMES] + [
+    INTERIOR
+] * len(CHANNELS)
 
 
 def channel_entries(channels: int) -> list[Entry]:

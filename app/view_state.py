@@ -38,7 +38,3 @@ class ViewState(param.Parameterized):
         """x, y, px, py of the chosen start; py is NaN where it is forbidden."""
         x, ordinate = (np.array([value]) for value in self.start)
         return tuple(float(value) for value in start_states(self.potential, self.plane, self.energy, x, ordinate)[0])  # type: ignore[return-value]
-
-    def start_energy(self) -> float:
-        """h of the chosen start."""
-        return self.start[1] if self.plane is Plane.X_H else self.energy

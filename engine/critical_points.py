@@ -42,7 +42,8 @@ def find_critical_points(first: Terms, second: Terms) -> np.ndarray:
         if point is not None and all(np.hypot(*(point - other)) > _SAME for other in found):
             found.append(point)
     cos, sin = np.cos(_TURN), np.sin(_TURN)
-    return np.array(found).reshape(-1, 2) @ np.array([[cos, sin], [-sin, cos]])
+    turned_back: np.ndarray = np.array(found).reshape(-1, 2) @ np.array([[cos, sin], [-sin, cos]])
+    return turned_back
 
 
 def _turned(terms: Terms) -> np.ndarray:
@@ -84,8 +85,9 @@ def _eigenvalues(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     a[-size:] = np.hstack(list(-sylvester[:-1]))
     b = np.eye(degree * size)
     b[-size:, -size:] = sylvester[-1]
-    values = linalg.eigvals(a, b)
-    return values[np.isfinite(values)]
+    values: np.ndarray = linalg.eigvals(a, b)
+    finite: np.ndarray = values[np.isfinite(values)]
+    return finite
 
 
 def _lifted(p: np.ndarray, x: np.ndarray) -> list[np.ndarray]:

@@ -132,7 +132,9 @@ class EscapeMap:
         if self.stride == 1:
             return {name: getattr(self, name) for name in names}
         rows, columns = (_anchors(size, self.stride) for size in self.fate.shape)
-        use = np.where(self.started, np.arange(self.fate.size).reshape(self.fate.shape), rows[:, None] * self.fate.shape[1] + columns)
+        use = np.where(
+            self.started, np.arange(self.fate.size).reshape(self.fate.shape), rows[:, None] * self.fate.shape[1] + columns
+        )
         empty = (self.fate == Fate.FORBIDDEN) | (self.fate == Fate.OUTSIDE)
         use = np.where(empty, np.arange(self.fate.size).reshape(self.fate.shape), use)
         return {name: getattr(self, name).ravel()[use] for name in names}
@@ -147,11 +149,14 @@ class EscapeMap:
             "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
             "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
         }
-        coordinates = {spec.plane.ordinate: (spec.plane.ordinate, self.ordinate, {"units": "1"}), "x": ("x", self.x, {"units": "1"})}
+        coordinates = {
+            spec.plane.ordinate: (spec.plane.ordinate, self.ordinate, {"units": "1"}),
+            "x": ("x", self.x, {"units": "1"}),
+        }
         return xr.Dataset(variables, coordinates, self.provenance())
 
     def provenance(self) -> dict[str, Any]:
-        """What made this map, in plain values: potential, h, plane, window, resolution, t_max, tolerance, version, errors, counts."""
+        """What made this map, in plain values: the request, the integrator, its version, the worst energy error, the counts."""
         spec, window = self.spec, self.spec.window
         codes, counts = np.unique(self.fate, return_counts=True)
         return {
@@ -215,18 +220,21 @@ def classify_orbits(
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
-    states = np.ascontiguousarray(states, dtype=float)
+    states_array: np.ndarray = np.ascontiguousarray(states, dtype=float)
     if not np.isfinite(energy):
         raise ValueError(f"energy={energy}: must be a finite number")
-    if states.ndim != 2 or states.shape[1] != 4:
-        raise ValueError(f"states of shape {states.shape}: must be (n, 4) with columns x, y, px, py")
-    if not np.isfinite(states).all():
-        raise ValueError(f"states: row {int(np.argmin(np.isfinite(states).all(axis=1)))} holds a number that is not finite")
-    off = np.abs(potential.energy(states) - energy)
+    if states_array.ndim != 2 or states_array.shape[1] != 4:
+        raise ValueError(f"states of shape {states_array.shape}: must be (n, 4) with columns x, y, px, py")
+    if not np.isfinite(states_array).all():
+        raise ValueError(f"states: row {int(np.argmin(np.isfinite(states_array).all(axis=1)))} holds a number that is not finite")
+    off = np.abs(potential.energy(states_array) - energy)
     if np.any(off > ENERGY_TOLERANCE):
         row = int(np.argmax(off))
-        raise ValueError(f"states: row {row} has energy {float(potential.energy(states[row]))!r}; all must have energy={energy} to {ENERGY_TOLERANCE:g}")
-    return states
+        raise ValueError(
+            f"states: row {row} has energy {float(potential.energy(states_array[row]))!r}; "
+            f"all must have energy={energy} to {ENERGY_TOLERANCE:g}"
+        )
+    return states_array
 
 
 def _outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
@@ -287,7 +295,7 @@ class _MapRun:
         self.unsolved = set(range(len(self.curves)))
 
     def levels(self) -> Iterator[tuple[np.ndarray, int]]:
-        """(pixels, stride) of each refinement, coarse to fine, those of earlier levels left out; the last one holds all pixels."""
+        """(pixels, stride) of each refinement, coarse to fine; the last one holds all pixels."""
         numbers = np.arange(self.started.size).reshape(self.shape)
         stride = 1 if self.started.all() else self.stride
         while stride > 1:
@@ -317,7 +325,9 @@ class _MapRun:
     def frame(self) -> EscapeMap:
         outcomes = _outcomes(self.spec.potential, self.energy, self.batch)
         complete = bool(self.started.all() and not np.any(outcomes.fate == Fate.NOT_COMPUTED))
-        arrays = {name: getattr(outcomes, name).reshape(self.shape) for name in ("fate", "escape_time", "crossings", "energy_error")}
+        arrays = {
+            name: getattr(outcomes, name).reshape(self.shape) for name in ("fate", "escape_time", "crossings", "energy_error")
+        }
         arrays |= {"outside": self.batch.outside.reshape(self.shape).copy(), "started": self.started.reshape(self.shape).copy()}
         for array in (*arrays.values(), self.x, self.ordinate):
             array.flags.writeable = False

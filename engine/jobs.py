@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterator
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -27,7 +27,8 @@ class Sized(Protocol):
     """A result that knows its size in memory."""
 
     @property
-    def nbytes(self) -> int: ...
+    def nbytes(self) -> int:
+        """Bytes held."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,9 @@ class OrbitSpec:
 class Ticket:
     """One person's claim on a job. Cancelling it stops the job when nobody else waits for it."""
 
-    def __init__(self, release: Callable[[Ticket], None], on_result: Callable[[Any], None], on_error: Callable[[Exception], None]):
+    def __init__(
+        self, release: Callable[[Ticket], None], on_result: Callable[[Any], None], on_error: Callable[[Exception], None]
+    ):
         self._release = release
         self._on_result = on_result
         self._on_error = on_error
@@ -54,9 +57,11 @@ class Ticket:
         self._release(self)
 
     def deliver(self, result: Any) -> None:
+        """Hand a frame or a result over, unless cancelled."""
         self._call(self._on_result, result)
 
     def fail(self, error: Exception) -> None:
+        """Hand over what went wrong, unless cancelled."""
         self._call(self._on_error, error)
 
     def _call(self, receive: Callable[[Any], None], what: Any) -> None:
@@ -101,8 +106,8 @@ class ResultCache:
         while self.nbytes > self.limit:
             self._drop(next(iter(self._results)))
 
-    def keys(self) -> list[Hashable]:
-        return list(self._results)
+    def __iter__(self) -> Iterator[Hashable]:
+        return iter(list(self._results))
 
     def _drop(self, key: Hashable) -> None:
         if key in self._results:
@@ -225,7 +230,7 @@ class Jobs:
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
         """The kept map of the same picture that has been followed longest, though not beyond t_max."""
         with self._lock:
-            candidates = [key for key in self.cache.keys() if isinstance(key, MapSpec) and replace(key, t_max=spec.t_max) == spec]
+            candidates = [key for key in self.cache if isinstance(key, MapSpec) and replace(key, t_max=spec.t_max) == spec]
             earlier = [key for key in candidates if key.t_max <= spec.t_max]
             return self.cache.get(max(earlier, key=lambda key: key.t_max)) if earlier else None
 

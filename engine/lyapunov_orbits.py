@@ -31,9 +31,12 @@ _LARGEST_MISFIT = 1e-11
 _GATE_MARGIN = 1e-3
 _MOST_STEPS = 400
 # Column k holds the power series of the Chebyshev polynomial T_k.
-_CHEBYSHEV_TO_POWER = np.column_stack([
-    np.pad(chebyshev.cheb2poly(row[: k + 1]), (0, events.CURVE_DEGREE - k)) for k, row in enumerate(np.eye(events.CURVE_DEGREE + 1))
-])
+_CHEBYSHEV_TO_POWER = np.column_stack(
+    [
+        np.pad(chebyshev.cheb2poly(row[: k + 1]), (0, events.CURVE_DEGREE - k))
+        for k, row in enumerate(np.eye(events.CURVE_DEGREE + 1))
+    ]
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +209,7 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """(channels, 3) straight lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
+    """(channels, 3) lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
     rows = curves.reshape(-1, *curves.shape[-2:])
     s = np.linspace(-1.0, 1.0, 201)
     lowest = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))

@@ -83,9 +83,9 @@ def checked_t_max(t_max: float) -> float:
 
 def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
     if plane is not Plane.X_H:
-        if not np.isscalar(energy) or not np.isfinite(energy):
+        if np.ndim(energy) != 0 or not np.isfinite(energy):
             raise ValueError(f"energy={energy!r}: on {plane.value} it must be one finite number")
-        return float(energy)  # type: ignore[arg-type]
+        return float(energy)
     values = tuple(float(h) for h in np.ravel(energy))
     if len(values) != 2 or not (np.all(np.isfinite(values)) and values[0] < values[1]):
         raise ValueError(f"energy={energy!r}: on {plane.value} it must be a pair (low, high) of finite numbers")

@@ -102,6 +102,7 @@ class OrbitBatch:
         return sum(getattr(self, field.name).nbytes for field in fields(self))
 
     def copy(self) -> OrbitBatch:
+        """The same orbits in arrays of their own."""
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
 
 

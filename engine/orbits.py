@@ -75,10 +75,16 @@ class Orbit:
     def describe(self) -> str:
         """The verdict in words."""
         if self.fate >= 1:
-            kind = "directly, without crossing y = 0 upward" if self.crossings == 0 else f"after {self.crossings} upward crossings of y = 0"
+            kind = (
+                "directly, without crossing y = 0 upward"
+                if self.crossings == 0
+                else f"after {self.crossings} upward crossings of y = 0"
+            )
             return f"Escaped through channel {self.fate} at t = {self.escape_time:.6g}, {kind}."
         if self.regularity is not None:
-            return f"Bounded until t = {self.t[-1]:g} and {self.regularity.value}, with {self.crossings} upward crossings of y = 0."
+            return (
+                f"Bounded until t = {self.t[-1]:g} and {self.regularity.value}, with {self.crossings} upward crossings of y = 0."
+            )
         return describe_fate(self.fate)
 
 

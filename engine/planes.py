@@ -70,7 +70,9 @@ def _centres(low: float, high: float, count: int) -> np.ndarray:
     return 0.5 * (low + high) + (high - low) * offsets
 
 
-def start_states(potential: Potential, plane: Plane, energy: float | np.ndarray, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
+def start_states(
+    potential: Potential, plane: Plane, energy: float | np.ndarray, x: np.ndarray, ordinate: np.ndarray
+) -> np.ndarray:
     """(n, 4) states x, y, px, py of starts (x, ordinate) on a plane; py is NaN where the start is forbidden.
 
     `energy` is h, or for (x, h) ignored: there the ordinate is the energy.
@@ -84,11 +86,10 @@ def start_states(potential: Potential, plane: Plane, energy: float | np.ndarray,
 
 def required_energy(potential: Potential, plane: Plane, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
     """The lowest energy at which a start exists; for (x, h), V(x, 0) − h, which is positive where it does not."""
-    if plane is Plane.X_Y:
-        return potential.value(x, ordinate)
-    if plane is Plane.X_PX:
-        return 0.5 * ordinate**2 + potential.value(x, np.zeros_like(x))
-    return potential.value(x, np.zeros_like(x)) - ordinate
+    y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
+    kinetic = {Plane.X_Y: 0.0, Plane.X_PX: 0.5 * ordinate**2, Plane.X_H: -ordinate}[plane]
+    needed: np.ndarray = kinetic + potential.value(x, y)
+    return needed
 
 
 def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float, window: Window) -> list[np.ndarray]:

@@ -61,7 +61,7 @@ class Potential:
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
         """(V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
-        return tuple(_evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))  # type: ignore[return-value]
+        return tuple(_evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
 
     def energy(self, states: Any) -> Any:
         """H of states (…, 4) = x, y, px, py."""

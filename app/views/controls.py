@@ -30,9 +30,13 @@ class Controls:
             label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, size="small", sx=_PLAIN
         )
         self.energy = pmui.FloatSlider(label="Energy h", step=_ENERGY_STEP, format="0.000", sizing_mode="stretch_width")
-        self.exact_energy = pmui.FloatInput(label="h exactly", value=state.energy, step=_ENERGY_STEP, format="0.[0000000000000000]", width=130, size="small")
+        self.exact_energy = pmui.FloatInput(
+            label="h exactly", value=state.energy, step=_ENERGY_STEP, format="0.[0000000000000000]", width=130, size="small"
+        )
         self.t_max = pmui.Select(label="t_max", options=T_MAX_CHOICES, value=state.t_max, width=130, size="small")
-        self.resolution = pmui.Select(label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small")
+        self.resolution = pmui.Select(
+            label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small"
+        )
         self.facts = pn.pane.HTML(margin=(0, 10))
         self._follow_case()
         self._connect()
@@ -42,20 +46,39 @@ class Controls:
         energy = pn.Column(self.energy, min_width=300, max_width=560, sizing_mode="stretch_width", margin=(0, 20))
         choices = pn.Column(self.case, min_width=150), pn.Column(self.plane, min_width=230)
         strip = pn.FlexBox(
-            *choices, energy, self.exact_energy, self.t_max, self.resolution, align_items="center", gap="6px", sizing_mode="stretch_width"
+            *choices,
+            energy,
+            self.exact_energy,
+            self.t_max,
+            self.resolution,
+            align_items="center",
+            gap="6px",
+            sizing_mode="stretch_width",
         )
         return pn.Column(strip, self.facts, sizing_mode="stretch_width")
 
     def _connect(self) -> None:
         state = self.state
-        self.case.param.watch(lambda event: state.param.update(case=event.new, energy=ENERGIES[event.new].first, start=None), "value")
+        self.case.param.watch(
+            lambda event: state.param.update(case=event.new, energy=ENERGIES[event.new].first, start=None), "value"
+        )
         self.plane.param.watch(lambda event: state.param.update(plane=event.new, start=None), "value")
-        self.energy.param.watch(lambda event: state.param.update(energy=event.new), "value_throttled")
+        self.energy.param.watch(self._take_slid_energy, "value_throttled")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
         self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
         state.param.watch(lambda event: self._follow_case(), "case")
         state.param.watch(lambda event: self._follow_energy(), ["energy", "plane"])
+
+    def _take_slid_energy(self, event: Any) -> None:
+        # The slider stands at its end for an energy typed beyond it; that is no wish to go there.
+        if event.new != self._on_slider():
+            self.state.energy = event.new
+
+    def _on_slider(self) -> float:
+        """Where the slider stands for the energy of the state."""
+        energies = ENERGIES[self.state.case]
+        return float(min(max(self.state.energy, energies.low), energies.high))
 
     def _take_exact_energy(self, event: Any) -> None:
         if event.new is not None:
@@ -75,8 +98,8 @@ class Controls:
         self._follow_energy()
 
     def _follow_energy(self) -> None:
-        state, energies = self.state, ENERGIES[self.state.case]
+        state = self.state
         on_h = state.plane is Plane.X_H
-        self.energy.param.update(value=min(max(state.energy, energies.low), energies.high), disabled=on_h)
+        self.energy.param.update(value=self._on_slider(), disabled=on_h)
         self.energy.label = "Energy h: the ordinate of this plane" if on_h else "Energy h"
         self.exact_energy.param.update(value=state.energy, disabled=on_h)

@@ -103,7 +103,9 @@ class MapsView:
 
     def _is_at(self, window: Window) -> bool:
         x, y = self._ranges
-        return np.allclose([x.start, x.end, y.start, y.end], [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high])
+        return np.allclose(
+            [x.start, x.end, y.start, y.end], [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high]
+        )
 
     def _go_to(self, window: Window) -> None:
         x, y = self._ranges
@@ -153,7 +155,9 @@ class MapsView:
             for column, mapper in layers[name]:
                 image = plot.image(column, "x", "y", "dw", "dh", source=self.source, color_mapper=mapper)
             text, formatters = self._hover_text
-            plot.add_tools(HoverTool(renderers=[image], tooltips=text, formatters=formatters, attachment="vertical", visible=False))
+            plot.add_tools(
+                HoverTool(renderers=[image], tooltips=text, formatters=formatters, attachment="vertical", visible=False)
+            )
             self.outlines.draw(plot, full=name == "curves")
             plot.scatter("x", "y", source=self.start, marker="cross", size=16, line_width=5, line_color=palette.START_HALO)
             plot.scatter("x", "y", source=self.start, marker="cross", size=14, line_width=2, line_color=palette.START)

@@ -63,10 +63,9 @@ def _plain_toolbar(plot: Any, _element: Any) -> None:
 
 
 def _options(title: str, xlabel: str, ylabel: str, **more: Any) -> dict[str, Any]:
-    return {
-        "title": title, "xlabel": xlabel, "ylabel": ylabel, "frame_width": FRAME, "frame_height": FRAME,
-        "toolbar": "above", "fontsize": {"title": "14px", "labels": "12px", "ticks": "11px"}, "hooks": [_plain_toolbar], "axiswise": True, "framewise": True, **more,
-    }  # fmt: skip
+    frame = {"frame_width": FRAME, "frame_height": FRAME, "axiswise": True, "framewise": True}
+    style = {"toolbar": "above", "fontsize": {"title": "14px", "labels": "12px", "ticks": "11px"}, "hooks": [_plain_toolbar]}
+    return {"title": title, "xlabel": xlabel, "ylabel": ylabel, **frame, **style, **more}
 
 
 def _draw_path(potential: Potential, orbit: Orbit) -> hv.Overlay | hv.DynamicMap:

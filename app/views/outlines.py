@@ -44,7 +44,9 @@ class Outlines:
         escape = spec.potential.escape_energy
         self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window))
         levels = [] if on_h else [level * escape for level in _LEVELS]
-        self._levels.data = _lines([line for h in levels for line in trace_zero_velocity_curve(spec.potential, spec.plane, h, spec.window)])
+        self._levels.data = _lines(
+            [line for h in levels for line in trace_zero_velocity_curve(spec.potential, spec.plane, h, spec.window)]
+        )
         critical = [] if on_h else trace_zero_velocity_curve(spec.potential, spec.plane, escape, spec.window)
         self._critical.data = _lines(critical)
         self._show_exits(spec, energy)

@@ -16,7 +16,9 @@ class ProgressView:
     def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None]) -> None:
         self._on_cancel, self._on_resume = on_cancel, on_resume
         self._running = False
-        self.bar = pmui.LinearProgress(variant="determinate", value=0, sizing_mode="stretch_width", min_width=120, max_width=420, margin=(14, 10))
+        self.bar = pmui.LinearProgress(
+            variant="determinate", value=0, sizing_mode="stretch_width", min_width=120, max_width=420, margin=(14, 10)
+        )
         self.text = pn.pane.HTML("", margin=(5, 10))
         self.button = pmui.Button(label="Cancel", variant="outlined", size="small", disabled=True, width=110)
         self.problem = pmui.Alert(severity="error", visible=False, sizing_mode="stretch_width")
@@ -38,7 +40,9 @@ class ProgressView:
         if frame.complete:
             fractions = frame.fractions()
             channels = (f"channel {k}: {fractions[k]:.1%}" for k in range(1, frame.spec.potential.channels + 1))
-            text = f"Done to t = {frame.spec.t_max:g}. Of the interior starts {', '.join(channels)}, bounded: {fractions[0]:.1%}. "
+            text = (
+                f"Done to t = {frame.spec.t_max:g}. Of the interior starts {', '.join(channels)}, bounded: {fractions[0]:.1%}. "
+            )
             text += f"Worst energy error {frame.worst_energy_error:.1e}."
         else:
             grain = "every pixel" if frame.stride == 1 else f"one pixel of {frame.stride} × {frame.stride}"

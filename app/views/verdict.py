@@ -53,7 +53,9 @@ class VerdictView:
             "last SALI": f"{orbit.sali[-1]:.3g}",
             "relative energy error": f"{orbit.energy_error:.1e}",
         }
-        cells = "".join(f"<tr><td style='padding-right:12px;color:#555'>{name}</td><td>{value}</td></tr>" for name, value in rows.items())
+        cells = "".join(
+            f"<tr><td style='padding-right:12px;color:#555'>{name}</td><td>{value}</td></tr>" for name, value in rows.items()
+        )
         self.text.object = f"<p><b>{orbit.describe()}</b></p><table style='font-size:13px'>{cells}</table>"
 
     def _submit(self) -> None:

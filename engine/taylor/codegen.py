@@ -168,10 +168,8 @@ def _hidden_crossings() -> list[str]:
 
 def _gates(channels: int) -> list[str]:
     """Is the end of the step past any exit's gate: the line across a channel that its exit curve lies beyond?"""
-    lines = ["gate = 0"]
-    for k in range(channels):
-        lines.append(f"gate = {GATE} if gates[{k}, 0]*xh + gates[{k}, 1]*yh > gates[{k}, 2] else gate")
-    return lines
+    test = "gate = {flag} if gates[{k}, 0]*xh + gates[{k}, 1]*yh > gates[{k}, 2] else gate"
+    return ["gate = 0", *(test.format(flag=GATE, k=k) for k in range(channels))]
 
 
 def _function(signature: str, body: list[str]) -> str:

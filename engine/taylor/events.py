@@ -12,7 +12,9 @@ import numpy as np
 from engine.taylor.compilation import kernel
 
 # Columns of an exit curve.
-SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(11)
+SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(
+    11
+)
 
 # Outcomes of an orbit; one that has left carries the number of its channel, 1 or more.
 BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4

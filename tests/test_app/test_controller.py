@@ -83,7 +83,7 @@ def test_a_map_comes_in_frames_and_ends_complete(session: Session) -> None:
 
 
 def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> None:
-    state, controller, recorder, _ = session
+    state, _, recorder, _ = session
     state.t_max = 1e4
     for energy in (0.31, 0.32, 0.33):
         state.energy = energy

@@ -12,7 +12,13 @@ from engine import CASES, Plane
 
 def test_the_request_is_what_was_chosen() -> None:
     spec = ViewState(case="III", plane=Plane.X_Y, energy=0.45, t_max=1e3, resolution=113).map_spec()
-    assert (spec.potential, spec.plane, spec.energy, spec.resolution, spec.t_max) == (CASES["III"], Plane.X_Y, 0.45, (113, 113), 1e3)
+    assert (spec.potential, spec.plane, spec.energy, spec.resolution, spec.t_max) == (
+        CASES["III"],
+        Plane.X_Y,
+        0.45,
+        (113, 113),
+        1e3,
+    )
 
 
 @pytest.mark.parametrize("case", list(CASES))

@@ -169,11 +169,11 @@ def test_the_cache_stays_below_its_limit_and_drops_what_was_not_used() -> None:
         cache.put(key, Weight(40))
         cache.get("a")
     assert cache.nbytes == 80
-    assert set(cache.keys()) == {"a", "c"}
+    assert set(cache) == {"a", "c"}
 
 
 def test_a_result_larger_than_the_cache_is_not_kept() -> None:
     cache = ResultCache(100)
     cache.put("a", Weight(40))
     cache.put("b", Weight(101))
-    assert cache.keys() == ["a"]
+    assert list(cache) == ["a"]

@@ -1,0 +1,143 @@
+"""A served app on loopback and a Chromium that reports everything it dislikes."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import (
+    Browser,
+    BrowserContext,
+    ConsoleMessage,
+    Page,
+    Playwright,
+    Request,
+    Response,
+    expect,
+    sync_playwright,
+)
+
+from tests.browser.explorer_page import ExplorerPage
+
+ROOT = Path(__file__).parents[2]
+START_SECONDS = 240
+PATIENCE_MS = 30_000
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    here = Path(__file__).parent
+    for item in items:
+        if here in item.path.parents:
+            item.add_marker(pytest.mark.browser)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    path = next(filter(None, map(shutil.which, NAMES)), None)
+    if path is None:
+        message = f"no browser: none of {', '.join(NAMES)} is on PATH (Debian: apt-get install chromium)"
+        if os.environ.get("CI"):
+            pytest.fail(message)
+        pytest.skip(message)
+    playwright: Playwright
+    expect.set_options(timeout=PATIENCE_MS)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of the app, served as the README says."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-m", "panel", "serve", "app", "--address", "127.0.0.1", "--port", str(port)]
+    command += ["--allow-websocket-origin", f"127.0.0.1:{port}"]
+    with (tmp_path_factory.mktemp("server") / "log").open("w+") as log:
+        process = subprocess.Popen(command, cwd=ROOT, stdout=log, stderr=subprocess.STDOUT)
+        address = f"http://127.0.0.1:{port}/app"
+        try:
+            _wait_until_up(address, process)
+            yield address
+        finally:
+            process.terminate()
+            process.wait(30)
+            log.seek(0)
+            text = log.read()
+    assert "Traceback" not in text, text
+
+
+def _wait_until_up(address: str, process: subprocess.Popen[bytes]) -> None:
+    end = time.monotonic() + START_SECONDS
+    while time.monotonic() < end:
+        if process.poll() is not None:
+            pytest.fail(f"the server ended with {process.returncode}")
+        try:
+            with urllib.request.urlopen(address, timeout=60):
+                return
+        except OSError:
+            time.sleep(0.3)
+    pytest.fail(f"the server did not answer within {START_SECONDS} s")
+
+
+class Watch:
+    """Everything a page should not do: errors, failed answers, requests that leave the machine."""
+
+    def __init__(self, page: Page) -> None:
+        self.complaints: list[str] = []
+        page.on("console", self._console)
+        page.on("pageerror", lambda error: self.complaints.append(f"page error: {error}"))
+        page.on("request", self._request)
+        page.on("response", self._response)
+
+    def _console(self, message: ConsoleMessage) -> None:
+        if message.type == "error":
+            self.complaints.append(f"console: {message.text}")
+
+    def _request(self, request: Request) -> None:
+        if not request.url.startswith(("http://127.0.0.1:", "data:", "blob:")):
+            self.complaints.append(f"external request: {request.url}")
+
+    def _response(self, response: Response) -> None:
+        if response.status >= 400:
+            self.complaints.append(f"{response.status}: {response.url}")
+
+
+@pytest.fixture
+def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
+    """Opens the page in a visitor of its own, as often as called, at a given width and height of the screen."""
+    contexts: list[BrowserContext] = []
+    watches: list[Watch] = []
+
+    def open_page(width: int = 1600, height: int = 1400) -> ExplorerPage:
+        context = chromium.new_context(viewport={"width": width, "height": height})
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE_MS)
+        watches.append(Watch(page))
+        page.goto(server)
+        explorer = ExplorerPage(page)
+        explorer.wait_until_complete()
+        return explorer
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert [complaint for watch in watches for complaint in watch.complaints] == []
+
+
+@pytest.fixture
+def explorer(open_explorer: Callable[..., ExplorerPage]) -> ExplorerPage:
+    """The page on a wide screen, with its first map complete."""
+    return open_explorer()

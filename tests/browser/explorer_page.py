@@ -1,0 +1,92 @@
+"""The page as a visitor uses it: what can be done on it and what can be read off it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from playwright.sync_api import Locator, Page
+
+_DOCUMENT = "Bokeh.documents[0]"
+_POINT = """([name, x, y]) => {
+    for (const view of Bokeh.index.all_views()) {
+        if (view.model.name !== name) continue
+        const box = view.canvas_view.el.getBoundingClientRect()
+        return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.y_scale.compute(y)]
+    }
+}"""
+_COLUMN = """name => {
+    const value = Bokeh.documents[0].get_model_by_name('maps').data[name][0]
+    return typeof value == 'object' ? {shape: [...value.shape], values: [...value]} : value
+}"""
+
+_RANGES = """name => {
+    const {x_range, y_range} = Bokeh.documents[0].get_model_by_name(name)
+    return [x_range.start, x_range.end, y_range.start, y_range.end]
+}"""
+
+
+class ExplorerPage:
+    """One visitor's page."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    def wait_until_complete(self) -> None:
+        self.page.wait_for_function(
+            f"window.Bokeh?.documents.length && {_DOCUMENT}.get_model_by_name('maps')?.data.complete[0] === true"
+        )
+
+    def column(self, name: str) -> Any:
+        """A column of the maps' source: an image as an array, or a plain value."""
+        value = self.page.evaluate(_COLUMN, name)
+        return np.array(value["values"]).reshape(value["shape"]) if isinstance(value, dict) else value
+
+    def forget_pixels(self) -> None:
+        """Mark the source, so that a later change of it can be seen."""
+        self.page.evaluate(f"() => {{ window.before = {_DOCUMENT}.get_model_by_name('maps').data }}")
+
+    def wait_for_new_pixels(self) -> None:
+        self.page.wait_for_function(f"{_DOCUMENT}.get_model_by_name('maps').data !== window.before")
+
+    def ranges(self, picture: str) -> list[float]:
+        return self.page.evaluate(_RANGES, picture)
+
+    def press(self, label: str) -> None:
+        self.page.get_by_role("button", name=label, exact=True).click()
+
+    def point(self, picture: str, x: float, ordinate: float) -> list[float]:
+        """Where a point of the plane is on the screen."""
+        return self.page.evaluate(_POINT, [picture, x, ordinate])
+
+    def click(self, picture: str, x: float, ordinate: float) -> None:
+        self.page.mouse.click(*self.point(picture, x, ordinate))
+
+    def hover(self, picture: str, x: float, ordinate: float) -> None:
+        left, top = self.point(picture, x, ordinate)
+        self.page.mouse.move(left - 3, top)
+        self.page.mouse.move(left, top)
+
+    def text(self, pattern: str) -> Locator:
+        return self.page.get_by_text(pattern).first
+
+    def choose(self, label: str, option: str) -> None:
+        """Pick an option of a drop-down list."""
+        self.page.get_by_role("combobox", name=label).click()
+        self.page.get_by_role("menuitem", name=option, exact=True).click()
+
+    def type_number(self, label: str, value: str) -> None:
+        box = self.page.get_by_label(label, exact=True).first
+        box.fill(value)
+        box.press("Enter")
+
+    def drag_energy_to(self, share: float) -> None:
+        """Drag the energy slider's thumb to a share of its length."""
+        rail = self.page.locator(".MuiSlider-root").first.bounding_box()
+        thumb = self.page.locator(".MuiSlider-thumb").first.bounding_box()
+        assert rail is not None
+        assert thumb is not None
+        self.page.mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)
+        self.page.mouse.down()
+        self.page.mouse.move(rail["x"] + share * rail["width"], rail["y"] + rail["height"] / 2, steps=5)
+        self.page.mouse.up()

@@ -1,0 +1,201 @@
+"""The explorer as a visitor meets it, in Chromium."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from engine import CASES, Fate, MapSpec, Plane, compute_map, integrate_orbit
+from tests.browser.explorer_page import ExplorerPage
+
+PICTURES = ("curves", "basins", "times", "crossings")
+
+
+def test_the_first_map_is_the_engine_s(explorer: ExplorerPage) -> None:
+    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e4))
+    np.testing.assert_array_equal(explorer.column("crossings"), expected.crossings)
+
+
+def test_dragging_the_energy_gives_another_map(explorer: ExplorerPage) -> None:
+    before = explorer.column("fate")
+    explorer.forget_pixels()
+    explorer.drag_energy_to(0.6)
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    assert not np.array_equal(explorer.column("fate"), before)
+
+
+@pytest.mark.parametrize(("button", "shown"), [("II", "Case II"), ("III", "Case III")])
+def test_the_case_can_be_changed(explorer: ExplorerPage, button: str, shown: str) -> None:
+    explorer.forget_pixels()
+    explorer.press(button)
+    explorer.wait_for_new_pixels()
+    expect(explorer.text(shown)).to_be_visible()
+    assert set(np.unique(explorer.column("fate"))) >= {5, 6, 7}
+
+
+@pytest.mark.parametrize(("button", "ordinate"), [("(x, y)", "y"), ("(x, h)", "h")])
+def test_the_plane_can_be_changed(explorer: ExplorerPage, button: str, ordinate: str) -> None:
+    explorer.forget_pixels()
+    explorer.press(button)
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    label = explorer.page.evaluate("() => Bokeh.documents[0].get_model_by_name('basins').left[0].axis_label")
+    assert label == ordinate
+
+
+def test_the_resolution_can_be_changed(explorer: ExplorerPage) -> None:
+    explorer.forget_pixels()
+    explorer.choose("Resolution", "113 × 113")
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    assert explorer.column("fate").shape == (113, 113)
+
+
+def test_a_longer_t_max_leaves_fewer_bounded(explorer: ExplorerPage) -> None:
+    bounded = np.sum(explorer.column("fate") == 4)
+    explorer.forget_pixels()
+    explorer.choose("t_max", "100")
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    assert np.sum(explorer.column("fate") == 4) > bounded
+
+
+def test_an_energy_can_be_typed(explorer: ExplorerPage) -> None:
+    explorer.forget_pixels()
+    explorer.type_number("h exactly", "0.2345")
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2345, t_max=1e4))
+    np.testing.assert_array_equal(explorer.column("crossings"), expected.crossings)
+
+
+def test_an_energy_without_exits_is_answered_with_a_sentence_and_the_picture_stays(explorer: ExplorerPage) -> None:
+    before = explorer.column("fate")
+    explorer.type_number("h exactly", "7")
+    expect(explorer.text("energy=7.0")).to_be_visible()
+    np.testing.assert_array_equal(explorer.column("fate"), before)
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_a_click_integrates_the_orbit_of_that_pixel(explorer: ExplorerPage, picture: str) -> None:
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e4)
+    pixel = spec.pixel_at(0.1, 0.05)
+    assert pixel is not None
+    columns, rows = spec.pixel_centres()
+    x, px = float(columns[pixel[1]]), float(rows[pixel[0]])
+    orbit = integrate_orbit(spec.potential, (x, 0.0, px, np.sqrt(2 * (0.19 - x * x / 2) - px * px)), 1e4)
+    explorer.click(picture, 0.1, 0.05)
+    expect(explorer.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
+
+
+def test_a_click_marks_the_start_on_every_map(explorer: ExplorerPage) -> None:
+    explorer.click("times", 0.1, 0.05)
+    expect(explorer.text("Escaped through")).to_be_visible()
+    marked = explorer.page.evaluate(
+        "() => { const s = Bokeh.documents[0].get_model_by_name('start').data; return [s.x[0], s.y[0]] }"
+    )
+    assert marked == pytest.approx([0.1, 0.05], abs=0.006)
+
+
+def test_a_bounded_orbit_is_judged_by_its_sali(explorer: ExplorerPage) -> None:
+    fate = explorer.column("fate")
+    x, px = MapSpec(CASES["I"], Plane.X_PX, 0.19).pixel_centres()
+    middle = np.argwhere(fate == 4).mean(axis=0)
+    row, column = min(np.argwhere(fate == 4), key=lambda pixel: np.sum((pixel - middle) ** 2))
+    explorer.click("basins", float(x[column]), float(px[row]))
+    expect(explorer.text(re.compile("Bounded until t = 10000 and (regular|chaotic)"))).to_be_visible()
+
+
+def test_a_click_on_a_forbidden_pixel_says_so(explorer: ExplorerPage) -> None:
+    x_low, _, low, _ = explorer.ranges("basins")
+    explorer.click("basins", x_low + 0.02, low + 0.02)
+    expect(explorer.text("Forbidden: no orbit of this energy can start here")).to_be_visible()
+
+
+def test_a_start_can_be_typed(explorer: ExplorerPage) -> None:
+    explorer.type_number("x", "0.1")
+    explorer.type_number("px", "0.2")
+    explorer.press("Integrate this start")
+    orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.2, np.sqrt(2 * (0.19 - 0.005) - 0.04)), 1e4)
+    expect(explorer.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
+
+
+def test_zooming_one_map_zooms_all(explorer: ExplorerPage) -> None:
+    before = explorer.ranges("basins")
+    explorer.page.mouse.move(*explorer.point("times", 0.0, 0.0))
+    explorer.page.mouse.wheel(0, -300)
+    explorer.page.wait_for_function(
+        "start => Bokeh.documents[0].get_model_by_name('basins').x_range.start > start + 1e-3", arg=before[0]
+    )
+    assert len({tuple(explorer.ranges(picture)) for picture in PICTURES}) == 1
+
+
+@pytest.mark.parametrize("picture", PICTURES)
+def test_hovering_reads_the_pixel_out(explorer: ExplorerPage, picture: str) -> None:
+    explorer.hover(picture, 0.1, 0.05)
+    expect(explorer.text("escapes through channel 1")).to_be_visible()
+    expect(explorer.text(re.compile(r"escape time 3\.\d+, crossings of y = 0: 0"))).to_be_visible()
+    expect(explorer.text(re.compile(r"\(0\.\d+, 0\.0\d+\)"))).to_be_visible()
+
+
+def test_a_map_can_be_cancelled_and_gone_on_with(explorer: ExplorerPage) -> None:
+    explorer.choose("t_max", "100 000")
+    explorer.wait_until_complete()
+    explorer.forget_pixels()
+    explorer.press("III")
+    explorer.wait_for_new_pixels()
+    explorer.press("Cancel")
+    expect(explorer.text("Stopped:")).to_be_visible()
+    assert explorer.column("complete") is False
+    explorer.forget_pixels()
+    explorer.press("Go on")
+    explorer.wait_for_new_pixels()
+    expect(explorer.page.get_by_role("button", name="Cancel", exact=True)).to_be_enabled()
+
+
+def test_two_visitors_do_not_disturb_each_other(open_explorer: Callable[..., ExplorerPage]) -> None:
+    one, other = open_explorer(), open_explorer()
+    before = one.column("fate")
+    other.forget_pixels()
+    other.press("III")
+    other.wait_for_new_pixels()
+    other.wait_until_complete()
+    np.testing.assert_array_equal(one.column("fate"), before)
+    one.click("basins", 0.1, 0.05)
+    expect(one.text("Escaped through channel 1")).to_be_visible()
+    expect(other.text("Escaped through channel")).to_have_count(0)
+
+
+@pytest.mark.parametrize("width", [1600, 420])
+def test_pictures_are_square_and_fit_the_screen(open_explorer: Callable[..., ExplorerPage], width: int) -> None:
+    explorer = open_explorer(width)
+    boxes = explorer.page.evaluate(
+        """names => [...Bokeh.index.all_views()].filter(v => names.includes(v.model.name)).map(v => {
+            const box = v.canvas_view.el.getBoundingClientRect(), f = v.frame.bbox
+            return [box.left, box.right, f.width, f.height]
+        })""",
+        list(PICTURES),
+    )
+    assert len(boxes) == 4
+    assert all(box[2] == box[3] for box in boxes)
+    assert all(box[0] >= 0 and box[1] <= width for box in boxes)
+    x_low, x_high, low, high = explorer.ranges("basins")
+    assert x_high - x_low == pytest.approx(high - low)
+
+
+def test_every_outcome_has_its_line_in_the_legend(explorer: ExplorerPage) -> None:
+    for label in (
+        "channel 1",
+        "channel 2",
+        "bounded",
+        "forbidden: no such orbit",
+        "outside: starts beyond an exit",
+        "not decided yet",
+    ):
+        expect(explorer.page.get_by_text(label, exact=True).first).to_be_visible()
+    assert Fate.FAILED not in np.unique(explorer.column("fate"))

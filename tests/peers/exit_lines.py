@@ -1,0 +1,59 @@
+"""Exits from nothing but the sampled path of each Lyapunov orbit: a second opinion on what lies outside.
+
+A Lyapunov orbit comes to rest at both walls, so its path is even in time about either end, and a cosine series through its
+evenly spaced samples is accurate to rounding. In axes along and across the chord from wall to wall the path is a graph.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from engine import LyapunovOrbit, Potential, find_lyapunov_orbits
+
+_POINTS = 20001
+
+
+@dataclass(frozen=True)
+class ExitLine:
+    """One exit: its channel, the middle of the chord, unit vectors along (outward) and across, and the graph u(q)."""
+
+    channel: int
+    middle: np.ndarray
+    outward: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+
+    def in_chord_axes(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        dx, dy = x - self.middle[0], y - self.middle[1]
+        return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
+
+    def beyond(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Distance beyond the exit along the chord's normal; −1 for points beside it, which it says nothing about."""
+        u, q = self.in_chord_axes(x, y)
+        return np.where(np.abs(q) <= self.q[-1], u - np.interp(q, self.q, self.u), -1.0)
+
+
+def exit_line(orbit: LyapunovOrbit) -> ExitLine:
+    half = np.array([orbit.x, orbit.y])[:, : orbit.x.size // 2 + 1]
+    coefficients = fft.dct(half, type=1, axis=1) / (half.shape[1] - 1)
+    coefficients[:, [0, -1]] *= 0.5
+    tau = np.linspace(0.0, np.pi, _POINTS)
+    x, y = sum(c[:, None] * np.cos(k * tau) for k, c in enumerate(coefficients.T))
+    middle = np.array([x[0] + x[-1], y[0] + y[-1]]) / 2
+    across = np.array([x[-1] - x[0], y[-1] - y[0]])
+    across /= np.hypot(*across)
+    outward = np.array([across[1], -across[0]])
+    # The well is around the origin, so outward is away from it.
+    outward = outward if outward @ middle > 0 else -outward
+    line = ExitLine(orbit.channel, middle, outward, np.empty(0), np.empty(0))
+    u, q = line.in_chord_axes(x, y)
+    order = slice(None) if q[-1] > q[0] else slice(None, None, -1)
+    assert np.all(np.diff(q[order]) > 0)
+    return ExitLine(orbit.channel, middle, outward, q[order], u[order])
+
+
+def exit_lines(potential: Potential, energy: float) -> list[ExitLine]:
+    return [exit_line(orbit) for orbit in find_lyapunov_orbits(potential, energy)]

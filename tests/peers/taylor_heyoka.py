@@ -1,0 +1,117 @@
+"""Escapes by heyoka: Taylor series too, but another author's recurrence, step control and event detection."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import heyoka as hy
+import numpy as np
+
+from engine import Potential
+from tests.peers.dop853 import Answers
+from tests.peers.exit_lines import ExitLine
+
+_DEGREE = 12
+# A start on y = 0 is not a crossing.
+_JUST_STARTED = 1e-9
+
+
+def coordinates():
+    return hy.make_vars("x", "y", "px", "py")
+
+
+def equations(potential: Potential) -> list:
+    x, y, px, py = coordinates()
+    fx = sum(-c * i * x ** (i - 1) * y**j for i, j, c in potential.terms if i)
+    fy = sum(-c * j * x**i * y ** (j - 1) for i, j, c in potential.terms if j)
+    return [(x, px), (y, py), (px, fx), (py, fy)]
+
+
+def taylor_coefficients(potential: Potential, state: np.ndarray) -> np.ndarray:
+    """(2, order + 1) coefficients of x and y about a state."""
+    integrator = hy.taylor_adaptive(equations(potential), state.tolist(), tol=1e-18)
+    integrator.step(write_tc=True)
+    return integrator.tc[:2].copy()
+
+
+class Classifier:
+    """Classifies orbits of one potential; the exits of an energy are parameters, so that one compilation serves all."""
+
+    def __init__(self, potential: Potential, tolerance: float) -> None:
+        x, y, *_ = coordinates()
+        exits = [
+            hy.t_event(self._beyond(k, x, y), callback=self._left(k), direction=hy.event_direction.positive)
+            for k in range(potential.channels)
+        ]
+        upward = hy.nt_event(y, self._upward, direction=hy.event_direction.positive)
+        self.crossings, self.channel = 0, 0
+        self.lines: list[ExitLine] = []
+        self.integrator = hy.taylor_adaptive(
+            equations(potential),
+            [0.0] * 4,
+            tol=tolerance,
+            t_events=exits,
+            nt_events=[upward],
+            pars=[0.0] * (potential.channels * 18),
+        )
+
+    @staticmethod
+    def _beyond(k: int, x, y):
+        mx, my, ox, oy, half_width, *coefficients = (hy.par[18 * k + n] for n in range(18))
+        u, s = ox * (x - mx) + oy * (y - my), (ox * (y - my) - oy * (x - mx)) / half_width
+        graph = coefficients[_DEGREE]
+        for c in coefficients[_DEGREE - 1 :: -1]:
+            graph = graph * s + c
+        return u - graph
+
+    def _left(self, k: int):
+        def callback(integrator, _sign: int) -> bool:
+            line = self.lines[k]
+            # The polynomial means nothing beside the chord.
+            if abs(line.in_chord_axes(*integrator.state[:2])[1]) > 1.001 * line.q[-1]:
+                return True
+            self.channel = line.channel
+            return False
+
+        return callback
+
+    def _upward(self, _integrator, time: float, _sign: int) -> None:
+        self.crossings += time > _JUST_STARTED
+
+    def aim(self, lines: list[ExitLine]) -> None:
+        """Set the exits; all channels must be open."""
+        self.lines = lines
+        for k, line in enumerate(lines):
+            s = line.q / line.q[-1]
+            fit = np.polynomial.Chebyshev.fit(s, line.u, _DEGREE, domain=[-1, 1])
+            assert np.abs(fit(s) - line.u).max() < 1e-8
+            numbers = [*line.middle, *line.outward, line.q[-1], *fit.convert(kind=np.polynomial.Polynomial).coef]
+            self.integrator.pars[18 * k : 18 * k + len(numbers)] = numbers
+
+    def __deepcopy__(self, _memo: object) -> Classifier:
+        # heyoka copies its callbacks; they must go on counting here.
+        return self
+
+    def classify(self, states: np.ndarray, t_max: float) -> Answers:
+        answers = Answers(np.zeros(len(states), int), np.full(len(states), np.nan), np.zeros(len(states), int))
+        for n, state in enumerate(states):
+            self.crossings, self.channel = 0, 0
+            self.integrator.reset_cooldowns()
+            self.integrator.time = 0.0
+            self.integrator.state[:] = state
+            self.integrator.propagate_until(t_max)
+            answers.fate[n], answers.crossings[n] = self.channel, self.crossings
+            if self.channel:
+                answers.escape_time[n] = self.integrator.time
+        return answers
+
+
+@cache
+def classifier(potential: Potential, tolerance: float) -> Classifier:
+    return Classifier(potential, tolerance)
+
+
+def classify(potential: Potential, lines: list[ExitLine], states: np.ndarray, t_max: float, tolerance: float = 1e-18) -> Answers:
+    ready = classifier(potential, tolerance)
+    ready.aim(lines)
+    return ready.classify(states, t_max)

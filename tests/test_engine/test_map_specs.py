@@ -1,0 +1,101 @@
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engine import CASES, LARGEST_SIDE, LONGEST_TIME, MapSpec, Plane, Window
+
+I = CASES["I"]  # noqa: E741 — the case's name
+WINDOW = (-1.0, 1.0, -1.0, 1.0)
+
+
+def spec_with(**changed: Any) -> MapSpec:
+    return MapSpec(**{"potential": I, "plane": Plane.X_Y, "energy": 0.2, "window": WINDOW} | changed)
+
+
+@pytest.mark.parametrize("energy", [np.nan, np.inf, -np.inf, (0.1, 0.2), None])
+def test_one_finite_energy_is_needed(energy: Any) -> None:
+    with pytest.raises(ValueError, match="energy=") as error:
+        spec_with(energy=energy)
+    assert repr(energy) in str(error.value)
+
+
+@pytest.mark.parametrize("energy", [0.2, (0.3, 0.2), (0.2, 0.2), (0.1, 0.2, 0.3), (0.1, np.nan), (0.1, np.inf)])
+def test_a_rising_pair_of_energies_is_needed_on_x_h(energy: Any) -> None:
+    with pytest.raises(ValueError, match="energy=") as error:
+        spec_with(plane=Plane.X_H, energy=energy)
+    assert repr(energy) in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "resolution", [(0, 10), (10, 0), (-1, 10), (LARGEST_SIDE + 1, 10), (10, LARGEST_SIDE + 1), (10,), (1, 2, 3)]
+)
+def test_resolution_has_limits(resolution: Any) -> None:
+    with pytest.raises(ValueError, match="resolution=") as error:
+        spec_with(resolution=resolution)
+    assert str(resolution) in str(error.value)
+
+
+@pytest.mark.parametrize("resolution", [5, (10.7, 10), (np.nan, 10), "ab", None])
+def test_resolution_is_two_whole_numbers(resolution: Any) -> None:
+    with pytest.raises(ValueError, match="resolution=") as error:
+        spec_with(resolution=resolution)
+    assert repr(resolution) in str(error.value)
+
+
+@pytest.mark.parametrize("side", [1, LARGEST_SIDE])
+def test_resolution_may_be_anything_up_to_its_limits(side: int) -> None:
+    assert spec_with(resolution=(side, np.int64(3))).resolution == (side, 3)
+
+
+@pytest.mark.parametrize("t_max", [0.0, -1.0, np.nan, np.inf, 2 * LONGEST_TIME])
+def test_t_max_has_limits(t_max: float) -> None:
+    with pytest.raises(ValueError, match=f"t_max={t_max}"):
+        spec_with(t_max=t_max)
+
+
+@pytest.mark.parametrize(
+    ("edges", "named"),
+    [
+        ((1.0, -1.0, -1.0, 1.0), "x range 1.0 … -1.0"),
+        ((1.0, 1.0, -1.0, 1.0), "x range 1.0 … 1.0"),
+        ((-1.0, np.nan, -1.0, 1.0), "x range -1.0 … nan"),
+        ((-np.inf, 1.0, -1.0, 1.0), "x range -inf … 1.0"),
+        ((-1.0, 1.0, 2.0, 1.0), "ordinate range 2.0 … 1.0"),
+        ((-1.0, 1.0, 0.0, 0.0), "ordinate range 0.0 … 0.0"),
+        ((-1.0, 1.0, 0.0, np.inf), "ordinate range 0.0 … inf"),
+    ],
+)
+def test_window_edges_are_finite_and_in_order(edges: tuple[float, ...], named: str) -> None:
+    with pytest.raises(ValueError, match=named):
+        Window(*edges)
+    with pytest.raises(ValueError, match=named):
+        spec_with(window=edges)
+
+
+@pytest.mark.parametrize("plane", ["(x, z)", 3, None])
+def test_plane_must_be_one_of_the_three(plane: Any) -> None:
+    with pytest.raises(ValueError, match="Plane"):
+        spec_with(plane=plane)
+
+
+def test_energy_far_too_high_is_refused_before_anything_is_computed() -> None:
+    with pytest.raises(ValueError, match=r"energy=50\.0"):
+        spec_with(energy=50.0, window=None)
+
+
+@pytest.mark.parametrize("energy", [0.125, 0.1, 0.0, -1.0])
+def test_energy_at_or_below_the_escape_energy_is_legal(energy: float) -> None:
+    assert spec_with(energy=energy).energy == energy
+
+
+def test_equal_requests_are_equal_keys() -> None:
+    assert {spec_with(window=WINDOW): 1}[spec_with(window=Window(*WINDOW))] == 1
+
+
+def test_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
+    x, ordinate = spec_with(resolution=(4, 2)).pixel_centres()
+    np.testing.assert_allclose(x, [-0.75, -0.25, 0.25, 0.75], rtol=1e-15)
+    np.testing.assert_allclose(ordinate, [-0.5, 0.5], rtol=1e-15)

@@ -1,0 +1,118 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine import CASES, Potential
+
+X, Y = sympy.symbols("x y")
+R = np.sqrt(0.5)
+SADDLES = {
+    "I": [(0.5, R), (0.5, -R)],
+    "II": [(1.0, 0.0), (-0.5, np.sqrt(0.75)), (-0.5, -np.sqrt(0.75))],
+    "III": [(R, R), (-R, R), (-R, -R), (R, -R)],
+}
+ESCAPE_ENERGY = {"I": 1 / 8, "II": 1 / 6, "III": 1 / 4}
+PAPER = {"I": -X * Y**2, "II": -X * (X**2 / 3 - Y**2), "III": -(X**2) * Y**2}
+
+coefficients = st.floats(-3.0, 3.0).filter(lambda c: abs(c) > 1e-3)
+exponents = st.tuples(st.integers(0, 4), st.integers(0, 4))
+polynomials = st.dictionaries(exponents, coefficients, min_size=1, max_size=6)
+places = st.floats(-1.5, 1.5)
+
+
+def potential_of(table: dict[tuple[int, int], float]) -> Potential:
+    return Potential("random", tuple((i, j, c) for (i, j), c in table.items()))
+
+
+def expression_of(potential: Potential) -> sympy.Expr:
+    return sympy.Add(*(sympy.Float(c, 30) * X**i * Y**j for i, j, c in potential.terms))
+
+
+def at(expression: sympy.Expr, x: float, y: float) -> float:
+    return float(expression.subs({X: sympy.Float(x, 30), Y: sympy.Float(y, 30)}))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_each_case_is_the_papers_polynomial(name: str) -> None:
+    difference = sympy.nsimplify(expression_of(CASES[name]), rational=True) - (X**2 + Y**2) / 2 - PAPER[name]
+    assert sympy.expand(difference) == 0
+
+
+@given(polynomials, places, places)
+def test_value_agrees_with_sympy(table: dict[tuple[int, int], float], x: float, y: float) -> None:
+    potential = potential_of(table)
+    assert potential.value(x, y) == pytest.approx(at(expression_of(potential), x, y), rel=1e-12, abs=1e-12)
+
+
+@given(polynomials, places, places)
+def test_gradient_agrees_with_sympy(table: dict[tuple[int, int], float], x: float, y: float) -> None:
+    potential = potential_of(table)
+    expected = [at(sympy.diff(expression_of(potential), v), x, y) for v in (X, Y)]
+    assert potential.gradient(x, y) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@given(polynomials, places, places)
+def test_hessian_agrees_with_sympy(table: dict[tuple[int, int], float], x: float, y: float) -> None:
+    potential = potential_of(table)
+    expected = [at(sympy.diff(expression_of(potential), *v), x, y) for v in ((X, X), (X, Y), (Y, Y))]
+    assert potential.hessian(x, y) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_arrays_give_what_single_points_give(name: str) -> None:
+    x, y = np.random.default_rng(0).uniform(-1, 1, (2, 3, 4))
+    singly = [CASES[name].value(a, b) for a, b in zip(x.ravel(), y.ravel(), strict=True)]
+    np.testing.assert_array_equal(CASES[name].value(x, y).ravel(), singly)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_channels_are_numbered_counterclockwise_from_the_x_axis(name: str) -> None:
+    np.testing.assert_allclose(CASES[name].saddles, SADDLES[name], atol=1e-13)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_escape_energy_is_the_papers(name: str) -> None:
+    assert CASES[name].escape_energy == pytest.approx(ESCAPE_ENERGY[name], rel=1e-14)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_all_channels_open_above_the_escape_energy(name: str) -> None:
+    potential = CASES[name]
+    assert potential.open_channels(ESCAPE_ENERGY[name] + 1e-9) == tuple(range(1, potential.channels + 1))
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("below", [0.0, 1e-9, 0.05])
+def test_no_channel_is_open_at_or_below_the_escape_energy(name: str, below: float) -> None:
+    assert CASES[name].open_channels(ESCAPE_ENERGY[name] - below) == ()
+
+
+def test_saddles_of_unequal_height_open_one_after_the_other() -> None:
+    # V_x = x − x²/2 − x³/2 vanishes at x = 1 and x = −2, each a maximum along x and a minimum along y.
+    lopsided = Potential("lopsided", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, -1 / 6), (4, 0, -1 / 8)))
+    energies = lopsided.saddle_energies
+    assert len(set(np.round(energies, 6))) == 2
+    assert lopsided.open_channels(0.5 * energies.sum()) == (int(np.argmin(energies)) + 1,)
+
+
+def test_potential_without_saddle_never_lets_anything_escape() -> None:
+    assert Potential("harmonic", ((2, 0, 0.5), (0, 2, 0.5))).escape_energy == np.inf
+
+
+def test_energy_is_kinetic_plus_potential() -> None:
+    state = np.array([0.3, -0.2, 0.4, 0.5])
+    assert CASES["II"].energy(state) == pytest.approx(0.5 * (0.16 + 0.25) + CASES["II"].value(0.3, -0.2), rel=1e-15)
+
+
+def test_name_makes_no_difference() -> None:
+    assert Potential("another name", CASES["I"].terms) == CASES["I"]
+
+
+@pytest.mark.parametrize("terms", [((2, 0, 1.0), (2, 0, 2.0)), ((-1, 0, 1.0),), ((1, 0, np.nan),), ((1, 0, np.inf),)])
+def test_malformed_terms_are_refused(terms: tuple[tuple[int, int, float], ...]) -> None:
+    with pytest.raises(ValueError, match="terms"):
+        Potential("malformed", terms)

@@ -1,0 +1,167 @@
+"""The generated kernels as numerical objects: series, order, tangent flow, energy."""
+
+from __future__ import annotations
+
+import ast
+
+import heyoka as hy
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine import CASES, Fate, Potential, classify_orbits, start_states
+from engine.planes import Plane
+from engine.taylor.build import load_kernels
+from engine.taylor.codegen import ORDER, TOLERANCE, generate_source, plan_products
+from tests.peers import taylor_heyoka
+
+# One potential beyond the paper's: odd in both coordinates, of degree 5, with a term in neither force's pattern.
+ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 0.3), (0, 3, -0.2), (4, 1, 0.11), (1, 1, 0.07)))
+POTENTIALS = {**CASES, "odd": ODD}
+each_potential = pytest.mark.parametrize("name", POTENTIALS)
+SYMPLECTIC = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
+
+
+def some_states(count: int) -> np.ndarray:
+    return np.random.default_rng(7).uniform(-0.6, 0.6, (count, 4))
+
+
+def jets_of(potential: Potential, states: np.ndarray) -> np.ndarray:
+    """(2, ORDER + 1, n) coefficients of x and y."""
+    jets = np.empty((2, ORDER + 1, len(states)))
+    load_kernels(potential.terms, potential.channels).jets(len(states), *states.T.copy(), *jets)
+    return jets
+
+
+def flowed(potential: Potential, states: np.ndarray, h: float) -> np.ndarray:
+    """(n, 4) states a time h later, by the series."""
+    jets = jets_of(potential, states)
+    powers = h ** np.arange(ORDER + 1)[:, None]
+    slopes = np.arange(1, ORDER + 1)[:, None] * powers[:-1]
+    x, y = (jets * powers).sum(axis=1)
+    px, py = (jets[:, 1:] * slopes).sum(axis=1)
+    return np.column_stack([x, y, px, py])
+
+
+def transition_matrix(potential: Potential, state: np.ndarray, h: float) -> np.ndarray:
+    deviations = np.eye(4)
+    position = [np.full(4, value) for value in state]
+    load_kernels(potential.terms, potential.channels).tangent(4, np.full(4, h), *position, *deviations)
+    return deviations
+
+
+@each_potential
+def test_series_are_heyokas(name: str) -> None:
+    for state, mine in zip(some_states(6), np.moveaxis(jets_of(POTENTIALS[name], some_states(6)), -1, 0), strict=True):
+        theirs = taylor_heyoka.taylor_coefficients(POTENTIALS[name], state)[:, : ORDER + 1]
+        np.testing.assert_allclose(mine, theirs, rtol=1e-12, atol=1e-13 * np.abs(theirs).max())
+
+
+@each_potential
+def test_series_obey_the_equations_of_motion(name: str) -> None:
+    """(k+1)(k+2) x_(k+2) = −[t^k] V_x by exact polynomial arithmetic; only the newest coefficient is judged at each k."""
+    potential, t = POTENTIALS[name], sympy.Symbol("t")
+    jets = jets_of(potential, some_states(1))[:, :, 0]
+    x, y = (sympy.Poly([sympy.Rational(float(c)) for c in axis[::-1]], t) for axis in jets)
+    for axis, table in enumerate((potential.derivative(1, 0), potential.derivative(0, 1))):
+        force = sum((sympy.Rational(c) * x**i * y**j for (i, j), c in table.items()), sympy.Poly(0, t)).all_coeffs()[::-1]
+        expected = np.array([-float(c) for c in force[: ORDER - 1]])
+        mine = np.arange(1, ORDER) * np.arange(2, ORDER + 1) * jets[axis, 2:]
+        np.testing.assert_allclose(mine, expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
+
+
+@each_potential
+def test_local_error_falls_with_one_power_more_than_the_order(name: str) -> None:
+    states = some_states(5)
+    # Long enough for the error to stand clear of rounding, short enough for its first term to rule.
+    lengths = np.array([0.8, 1.0, 1.2])
+    truth = hy.taylor_adaptive(taylor_heyoka.equations(POTENTIALS[name]), [0.0] * 4, tol=1e-18)
+    errors = np.empty((len(states), lengths.size))
+    for n, state in enumerate(states):
+        for k, h in enumerate(lengths):
+            truth.time, truth.state[:] = 0.0, state
+            for end in np.linspace(0, h, 5)[1:]:
+                truth.propagate_until(end)
+            errors[n, k] = np.abs(flowed(POTENTIALS[name], state[None], h)[0, :2] - truth.state[:2]).max()
+    measurable = (errors > 1e-14).all(axis=1)
+    assert measurable.sum() >= 2
+    slopes = np.log(errors[measurable, -1] / errors[measurable, 0]) / np.log(lengths[-1] / lengths[0])
+    assert np.median(slopes) == pytest.approx(ORDER + 1, abs=1.0)
+
+
+@each_potential
+def test_tangent_flow_is_the_derivative_of_the_flow(name: str) -> None:
+    shift, h = 1e-5, 0.3
+    for state in some_states(5):
+        both_sides = state + shift * np.vstack([np.eye(4), -np.eye(4)])
+        after = flowed(POTENTIALS[name], both_sides, h)
+        differences = (after[:4] - after[4:]).T / (2 * shift)
+        # Central differences err by shift² and by rounding / shift, both near 1e-10.
+        np.testing.assert_allclose(transition_matrix(POTENTIALS[name], state, h), differences, atol=1e-8)
+
+
+@each_potential
+def test_tangent_flow_is_symplectic(name: str) -> None:
+    for state in some_states(5):
+        m = transition_matrix(POTENTIALS[name], state, 0.2)
+        np.testing.assert_allclose(m.T @ SYMPLECTIC @ m, SYMPLECTIC, atol=1e-13)
+
+
+@each_potential
+def test_tangent_flow_carries_the_velocity_along(name: str) -> None:
+    """(ẋ, ṗ) is itself a deviation: the flow maps the phase velocity at the start to that at the end."""
+
+    def phase_velocity(s: np.ndarray) -> np.ndarray:
+        vx, vy = POTENTIALS[name].gradient(s[0], s[1])
+        return np.array([s[2], s[3], -vx, -vy])
+
+    for state in some_states(5):
+        end = flowed(POTENTIALS[name], state[None], 0.2)[0]
+        moved = transition_matrix(POTENTIALS[name], state, 0.2) @ phase_velocity(state)
+        np.testing.assert_allclose(moved, phase_velocity(end), atol=1e-12)
+
+
+@each_potential
+def test_a_step_ends_where_its_series_does(name: str) -> None:
+    potential, n = POTENTIALS[name], 16
+    states = some_states(n)
+    new, h, flag, crossed = np.empty((5, n)), np.empty(n), np.zeros(n, np.int64), np.zeros(n, np.int64)
+    gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
+    kernels = load_kernels(potential.terms, potential.channels)
+    kernels.step(n, TOLERANCE, np.inf, gates, *states.T.copy(), np.zeros(n), *new, h, flag, crossed)
+    expected = np.concatenate([flowed(potential, state[None], length) for state, length in zip(states, h, strict=True)])
+    np.testing.assert_allclose(new[:4].T, expected, rtol=0, atol=1e-14)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.16), ("III", 0.24), ("III", 0.26)])
+def test_energy_is_kept_to_1e_11_over_1e5_time_units(name: str, energy: float) -> None:
+    x, px = np.random.default_rng(5).uniform(-0.45, 0.45, (2, 40))
+    states = start_states(CASES[name], Plane.X_PX, energy, x, px)
+    outcome = classify_orbits(CASES[name], energy, states[np.isfinite(states).all(axis=1)], t_max=1e5)
+    bounded = outcome.fate == Fate.BOUNDED
+    assert bounded.sum() >= 24
+    assert outcome.energy_error[bounded].max() <= 1e-11
+
+
+@given(st.sets(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=1, max_size=5))
+def test_every_product_is_planned_after_its_factors(needed: set[tuple[int, int]]) -> None:
+    known = {(1, 0), (0, 1)}
+    for product in plan_products(needed):
+        assert {product.left, product.right} <= known
+        assert tuple(np.add(product.left, product.right)) == product.monomial
+        known.add(product.monomial)
+    assert {m for m in needed if sum(m) > 1} <= known
+
+
+def test_a_square_saves_a_product() -> None:
+    # x⁴ as (x²)² takes two products, not three.
+    assert len(plan_products({(4, 0)})) == 2
+
+
+@pytest.mark.parametrize("terms", [(), ((0, 0, 1.0),), ((1, 0, 2.0),), ((2, 0, 0.5),), ((6, 3, -1.0),)])
+def test_any_polynomial_becomes_valid_source(terms: tuple) -> None:
+    names = [node.name for node in ast.parse(generate_source(terms, 0)).body if isinstance(node, ast.FunctionDef)]
+    assert names == ["step", "jets", "tangent", "potential_value"]
