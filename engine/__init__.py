@@ -1,11 +1,13 @@
 """Escapes in open Hamiltonian systems with polynomial potentials: orbits, exits, maps. Computes, and knows of no screen."""
 
-from engine.escape_maps import EscapeMap, Outcomes, classify_orbits, compute_map
+from engine.escape_maps import EscapeMap
 from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
 from engine.jobs import Jobs, OrbitSpec, Ticket
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.map_runs import compute_map
 from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
 from engine.orbits import Orbit, integrate_orbit
+from engine.outcomes import Outcomes, classify_orbits
 from engine.planes import Plane, Window, default_window, start_states, trace_zero_velocity_curve
 from engine.potentials import CASES, Potential
 

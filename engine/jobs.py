@@ -10,7 +10,8 @@ from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
-from engine.escape_maps import EscapeMap, compute_map
+from engine.escape_maps import EscapeMap
+from engine.map_runs import compute_map
 from engine.map_specs import MapSpec
 from engine.orbit_batches import default_executor
 from engine.orbits import Orbit, integrate_orbit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import operator
 from dataclasses import dataclass
 from typing import Any
@@ -83,7 +84,7 @@ def checked_t_max(t_max: float) -> float:
 
 def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
     if plane is not Plane.X_H:
-        if np.ndim(energy) != 0 or not np.isfinite(energy):
+        if not isinstance(energy, numbers.Real) or not np.isfinite(float(energy)):
             raise ValueError(f"energy={energy!r}: on {plane.value} it must be one finite number")
         return float(energy)
     values = tuple(float(h) for h in np.ravel(energy))

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.escape_maps import classify_orbits
 from engine.fates import Fate, Regularity, describe_fate, judge_regularity
 from engine.map_specs import checked_t_max
 from engine.orbit_batches import SerialExecutor
+from engine.outcomes import classify_orbits
 from engine.potentials import Potential
 from engine.taylor.build import load_kernels
 from engine.taylor.dense import carry_deviations, sample_path, trace_steps

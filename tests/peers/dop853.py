@@ -84,14 +84,14 @@ def _exits(lines: list[ExitLine], sol, times: np.ndarray, x: np.ndarray, y: np.n
     """{orbit: (channel, time)} of the first outward crossing within a stretch."""
     left: dict[int, tuple[int, float]] = {}
     for line in lines:
-        beyond = line.beyond(x, y)
-        for k in np.flatnonzero((beyond > 0).any(axis=1)):
-            after = int(np.argmax(beyond[k] > 0))
+        past = line.past(x, y)
+        for k in np.flatnonzero((past > 0).any(axis=1)):
+            after = int(np.argmax(past[k] > 0))
             low, high = times[max(after - 1, 0)], times[after]
             for _ in range(_BISECTIONS):
                 middle = 0.5 * (low + high)
                 x_middle, y_middle = sol(middle).reshape(4, -1)[:2, k]
-                low, high = (low, middle) if line.beyond(x_middle, y_middle) > 0 else (middle, high)
+                low, high = (low, middle) if line.past(x_middle, y_middle) > 0 else (middle, high)
             if k not in left or high < left[k][1]:
                 left[k] = (line.channel, high)
     return left

@@ -35,6 +35,11 @@ class ExitLine:
         u, q = self.in_chord_axes(x, y)
         return np.where(np.abs(q) <= self.q[-1], u - np.interp(q, self.q, self.u), -1.0)
 
+    def past(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Distance past the exit and its straight extension, which no interior of the paper's cases reaches across."""
+        u, q = self.in_chord_axes(x, y)
+        return u - np.interp(q, self.q, self.u)
+
 
 def exit_line(orbit: LyapunovOrbit) -> ExitLine:
     half = np.array([orbit.x, orbit.y])[:, : orbit.x.size // 2 + 1]

@@ -37,11 +37,11 @@ def taylor_coefficients(potential: Potential, state: np.ndarray) -> np.ndarray:
 class Classifier:
     """Classifies orbits of one potential; the exits of an energy are parameters, so that one compilation serves all."""
 
-    def __init__(self, potential: Potential, tolerance: float) -> None:
+    def __init__(self, potential: Potential, channels: int, tolerance: float) -> None:
         x, y, *_ = coordinates()
         exits = [
             hy.t_event(self._beyond(k, x, y), callback=self._left(k), direction=hy.event_direction.positive)
-            for k in range(potential.channels)
+            for k in range(channels)
         ]
         upward = hy.nt_event(y, self._upward, direction=hy.event_direction.positive)
         self.crossings, self.channel = 0, 0
@@ -52,7 +52,7 @@ class Classifier:
             tol=tolerance,
             t_events=exits,
             nt_events=[upward],
-            pars=[0.0] * (potential.channels * 18),
+            pars=[0.0] * (channels * 18),
         )
 
     @staticmethod
@@ -79,7 +79,7 @@ class Classifier:
         self.crossings += time > _JUST_STARTED
 
     def aim(self, lines: list[ExitLine]) -> None:
-        """Set the exits; all channels must be open."""
+        """Set the exits of an energy."""
         self.lines = lines
         for k, line in enumerate(lines):
             s = line.q / line.q[-1]
@@ -107,11 +107,28 @@ class Classifier:
 
 
 @cache
-def classifier(potential: Potential, tolerance: float) -> Classifier:
-    return Classifier(potential, tolerance)
+def classifier(potential: Potential, channels: int, tolerance: float) -> Classifier:
+    return Classifier(potential, channels, tolerance)
 
 
 def classify(potential: Potential, lines: list[ExitLine], states: np.ndarray, t_max: float, tolerance: float = 1e-18) -> Answers:
-    ready = classifier(potential, tolerance)
+    ready = classifier(potential, len(lines), tolerance)
     ready.aim(lines)
     return ready.classify(states, t_max)
+
+
+@cache
+def _plain(potential: Potential):
+    return hy.taylor_adaptive(equations(potential), [0.0] * 4, tol=1e-18)
+
+
+def propagated(potential: Potential, states: np.ndarray, duration: float) -> np.ndarray:
+    """(n, 4) states a time later, or earlier."""
+    integrator = _plain(potential)
+    out = np.empty_like(states)
+    for n, state in enumerate(states):
+        integrator.time = 0.0
+        integrator.state[:] = state
+        integrator.propagate_until(duration)
+        out[n] = integrator.state
+    return out

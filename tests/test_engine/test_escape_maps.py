@@ -24,7 +24,7 @@ from engine import (
     orbit_batches,
     start_states,
 )
-from engine.escape_maps import COARSE_PIXELS
+from engine.map_runs import COARSE_PIXELS
 
 ARRAYS = ("fate", "escape_time", "crossings", "energy_error", "outside", "started")
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
@@ -274,7 +274,7 @@ def test_tiles_make_no_difference(whole: EscapeMap, monkeypatch: pytest.MonkeyPa
 def test_a_cancelled_map_goes_on_to_the_same_result(whole: EscapeMap, frame: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # A small budget, so that cancelling comes in the middle of orbits; no pause, so that every tile is a frame.
     monkeypatch.setattr(orbit_batches, "BUDGET", 3_000)
-    monkeypatch.setattr("engine.escape_maps.FRAME_PAUSE", 0.0)
+    monkeypatch.setattr("engine.map_runs.FRAME_PAUSE", 0.0)
     cancel = CancelAfter(frame)
     half_done = compute_map(SPEC, cancel, cancel.event)
     assert not half_done.complete
@@ -283,7 +283,7 @@ def test_a_cancelled_map_goes_on_to_the_same_result(whole: EscapeMap, frame: int
 
 def test_cancelling_again_and_again_makes_no_difference(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(orbit_batches, "BUDGET", 20_000)
-    monkeypatch.setattr("engine.escape_maps.FRAME_PAUSE", 0.0)
+    monkeypatch.setattr("engine.map_runs.FRAME_PAUSE", 0.0)
     result, rounds = None, 0
     while result is None or not result.complete:
         # Each round goes through finished stages again, frame by frame, so later rounds need more of them.

@@ -59,10 +59,14 @@ def test_case_2_on_x_px_at_05_is_70_20_10_with_the_outside_counted() -> None:
     assert shares(result, count_outside=True) == pytest.approx([0.70, 0.20, 0.10], abs=POINT)
 
 
-def test_case_2_on_x_y_beyond_04_is_32_44_and_the_rest() -> None:
-    result = interior_map("II", Plane.X_Y, 0.5)
-    assert result.fractions()[Fate.BOUNDED] == 0.0
-    assert sum(shares(result)) == pytest.approx(1.0)
+@pytest.mark.parametrize("energy", [0.22, 0.5])
+def test_case_2_on_x_y_has_nothing_bounded_beyond_02(energy: float) -> None:
+    assert interior_map("II", Plane.X_Y, energy).fractions()[Fate.BOUNDED] < 0.002
+
+
+def test_case_3_on_x_y_at_06_is_65_to_35() -> None:
+    first, second, third, fourth = shares(interior_map("III", Plane.X_Y, 0.6))
+    assert (first + second, third + fourth) == pytest.approx((0.65, 0.35), abs=2 * POINT)
 
 
 def test_case_3_on_x_px_at_06_is_44_44_6_6() -> None:

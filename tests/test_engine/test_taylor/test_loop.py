@@ -7,7 +7,7 @@ import pytest
 
 from engine import CASES, Plane, Potential, start_states
 from engine.fates import Fate
-from engine.lyapunov_orbits import closed_curves, exit_curves, exit_gates
+from engine.lyapunov_orbits import exit_curves, exit_gates
 from engine.taylor.build import load_kernels
 from engine.taylor.codegen import HIDDEN, ORDER, OVERSHOOT, TOLERANCE
 
@@ -87,9 +87,8 @@ class Run:
         final: bool = True,
         lanes: int = 64,
         budget: int = 10**9,
-        curves: np.ndarray | None = None,
     ) -> int:
-        curves = exit_curves(self.potential, self.energy)[None] if curves is None else curves
+        curves = exit_curves(self.potential, self.energy)[None]
         kernels = load_kernels(self.potential.terms, self.potential.channels)
         return int(
             kernels.advance(
@@ -150,13 +149,11 @@ def test_orbits_not_asked_for_are_left_alone(reference: Run) -> None:
     np.testing.assert_array_equal(run.state[::2], reference.state[::2])
 
 
-def test_an_orbit_that_blows_up_has_failed_and_its_neighbours_do_not_notice() -> None:
+def test_an_orbit_that_breaks_down_has_failed_and_its_neighbours_do_not_notice() -> None:
     run, others = Run(20), Run(20)
-    # Far up the channel, where the force grows without bound, with every exit closed.
-    run.state[3] = [40.0, 40.0, 1e3, 1e3]
-    closed = closed_curves(run.potential)[None]
-    run.advance(np.arange(20), 2.0, curves=closed)
-    others.advance(np.arange(20), 2.0, curves=closed)
+    run.state[3, 2] = np.nan
+    run.advance(np.arange(20), 20.0)
+    others.advance(np.arange(20), 20.0)
     assert run.fate[3] == Fate.FAILED
     np.testing.assert_array_equal(np.delete(run.state, 3, axis=0), np.delete(others.state, 3, axis=0))
 

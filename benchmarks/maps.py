@@ -1,0 +1,49 @@
+"""How long a map takes, warm, in the engine: medians over repeats, and the time to its first frame.
+
+Run: uv run python benchmarks/maps.py
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import time
+
+from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
+
+REPEATS = 7
+T_MAX = 1000.0
+MAPS = (
+    ("I", Plane.X_PX, 0.25),
+    ("II", Plane.X_PX, 0.25),
+    ("III", Plane.X_PX, 0.45),
+    ("I", Plane.X_Y, 0.25),
+    ("III", Plane.X_Y, 0.45),
+    ("III", Plane.X_H, (0.25, 1.0)),
+)
+
+
+def time_map(spec: MapSpec) -> tuple[float, float]:
+    """Seconds to the first frame and to the whole map."""
+    frames: list[float] = []
+
+    def note(_frame: EscapeMap) -> None:
+        frames.append(time.perf_counter())
+
+    begin = time.perf_counter()
+    compute_map(spec, note)
+    return frames[0] - begin, time.perf_counter() - begin
+
+
+def main() -> None:
+    print(f"225 x 225, t_max = {T_MAX:g}, {os.process_cpu_count()} cores, median of {REPEATS} runs after one to warm up\n")
+    print("| case | plane | h | first frame, ms | whole map, ms |\n|---|---|---|---|---|")
+    for case, plane, energy in MAPS:
+        spec = MapSpec(CASES[case], plane, energy, t_max=T_MAX)
+        time_map(spec)
+        first, whole = (statistics.median(times) for times in zip(*(time_map(spec) for _ in range(REPEATS)), strict=True))
+        print(f"| {case} | {plane.value} | {energy} | {1e3 * first:.0f} | {1e3 * whole:.0f} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,37 @@
+"""SALI's verdict against the largest Lyapunov exponent, measured with heyoka and two orbits kept close (Benettin)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import CASES, Plane, Regularity, integrate_orbit, start_states
+from tests.peers import taylor_heyoka
+
+T_MAX, STRETCH, APART = 3000.0, 10.0, 1e-8
+
+
+def largest_exponents(name: str, starts: np.ndarray) -> np.ndarray:
+    n = len(starts)
+    both = np.concatenate([starts, starts + APART * np.array([1.0, 2.0, 3.0, 4.0]) / np.sqrt(30)])
+    growth = np.zeros(n)
+    for _ in range(int(T_MAX / STRETCH)):
+        both = taylor_heyoka.propagated(CASES[name], both, STRETCH)
+        deviation = both[n:] - both[:n]
+        distance = np.linalg.norm(deviation, axis=1)
+        growth += np.log(distance / APART)
+        both[n:] = both[:n] + deviation * (APART / distance)[:, None]
+    return growth / T_MAX
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
+def test_chaotic_by_sali_is_chaotic_by_lyapunov_exponent(name: str, energy: float) -> None:
+    x, px = np.random.default_rng(4).uniform(-0.25, 0.25, (2, 16))
+    starts = start_states(CASES[name], Plane.X_PX, energy, x, px)
+    exponents = largest_exponents(name, starts)
+    chaotic = np.array([integrate_orbit(CASES[name], start, T_MAX).regularity is Regularity.CHAOTIC for start in starts])
+    # A regular orbit's deviations grow linearly, which looks like ln(T)/T = 0.0027; chaos here is 0.01 or more.
+    clear = (exponents < 0.004) | (exponents > 0.008)
+    assert clear.sum() >= 12
+    np.testing.assert_array_equal(chaotic[clear], exponents[clear] > 0.008)
