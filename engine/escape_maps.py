@@ -110,6 +110,7 @@ class EscapeMap:
             "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **_FATE_CODES}),
             "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
             "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
+            "outside": (dims, self.outside, {"long_name": "channel beyond whose Lyapunov orbit the start lies, 0 inside"}),
             "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
         }
         coordinates = {

@@ -61,7 +61,7 @@ class MapSpec:
         window: Any = self.window
         if window is None:
             window = default_window(self.potential, plane, energy)
-        object.__setattr__(self, "window", window if isinstance(window, Window) else Window(*map(float, window)))
+        object.__setattr__(self, "window", _checked_window(window))
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres."""
@@ -87,10 +87,23 @@ def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
         if not isinstance(energy, numbers.Real) or not np.isfinite(float(energy)):
             raise ValueError(f"energy={energy!r}: on {plane.value} it must be one finite number")
         return float(energy)
-    values = tuple(float(h) for h in np.ravel(energy))
+    try:
+        values = tuple(float(h) for h in np.ravel(energy))
+    except (TypeError, ValueError):
+        values = ()
     if len(values) != 2 or not (np.all(np.isfinite(values)) and values[0] < values[1]):
         raise ValueError(f"energy={energy!r}: on {plane.value} it must be a pair (low, high) of finite numbers")
     return values[0], values[1]
+
+
+def _checked_window(window: Any) -> Window:
+    if isinstance(window, Window):
+        return window
+    try:
+        x_low, x_high, ordinate_low, ordinate_high = map(float, window)
+    except (TypeError, ValueError):
+        raise ValueError(f"window={window!r}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
+    return Window(x_low, x_high, ordinate_low, ordinate_high)
 
 
 def _checked_resolution(resolution: Any) -> tuple[int, int]:

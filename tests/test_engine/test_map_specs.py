@@ -99,3 +99,10 @@ def test_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
     x, ordinate = spec_with(resolution=(4, 2)).pixel_centres()
     np.testing.assert_allclose(x, [-0.75, -0.25, 0.25, 0.75], rtol=1e-15)
     np.testing.assert_allclose(ordinate, [-0.5, 0.5], rtol=1e-15)
+
+
+@pytest.mark.parametrize("window", [(0.0, 1.0), (0.0, 1.0, 0.0), 3.0, "abcd", (None, 1.0, 0.0, 1.0)])
+def test_a_window_is_four_numbers(window: Any) -> None:
+    with pytest.raises(ValueError, match="window=") as error:
+        spec_with(window=window)
+    assert repr(window) in str(error.value)
