@@ -29,7 +29,7 @@ WATCH = """() => {
         if (source.data.complete[0]) window.painted.whole ??= performance.now()
     }))
     source.connect(source.properties.data.change, paint)
-    addEventListener('mouseup', () => { window.painted = {released: performance.now()} }, {capture: true})
+    addEventListener('pointerup', () => { window.painted = {released: performance.now()} }, {capture: true})
 }"""
 
 

@@ -8,7 +8,7 @@ from engine.map_runs import compute_map
 from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
 from engine.orbits import Orbit, integrate_orbit
 from engine.outcomes import Outcomes, classify_orbits
-from engine.planes import Plane, Window, default_window, start_states, trace_zero_velocity_curve
+from engine.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.potentials import CASES, Potential
 
 __all__ = [
@@ -37,5 +37,6 @@ __all__ = [
     "integrate_orbit",
     "judge_regularity",
     "start_states",
+    "trace_equipotentials",
     "trace_zero_velocity_curve",
 ]

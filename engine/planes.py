@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -24,7 +25,7 @@ _MARGIN = 0.03
 _SCAN = 801
 _FURTHEST = 4.0
 _RAYS = 180
-_CONTOUR_SAMPLES = 401
+_CONTOUR_SAMPLES = 201
 
 
 class Plane(Enum):
@@ -95,15 +96,20 @@ def required_energy(potential: Potential, plane: Plane, x: np.ndarray, ordinate:
 def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float, window: Window) -> list[np.ndarray]:
     """The limiting curve of a plane inside a window, as (n, 2) pieces: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
 
-    For (x, y) other energies give other equipotentials. For (x, h) `energy` is ignored.
+    For (x, h) `energy` is ignored.
     """
+    level = 0.0 if plane is Plane.X_H else energy
+    return trace_equipotentials(potential, plane, (level,), window)[0]
+
+
+def trace_equipotentials(potential: Potential, plane: Plane, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
+    """The limiting curves that several energies would have on (x, y) or (x, px): for each its (n, 2) pieces."""
     x, ordinate = (
         np.linspace(low, high, _CONTOUR_SAMPLES)
         for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
     )
-    needed = required_energy(potential, plane, *np.meshgrid(x, ordinate))
-    level = 0.0 if plane is Plane.X_H else energy
-    return [np.asarray(line) for line in contourpy.contour_generator(x, ordinate, needed).lines(level)]
+    contours = contourpy.contour_generator(x, ordinate, required_energy(potential, plane, *np.meshgrid(x, ordinate)))
+    return [[np.asarray(line) for line in contours.lines(energy)] for energy in energies]
 
 
 def default_window(potential: Potential, plane: Plane, energy: float | tuple[float, float]) -> Window:

@@ -7,7 +7,7 @@ from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
 from app import palette
-from engine import MapSpec, Plane, find_lyapunov_orbits, trace_zero_velocity_curve
+from engine import MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials, trace_zero_velocity_curve
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
@@ -39,16 +39,16 @@ class Outlines:
 
     def show(self, spec: MapSpec) -> None:
         """The curves of a map's plane, window and energy."""
-        on_h = isinstance(spec.energy, tuple)
         energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
-        escape = spec.potential.escape_energy
-        self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window))
-        levels = [] if on_h else [level * escape for level in _LEVELS]
-        self._levels.data = _lines(
-            [line for h in levels for line in trace_zero_velocity_curve(spec.potential, spec.plane, h, spec.window)]
-        )
-        critical = [] if on_h else trace_zero_velocity_curve(spec.potential, spec.plane, escape, spec.window)
+        if spec.plane is Plane.X_H:
+            limit, critical, levels = trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window), [], []
+        else:
+            escape = spec.potential.escape_energy
+            energies = (energy, escape, *(level * escape for level in _LEVELS))
+            limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.window)
+        self._limit.data = _lines(limit)
         self._critical.data = _lines(critical)
+        self._levels.data = _lines([line for lines in levels for line in lines])
         self._show_exits(spec, energy)
 
     def _show_exits(self, spec: MapSpec, energy: float) -> None:

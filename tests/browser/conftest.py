@@ -70,11 +70,12 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         try:
             _wait_until_up(address, process)
             yield address
+            # Read before the end: Bokeh complains of pages that are still connecting when the server is stopped.
+            log.seek(0)
+            text = log.read()
         finally:
             process.terminate()
             process.wait(30)
-            log.seek(0)
-            text = log.read()
     assert "Traceback" not in text, text
 
 
