@@ -58,7 +58,7 @@ class Controller:
         self._show_map_problem = locked(self._map_failed)
         self._show_orbit = locked(self._orbit_arrived)
         self._show_orbit_problem = locked(self._orbit_failed)
-        state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution"])
+        state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution", "window"])
         state.param.watch(lambda *events: self.request_orbit(), ["start", "energy", "t_max"])
 
     def request_map(self) -> None:

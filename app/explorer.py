@@ -15,7 +15,9 @@ from app.views.maps import MapsView
 from app.views.orbit_panes import OrbitPanes
 from app.views.progress import ProgressView
 from app.views.verdict import VerdictView
-from engine import EscapeMap, Jobs, Orbit, Potential
+from app.views.zoom_buttons import ZoomButtons
+from app.zoom_history import ZoomHistory
+from engine import EscapeMap, Jobs, Orbit, Potential, Window
 
 
 @cache
@@ -31,7 +33,9 @@ class Explorer:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
         self.state = ViewState()
-        self.maps = MapsView(self._choose_start)
+        self.maps = MapsView(self._choose_start, self._zoom)
+        self.history = ZoomHistory()
+        self.zoom_buttons = ZoomButtons(self.history, self._go_to)
         self.panes = OrbitPanes()
         self.verdict = VerdictView(self._choose_start)
         self.controls = Controls(self.state)
@@ -40,6 +44,8 @@ class Explorer:
         self._mark_start = locked(self.maps.mark_start)
         self.controller = Controller(self.state, shared_jobs(), self, locked)
         self.progress = ProgressView(self.controller.stop_map, self.controller.request_map)
+        self.state.param.watch(lambda *events: self.history.clear(), ["case", "plane"])
+        self.state.param.watch(lambda *events: self.zoom_buttons.follow(self.state.window), ["window", "case", "plane"])
         self.state.param.watch(lambda event: self.verdict.follow_plane(event.new), "plane")
         self.state.param.watch(lambda event: self._mark_start(event.new), "start")
         self.verdict.follow_plane(self.state.plane)
@@ -52,12 +58,26 @@ class Explorer:
             self.verdict.layout(), self.panes.path, self.panes.sali, self.panes.r2, justify_content="center", gap="4px"
         )
         main = pn.Column(
-            self.controls.layout(), self.progress.layout(), self.maps.layout(), orbit, sizing_mode="stretch_width", margin=(0, 10)
+            self.controls.layout(),
+            self.progress.layout(),
+            self.zoom_buttons.layout(),
+            self.maps.layout(),
+            orbit,
+            sizing_mode="stretch_width",
+            margin=(0, 10),
         )
         return pmui.Page(title="Escape Explorer", main=[main], theme_toggle=False)
 
     def _choose_start(self, x: float, ordinate: float) -> None:
         self.state.start = (x, ordinate)
+
+    def _zoom(self, window: Window | None) -> None:
+        """The ranges have come to rest somewhere else."""
+        self.history.visit(window)
+        self._go_to(window)
+
+    def _go_to(self, window: Window | None) -> None:
+        self.state.window = window
 
     def map_requested(self) -> None:
         """Show that work has begun."""
@@ -67,6 +87,8 @@ class Explorer:
         """Paint a frame."""
         with pn.io.hold():
             self.maps.show(frame, columns)
+            if self.state.window is None:
+                self.maps.set_home(frame.spec.window)
             self.progress.show(frame)
 
     def map_stopped(self) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import param
 
 from app.paper_energies import ENERGIES
-from engine import CASES, MapSpec, Plane, Potential, start_states
+from engine import CASES, MapSpec, Plane, Potential, Window, start_states
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
 RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
@@ -20,6 +20,9 @@ class ViewState(param.Parameterized):
     energy = param.Number(default=ENERGIES["I"].first, doc="h; on (x, h) it is the ordinate instead")
     t_max = param.Selector(default=1e4, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=225, objects=list(RESOLUTION_CHOICES.values()))
+    window = param.ClassSelector(
+        class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
+    )
     start = param.NumericTuple(default=None, length=2, allow_None=True)
 
     @property
@@ -32,7 +35,7 @@ class ViewState(param.Parameterized):
         energy: float | tuple[float, float] = self.energy
         if self.plane is Plane.X_H:
             energy = (self.potential.escape_energy, ENERGIES[self.case].high)
-        return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), t_max=self.t_max)
+        return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def start_state(self) -> tuple[float, float, float, float]:
         """x, y, px, py of the chosen start; py is NaN where it is forbidden."""

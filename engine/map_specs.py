@@ -15,6 +15,9 @@ from engine.potentials import Potential
 LARGEST_SIDE = 4096
 """Most columns or rows of a map."""
 
+FINEST_PIXEL = 1e-15
+"""Least distance of neighbouring pixels: some units in the last place of coordinates of order 1."""
+
 LONGEST_TIME = 1e8
 """Largest t_max; at this time the rounding of t itself reaches 1e-8."""
 
@@ -61,7 +64,7 @@ class MapSpec:
         window: Any = self.window
         if window is None:
             window = default_window(self.potential, plane, energy)
-        object.__setattr__(self, "window", _checked_window(window))
+        object.__setattr__(self, "window", _checked_window(window, self.resolution))
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres."""
@@ -96,13 +99,19 @@ def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
     return values[0], values[1]
 
 
-def _checked_window(window: Any) -> Window:
-    if isinstance(window, Window):
-        return window
+def _checked_window(window: Any, resolution: tuple[int, int]) -> Window:
+    checked = window if isinstance(window, Window) else _window_from(window)
+    for centres in checked.pixel_centres(*resolution):
+        if centres.size > 1 and np.min(np.diff(centres)) < FINEST_PIXEL * max(1.0, float(np.max(np.abs(centres)))):
+            raise ValueError(f"window={checked}: double precision ends here; its pixels are less than {FINEST_PIXEL:g} apart")
+    return checked
+
+
+def _window_from(edges: Any) -> Window:
     try:
-        x_low, x_high, ordinate_low, ordinate_high = map(float, window)
+        x_low, x_high, ordinate_low, ordinate_high = map(float, edges)
     except (TypeError, ValueError):
-        raise ValueError(f"window={window!r}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
+        raise ValueError(f"window={edges!r}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
     return Window(x_low, x_high, ordinate_low, ordinate_high)
 
 

@@ -60,9 +60,9 @@ class Controls:
     def _connect(self) -> None:
         state = self.state
         self.case.param.watch(
-            lambda event: state.param.update(case=event.new, energy=ENERGIES[event.new].first, start=None), "value"
+            lambda event: state.param.update(case=event.new, energy=ENERGIES[event.new].first, window=None, start=None), "value"
         )
-        self.plane.param.watch(lambda event: state.param.update(plane=event.new, start=None), "value")
+        self.plane.param.watch(lambda event: state.param.update(plane=event.new, window=None, start=None), "value")
         self.energy.param.watch(self._take_slid_energy, "value_throttled")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")

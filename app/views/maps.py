@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-from bokeh.events import Tap
+from bokeh.events import RangesUpdate, Tap
 from bokeh.models import (
     BoxZoomTool,
     ColorBar,
@@ -34,6 +34,9 @@ from engine import EscapeMap, Fate, MapSpec, Window
 FRAME = 300
 """Side of each picture in pixels: four fit a screen of 1600, one fits a phone of 420."""
 
+REST_MS = 200
+"""Ranges that have not moved for this long are computed anew."""
+
 TITLES = {
     "curves": "Zero-velocity curve and exits",
     "basins": "Basins of escape",
@@ -43,19 +46,27 @@ TITLES = {
 
 
 class MapsView:
-    """Draws frames; calls `on_tap(x, ordinate)` for a click on any picture."""
+    """Draws frames; calls `on_tap(x, ordinate)` for a click, and `on_zoom(window)` when the ranges have come to rest.
 
-    def __init__(self, on_tap: Callable[[float, float], None]) -> None:
+    A window of None is the whole interior.
+    """
+
+    def __init__(self, on_tap: Callable[[float, float], None], on_zoom: Callable[[Window | None], None]) -> None:
         self.source = ColumnDataSource(_blank(), name="maps")
         self.start = ColumnDataSource({"x": [], "y": []}, name="start")
         self.outlines = Outlines()
         self._time_mapper = LogColorMapper(palette=palette.ESCAPE_TIME, low=1.0, high=100.0, nan_color="rgba(0,0,0,0)")
         self._spec: MapSpec | None = None
+        self._home: Window | None = None
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._spans = Span(dimension="width", line_alpha=0.35), Span(dimension="height", line_alpha=0.35)
         self._hover_text = _hover_text(self.source)
         self.figures = {name: self._figure(name, title) for name, title in TITLES.items()}
         self._paint()
+        self._on_zoom = on_zoom
+        self._rest: Any = None
+        # All pictures report every zoom, as their ranges are the same; one is enough.
+        self.figures["curves"].on_event(RangesUpdate, self._zooming)
         for plot in self.figures.values():
             plot.on_event(Tap, lambda event: on_tap(*self._snapped(event.x, event.y)))
         self._legends = {name: pn.pane.HTML(width=FRAME + 60, margin=(0, 5)) for name in TITLES}
@@ -69,7 +80,7 @@ class MapsView:
         return pn.FlexBox(*columns, justify_content="center", gap="4px")
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """Paint a frame; the ranges follow a new window unless the user has zoomed away from the old one."""
+        """Paint a frame; the ranges follow a new window."""
         if frame.spec != self._spec:
             self._follow(frame.spec)
             self._describe(frame.spec)
@@ -92,20 +103,33 @@ class MapsView:
         return float(columns[pixel[1]]), float(rows[pixel[0]])
 
     def _follow(self, spec: MapSpec) -> None:
-        """Move the ranges to a new window, unless they are zoomed into the same plane of the same potential."""
-        window, old = spec.window, self._spec
-        same_plane = old is not None and (old.potential, old.plane) == (spec.potential, spec.plane)
-        if old is None or not same_plane or self._is_at(old.window):
-            self._go_to(window)
+        """Go to the window of a new map, unless the user is on the way to another one."""
+        if self._rest is None:
+            self._go_to(spec.window)
+
+    def set_home(self, window: Window) -> None:
+        """The window of the whole interior, which the reset tool goes back to."""
+        self._home = window
         x, y = self._ranges
         x.update(reset_start=window.x_low, reset_end=window.x_high)
         y.update(reset_start=window.ordinate_low, reset_end=window.ordinate_high)
 
-    def _is_at(self, window: Window) -> bool:
-        x, y = self._ranges
-        return np.allclose(
-            [x.start, x.end, y.start, y.end], [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high]
-        )
+    def _zooming(self, event: RangesUpdate) -> None:
+        """Wait until the ranges rest, then say where."""
+        document = self.source.document
+        if document is None:
+            return
+        if self._rest is not None:
+            document.remove_timeout_callback(self._rest)
+        edges = (event.x0, event.x1, event.y0, event.y1)
+        self._rest = document.add_timeout_callback(lambda: self._rested(edges), REST_MS)
+
+    def _rested(self, edges: tuple[float, float, float, float]) -> None:
+        self._rest = None
+        window = Window(*edges)
+        if self._spec is None or _is_near(window, self._spec.window):
+            return
+        self._on_zoom(None if self._home is not None and _is_near(window, self._home) else window)
 
     def _go_to(self, window: Window) -> None:
         x, y = self._ranges
@@ -163,6 +187,19 @@ class MapsView:
             plot.scatter("x", "y", source=self.start, marker="cross", size=14, line_width=2, line_color=palette.START)
         bar = ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="escape time", title_text_font_size="11px")
         self.figures["times"].add_layout(bar, "below")
+
+
+def _is_near(one: Window, other: Window) -> bool:
+    """The same window but for rounding on its way through the browser."""
+    grain = 1e-6 * (other.x_high - other.x_low), 1e-6 * (other.ordinate_high - other.ordinate_low)
+    differences = (
+        (one.x_low - other.x_low, one.x_high - other.x_high),
+        (
+            one.ordinate_low - other.ordinate_low,
+            one.ordinate_high - other.ordinate_high,
+        ),
+    )
+    return all(abs(d) <= g for pair, g in zip(differences, grain, strict=True) for d in pair)
 
 
 def _code_mapper(colours: list[str]) -> LinearColorMapper:

@@ -135,6 +135,27 @@ def test_zooming_one_map_zooms_all(explorer: ExplorerPage) -> None:
     assert len({tuple(explorer.ranges(picture)) for picture in PICTURES}) == 1
 
 
+def test_zooming_computes_the_region_and_back_returns(explorer: ExplorerPage) -> None:
+    whole = explorer.column("x"), explorer.column("dw")
+    explorer.forget_pixels()
+    explorer.page.mouse.move(*explorer.point("times", 0.4, 0.1))
+    explorer.page.mouse.wheel(0, -500)
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    x, dw, y, dh = (explorer.column(name) for name in ("x", "dw", "y", "dh"))
+    assert dw < 0.9 * whole[1]
+    window = (x, x + dw, y, y + dh)
+    assert explorer.ranges("basins") == pytest.approx(window)
+    # The browser holds the window in double precision, but as an origin and a size.
+    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, window=window, t_max=1e4))
+    assert np.mean(explorer.column("crossings") == expected.crossings) > 0.98
+    explorer.forget_pixels()
+    explorer.press("← Back")
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    assert (explorer.column("x"), explorer.column("dw")) == whole
+
+
 @pytest.mark.parametrize("picture", PICTURES)
 def test_hovering_reads_the_pixel_out(explorer: ExplorerPage, picture: str) -> None:
     explorer.hover(picture, 0.1, 0.05)

@@ -106,3 +106,13 @@ def test_a_window_is_four_numbers(window: Any) -> None:
     with pytest.raises(ValueError, match="window=") as error:
         spec_with(window=window)
     assert repr(window) in str(error.value)
+
+
+@pytest.mark.parametrize("width", [1e-12, 1e-10])
+def test_a_window_may_be_as_small_as_double_precision_resolves(width: float) -> None:
+    assert spec_with(window=(0.3, 0.3 + width, 0.2, 0.2 + width), resolution=(225, 225)).resolution == (225, 225)
+
+
+def test_a_window_beyond_double_precision_is_refused() -> None:
+    with pytest.raises(ValueError, match="double precision ends here"):
+        spec_with(window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14))
