@@ -65,6 +65,11 @@ class LyapunovOrbit:
     y: np.ndarray
     curve: np.ndarray
 
+    @property
+    def half_path(self) -> np.ndarray:
+        """(101, 2) the path from wall to wall, once: what to draw."""
+        return np.column_stack([self.x, self.y])[: self.x.size // 2 + 1]
+
 
 def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """The Lyapunov orbit over each saddle that lies below `energy`.

@@ -79,7 +79,7 @@ def _draw_path(potential: Potential, orbit: Orbit) -> hv.Overlay | hv.DynamicMap
         color=palette.LIMITING_CURVE, line_width=2
     )
     for exit_orbit in find_lyapunov_orbits(potential, orbit.energy):
-        curve = hv.Path([np.column_stack([exit_orbit.x, exit_orbit.y])], ["x", "y"])
+        curve = hv.Path([exit_orbit.half_path], ["x", "y"])
         drawn = drawn * curve.opts(color=palette.CHANNELS[exit_orbit.channel - 1], line_width=4)
     start = hv.Scatter([(orbit.x[0], orbit.y[0])], "x", "y").opts(color=palette.START, marker="cross", size=14, line_width=2)
     sides = {"xlim": (window.x_low, window.x_high), "ylim": (window.ordinate_low, window.ordinate_high)}

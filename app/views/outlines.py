@@ -54,7 +54,7 @@ class Outlines:
     def _show_exits(self, spec: MapSpec, energy: float) -> None:
         orbits = find_lyapunov_orbits(spec.potential, energy) if spec.plane is Plane.X_Y else ()
         colours = [palette.CHANNELS[orbit.channel - 1] for orbit in orbits]
-        self._exits.data = {"xs": [orbit.x for orbit in orbits], "ys": [orbit.y for orbit in orbits], "colour": colours}
+        self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
         self._labels.data = {
             "x": [0.86 * point[0] for point in middles],

@@ -19,9 +19,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 ORDER = 18
-"""Order of the series. With TOLERANCE the cheapest that keeps energy to 1e-11 over 1e5 time units in all three cases."""
+"""Order of the series. With TOLERANCE the cheapest tried that keeps energy well within 1e-11 over 1e5 time units."""
 
-TOLERANCE = 2.5e-16
+TOLERANCE = 1e-16
 """Size aimed at for the last terms of a step's series."""
 
 LONGEST_STEP = 1.0
