@@ -5,11 +5,11 @@ Run: uv run python benchmarks/maps.py
 
 from __future__ import annotations
 
-import os
 import statistics
 import time
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
+from engine.orbit_batches import default_executor
 
 REPEATS = 7
 T_MAX = 1000.0
@@ -36,7 +36,7 @@ def time_map(spec: MapSpec) -> tuple[float, float]:
 
 
 def main() -> None:
-    print(f"225 x 225, t_max = {T_MAX:g}, {os.process_cpu_count()} cores, median of {REPEATS} runs after one to warm up\n")
+    print(f"225 x 225, t_max = {T_MAX:g}, {default_executor()._max_workers} threads, median of {REPEATS} warm runs\n")
     print("| case | plane | h | first frame, ms | whole map, ms |\n|---|---|---|---|---|")
     for case, plane, energy in MAPS:
         spec = MapSpec(CASES[case], plane, energy, t_max=T_MAX)

@@ -28,7 +28,9 @@ BUDGET = 2_000_000
 @cache
 def default_executor() -> ThreadPoolExecutor:
     """The one bounded pool of this process: a thread for each core it may use; kernels hold no GIL."""
-    return ThreadPoolExecutor(os.process_cpu_count() or 1, thread_name_prefix="orbits")
+    # Python 3.12 cannot tell the cores of this process from those of the machine.
+    count = getattr(os, "process_cpu_count", os.cpu_count)
+    return ThreadPoolExecutor(count() or 1, thread_name_prefix="orbits")
 
 
 class SerialExecutor(Executor):
