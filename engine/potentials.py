@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from engine.critical_points import find_critical_points
+from engine.taylor.codegen import derivative
 
 Terms = Mapping[tuple[int, int], float]
 
@@ -71,10 +72,8 @@ class Potential:
     def derivative(self, nx: int, ny: int) -> dict[tuple[int, int], float]:
         """The terms of ∂^(nx+ny) V / ∂x^nx ∂y^ny, as {(i, j): coefficient}; terms that vanish are left out."""
         table = dict(self._table)
-        for _ in range(nx):
-            table = {(i - 1, j): i * c for (i, j), c in table.items() if i}
-        for _ in range(ny):
-            table = {(i, j - 1): j * c for (i, j), c in table.items() if j}
+        for axis in (0,) * nx + (1,) * ny:
+            table = derivative(table, axis)
         return table
 
     @property
