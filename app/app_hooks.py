@@ -11,7 +11,8 @@ from app.paper_energies import ENERGIES
 from app.views import orbit_panes
 from engine import CASES, MapSpec, Plane, compute_map, integrate_orbit, start_states
 
-log = logging.getLogger(__name__)
+# Below Bokeh's logger, so that `panel serve` shows it: the first start takes long enough to want a word.
+log = logging.getLogger(f"bokeh.{__name__}")
 
 
 def on_server_loaded(_context: Any) -> None:
