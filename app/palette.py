@@ -25,7 +25,11 @@ LIMITING_CURVE = "#1b1b1b"
 EQUIPOTENTIAL = "#b9c3cf"
 CRITICAL_EQUIPOTENTIAL = "#d62728"
 START = "#111111"
-START_HALO = "#ffffff"
+HALO = "#ffffff"
+"""Under the crosses and the exits, so that they stand out from any basin."""
+
+PATCH_EDGE = "#999999"
+QUIET_TEXT = "#555555"
 ORBIT = "#1d4e89"
 ORBIT_DENSITY = ["#a9c6e8", "#1d4e89", "#081c3a"]
 """Seldom to often visited, for orbits drawn by datashader."""

@@ -6,19 +6,16 @@ Run: uv run python -m benchmarks.page
 from __future__ import annotations
 
 import shutil
-import socket
 import statistics
-import subprocess
-import sys
+import tempfile
 import time
-import urllib.request
 from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
 from tests.browser.explorer_page import ExplorerPage
+from tests.browser.served_app import served_app
 
-ROOT = Path(__file__).parents[1]
 SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
 # Resolves at the second animation frame after the source has changed: by then the pixels are on the screen.
 WATCH = """() => {
@@ -31,24 +28,6 @@ WATCH = """() => {
     source.connect(source.properties.data.change, paint)
     addEventListener('pointerup', () => { window.painted = {released: performance.now()} }, {capture: true})
 }"""
-
-
-def serve() -> tuple[subprocess.Popen[bytes], str]:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "panel", "serve", "app", "--address", "127.0.0.1", "--port", str(port)]
-    command += ["--allow-websocket-origin", f"127.0.0.1:{port}"]
-    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    address = f"http://127.0.0.1:{port}/app"
-    for _ in range(600):
-        try:
-            urllib.request.urlopen(address, timeout=60).close()
-            return process, address
-        except OSError:
-            time.sleep(0.3)
-    process.terminate()
-    raise SystemExit("the server did not start")
 
 
 def measure(explorer: ExplorerPage) -> list[tuple[float, float]]:
@@ -65,29 +44,27 @@ def measure(explorer: ExplorerPage) -> list[tuple[float, float]]:
 
 
 def main() -> None:
-    process, address = serve()
-    try:
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-            print(
-                "| case | plane | first pixels, ms: median, worst | whole map to t = 1000, ms: median, worst |\n|---|---|---|---|"
-            )
-            for case in ("I", "III"):
-                explorer = ExplorerPage(browser.new_page(viewport={"width": 1600, "height": 1200}))
-                explorer.page.goto(address)
-                explorer.wait_until_complete()
-                explorer.choose("t_max", "1 000")
-                explorer.press(case)
-                time.sleep(3)
-                explorer.wait_until_complete()
-                columns = [
-                    f"{statistics.median(values):.0f}, {max(values):.0f}" for values in zip(*measure(explorer), strict=True)
-                ]
-                print(f"| {case} | (x, px) | {' | '.join(columns)} |")
-                explorer.page.close()
-    finally:
-        process.terminate()
-        process.wait(30)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        served_app(Path(folder) / "log") as address,
+        sync_playwright() as playwright,
+    ):
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        print("| case | plane | first pixels, ms: median, worst | whole map to t = 1000, ms: median, worst |")
+        print("|---|---|---|---|")
+        for case in ("I", "III"):
+            explorer = ExplorerPage(browser.new_page(viewport={"width": 1600, "height": 1200}))
+            explorer.page.goto(address)
+            explorer.wait_until_complete()
+            explorer.choose("t_max", "1 000")
+            explorer.press(case)
+            time.sleep(3)
+            explorer.wait_until_complete()
+            stages = zip(*measure(explorer), strict=True)
+            columns = [f"{statistics.median(times):.0f}, {max(times):.0f}" for times in stages]
+            print(f"| {case} | (x, px) | {' | '.join(columns)} |")
+            explorer.page.close()
+        browser.close()
 
 
 if __name__ == "__main__":

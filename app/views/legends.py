@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.palette import Entry
+from app.palette import PATCH_EDGE, Entry
 
 _ITEM = '<span style="display:inline-flex;align-items:center;margin:0 10px 2px 0;white-space:nowrap">{patch}{label}</span>'
-_PATCH = '<span style="width:12px;height:12px;margin-right:5px;border:1px solid #999;background:{colour}"></span>'
+_PATCH = '<span style="width:12px;height:12px;margin-right:5px;border:1px solid {edge};background:{colour}"></span>'
 
 
 def legend(entries: Iterable[Entry]) -> str:
     """HTML of a legend that wraps."""
-    items = (_ITEM.format(patch=_PATCH.format(colour=entry.colour), label=entry.label) for entry in entries)
+    items = (_ITEM.format(patch=_PATCH.format(colour=entry.colour, edge=PATCH_EDGE), label=entry.label) for entry in entries)
     return f'<div style="font-size:12px;line-height:18px">{"".join(items)}</div>'

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import astuple
 from typing import Any
 
 import numpy as np
@@ -183,7 +184,7 @@ class MapsView:
                 HoverTool(renderers=[image], tooltips=text, formatters=formatters, attachment="vertical", visible=False)
             )
             self.outlines.draw(plot, full=name == "curves")
-            plot.scatter("x", "y", source=self.start, marker="cross", size=16, line_width=5, line_color=palette.START_HALO)
+            plot.scatter("x", "y", source=self.start, marker="cross", size=16, line_width=5, line_color=palette.HALO)
             plot.scatter("x", "y", source=self.start, marker="cross", size=14, line_width=2, line_color=palette.START)
         bar = ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="escape time", title_text_font_size="11px")
         self.figures["times"].add_layout(bar, "below")
@@ -191,15 +192,9 @@ class MapsView:
 
 def _is_near(one: Window, other: Window) -> bool:
     """The same window but for rounding on its way through the browser."""
-    grain = 1e-6 * (other.x_high - other.x_low), 1e-6 * (other.ordinate_high - other.ordinate_low)
-    differences = (
-        (one.x_low - other.x_low, one.x_high - other.x_high),
-        (
-            one.ordinate_low - other.ordinate_low,
-            one.ordinate_high - other.ordinate_high,
-        ),
-    )
-    return all(abs(d) <= g for pair, g in zip(differences, grain, strict=True) for d in pair)
+    width, height = other.x_high - other.x_low, other.ordinate_high - other.ordinate_low
+    apart = np.abs(np.subtract(astuple(one), astuple(other)))
+    return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))
 
 
 def _code_mapper(colours: list[str]) -> LinearColorMapper:

@@ -29,7 +29,7 @@ class Outlines:
             plot.multi_line("xs", "ys", source=self._levels, line_color=palette.EQUIPOTENTIAL)
             plot.multi_line("xs", "ys", source=self._critical, line_color=palette.CRITICAL_EQUIPOTENTIAL, line_width=1.5)
         plot.multi_line("xs", "ys", source=self._limit, line_color=palette.LIMITING_CURVE, line_width=2 if full else 1)
-        plot.multi_line("xs", "ys", source=self._exits, line_color="#ffffff", line_width=5)
+        plot.multi_line("xs", "ys", source=self._exits, line_color=palette.HALO, line_width=5)
         plot.multi_line("xs", "ys", source=self._exits, line_color="colour", line_width=3, line_dash="solid")
         if full:
             plot.text(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import panel as pn
 import panel_material_ui as pmui
 
+from app.palette import QUIET_TEXT
 from engine import Orbit, Plane
 
 HINT = "Click a point of any map, or type a start, to see its orbit, its SALI and its R²."
@@ -54,7 +55,8 @@ class VerdictView:
             "relative energy error": f"{orbit.energy_error:.1e}",
         }
         cells = "".join(
-            f"<tr><td style='padding-right:12px;color:#555'>{name}</td><td>{value}</td></tr>" for name, value in rows.items()
+            f"<tr><td style='padding-right:12px;color:{QUIET_TEXT}'>{name}</td><td>{value}</td></tr>"
+            for name, value in rows.items()
         )
         self.text.object = f"<p><b>{orbit.describe()}</b></p><table style='font-size:13px'>{cells}</table>"
 

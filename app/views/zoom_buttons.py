@@ -7,6 +7,7 @@ from collections.abc import Callable
 import panel as pn
 import panel_material_ui as pmui
 
+from app.palette import QUIET_TEXT
 from app.zoom_history import ZoomHistory
 from engine import Window
 
@@ -24,7 +25,7 @@ class ZoomButtons:
 
     def layout(self) -> pn.viewable.Viewable:
         """The buttons in a row that wraps, with a hint."""
-        hint = pn.pane.HTML(_HINT, styles={"font-size": "13px", "color": "#555"}, margin=(8, 10))
+        hint = pn.pane.HTML(_HINT, styles={"font-size": "13px", "color": QUIET_TEXT}, margin=(8, 10))
         return pn.FlexBox(self.back, self.forward, self.home, hint, gap="2px")
 
     def follow(self, window: Window | None) -> None:

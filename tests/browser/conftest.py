@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import socket
-import subprocess
-import sys
-import time
-import urllib.request
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -26,9 +21,8 @@ from playwright.sync_api import (
 )
 
 from tests.browser.explorer_page import ExplorerPage
+from tests.browser.served_app import served_app
 
-ROOT = Path(__file__).parents[2]
-START_SECONDS = 240
 PATIENCE_MS = 30_000
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 
@@ -58,38 +52,13 @@ def chromium() -> Iterator[Browser]:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The address of the app, served as the README says."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "panel", "serve", "app", "--address", "127.0.0.1", "--port", str(port)]
-    command += ["--allow-websocket-origin", f"127.0.0.1:{port}"]
-    with (tmp_path_factory.mktemp("server") / "log").open("w+") as log:
-        process = subprocess.Popen(command, cwd=ROOT, stdout=log, stderr=subprocess.STDOUT)
-        address = f"http://127.0.0.1:{port}/app"
-        try:
-            _wait_until_up(address, process)
-            yield address
-            # Read before the end: Bokeh complains of pages that are still connecting when the server is stopped.
-            log.seek(0)
-            text = log.read()
-        finally:
-            process.terminate()
-            process.wait(30)
+    """The address of the app, whose log may hold no traceback."""
+    log = tmp_path_factory.mktemp("server") / "log"
+    with served_app(log) as address:
+        yield address
+        # Read before the end: Bokeh complains of pages that are still connecting when the server is stopped.
+        text = log.read_text()
     assert "Traceback" not in text, text
-
-
-def _wait_until_up(address: str, process: subprocess.Popen[bytes]) -> None:
-    end = time.monotonic() + START_SECONDS
-    while time.monotonic() < end:
-        if process.poll() is not None:
-            pytest.fail(f"the server ended with {process.returncode}")
-        try:
-            with urllib.request.urlopen(address, timeout=60):
-                return
-        except OSError:
-            time.sleep(0.3)
-    pytest.fail(f"the server did not answer within {START_SECONDS} s")
 
 
 class Watch:
