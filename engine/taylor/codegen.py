@@ -5,27 +5,39 @@ Along an orbit every quantity is a power series in time, and the series of a pro
 V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written out flat, one statement a coefficient, inside
 one loop over orbits, that recurrence has neither branch nor call and the compiler turns all of it into vector code.
 
-Three functions come out for each potential, every one a loop over lanes `i`:
+Four functions come out for each potential, every one a loop over lanes `i`:
 
-``step``     one step of each orbit, its size chosen from the last two coefficients, with the tests that tell whether
+``step``     one step of each orbit, its size chosen from the last coefficients, with the tests that tell whether
              anything worth a closer look may have happened within it;
+``glide``    one step of a given size, summing weighted squares of x and y on the way;
 ``jets``     the coefficients themselves: the dense output of a step;
 ``tangent``  a deviation vector carried over a given time: the same recurrence, linearised.
 """
 
 from __future__ import annotations
 
+import functools
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-ORDER = 18
+ORDER = 19
 """Order of the series. With TOLERANCE the cheapest tried that keeps energy well within 1e-11 over 1e5 time units."""
 
-TOLERANCE = 1e-16
-"""Size aimed at for the last terms of a step's series."""
+TOLERANCE = 3e-15
+"""What the last coefficients of a step's series, times the 16th power of the step, come to."""
+
+# What the third coefficient from the end counts in the step rule, found with ORDER and TOLERANCE in `benchmarks/steps.py`.
+_EARLIER_WEIGHT = 0.3
 
 LONGEST_STEP = 1.0
 """Steps near rest or of nearly linear motion stop growing here, well within reach of the series."""
+
+# Where no orbit inside the exits gets to within a step: the bound on how fast y oscillates is taken over this disc.
+_FURTHEST = 3.0
+
+# Coefficients that ask for steps too short to move the clock at any t_max; an orbit with these, or with NaN, has failed.
+_BROKEN_DOWN = 1e90
 
 HIDDEN, GATE, OVERSHOOT = 1, 2, 4
 """Flags of a step: crossings of y = 0 may hide in it; its end is past an exit's gate; it ends beyond the horizon."""
@@ -39,7 +51,11 @@ _X, _Y = (1, 0), (0, 1)
 
 @dataclass(frozen=True)
 class _Product:
-    """One Cauchy product: the series of `monomial` from the series of two factors already known."""
+    """One Cauchy product: the series of `monomial` from the series of two factors already known.
+
+    What is kept of a square is half of it, which saves a multiplication in every other coefficient; so the series of a
+    monomial carries a factor, see `_scales`.
+    """
 
     monomial: Monomial
     left: Monomial
@@ -54,18 +70,35 @@ def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
 
 
 def plan_products(needed: set[Monomial]) -> list[_Product]:
-    """A short list of Cauchy products that yields every needed monomial; a square counts half, as it costs half."""
-    known = {_X, _Y}
+    """A short list of Cauchy products that yields every needed monomial.
+
+    Greedy, monomial after monomial; tried also with each monomial that divides a needed one made first, and the cheapest kept.
+    """
+    seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
+    plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]
+    return min(plans, key=lambda plan: sum(map(_cost, plan)))
+
+
+def _by_degree(monomial: Monomial) -> tuple[int, Monomial]:
+    return sum(monomial), monomial
+
+
+def _cost(product: _Product) -> float:
+    """In full products: a square has half the terms and a little more to do."""
+    return 0.55 if product.left == product.right else 1.0
+
+
+def _greedy_plan(wanted: list[Monomial]) -> list[_Product]:
+    known = {_X, _Y, (0, 0)}
     plan: list[_Product] = []
-    for monomial in sorted(needed, key=lambda m: (sum(m), m)):
-        if sum(monomial) < 2:
-            continue
+    for monomial in wanted:
         for product in _cheapest(monomial, frozenset(known))[1]:
             known.add(product.monomial)
             plan.append(product)
     return plan
 
 
+@functools.cache
 def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[_Product]]:
     if monomial in known:
         return 0.0, []
@@ -76,10 +109,19 @@ def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, li
             continue
         cost_left, plan_left = _cheapest(left, known)
         cost_right, plan_right = _cheapest(right, known | {p.monomial for p in plan_left})
-        cost = cost_left + cost_right + (0.5 if left == right else 1.0)
+        product = _Product(monomial, left, right)
+        cost = cost_left + cost_right + _cost(product)
         if cost < best[0]:
-            best = cost, [*plan_left, *plan_right, _Product(monomial, left, right)]
+            best = cost, [*plan_left, *plan_right, product]
     return best
+
+
+def _scales(plan: list[_Product]) -> dict[Monomial, float]:
+    """The factor that the series of each monomial carries."""
+    scales = {_X: 1.0, _Y: 1.0, (0, 0): 1.0}
+    for p in plan:
+        scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)
+    return scales
 
 
 def _series(monomial: Monomial) -> str:
@@ -96,22 +138,19 @@ def _sum_of_products(pairs: list[tuple[str, str]]) -> str:
 
 
 def _cauchy(left: str, right: str, k: int) -> str:
-    """Coefficient k of the product of two series; the newest coefficients last, since the rest can start earlier."""
+    """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
     if left == right:
         pairs = [(f"{left}{j}", f"{left}{k - j}") for j in reversed(range((k + 1) // 2))]
-        middle = f"{left}{k // 2}*{left}{k // 2}"
-        if not pairs:
-            return middle
-        doubled = f"2.0*({_sum_of_products(pairs)})"
-        return f"{doubled} + {middle}" if k % 2 == 0 else doubled
+        middle = [(f"(0.5*{left}{k // 2})", f"{left}{k // 2}")] if k % 2 == 0 else []
+        return _sum_of_products([*middle, *pairs])
     order = sorted(range(k + 1), key=lambda j: max(j, k - j))
     return _sum_of_products([(f"{left}{j}", f"{right}{k - j}") for j in order])
 
 
-def _linear_combination(polynomial: Polynomial, k: int, factor: float) -> str:
+def _linear_combination(polynomial: Polynomial, scales: Mapping[Monomial, float], k: int, factor: float) -> str:
     """factor · (coefficient k of the polynomial's series)."""
     parts = [
-        f"({factor * c!r})" if sum(m) == 0 else f"({factor * c!r})*{_series(m)}{k}"
+        f"({factor * c!r})" if sum(m) == 0 else f"({factor * c / scales[m]!r})*{_series(m)}{k}"
         for m, c in polynomial.items()
         if sum(m) > 0 or k == 0
     ]
@@ -121,22 +160,29 @@ def _linear_combination(polynomial: Polynomial, k: int, factor: float) -> str:
 def _recurrence(vx: Polynomial, vy: Polynomial, products: list[_Product]) -> list[str]:
     """Statements for x0 … x_ORDER, y0 … y_ORDER and the products they need."""
     lines = ["x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]"]
+    scales = _scales(products)
     for k in range(ORDER - 1):
         lines += [f"{_series(p.monomial)}{k} = {_cauchy(_series(p.left), _series(p.right), k)}" for p in products]
         factor = -1.0 / ((k + 1) * (k + 2))
-        lines += [f"{name}{k + 2} = {_linear_combination(force, k, factor)}" for name, force in (("x", vx), ("y", vy))]
+        lines += [f"{name}{k + 2} = {_linear_combination(force, scales, k, factor)}" for name, force in (("x", vx), ("y", vy))]
     return lines
 
 
 def _step_size() -> list[str]:
-    """h with h^16 · max(|last two coefficients|) = tolerance; the 16th root as four square roots, which vectorise."""
-    lines = [f"largest = abs(x{ORDER})"]
-    for name in (f"x{ORDER - 1}", f"y{ORDER}", f"y{ORDER - 1}"):
-        lines += [f"size = abs({name})", "largest = size if size > largest else largest"]
+    """The h whose 16th power times a norm of the last coefficients is the tolerance: no call, no square root, no branch.
+
+    Three orders of both coordinates, so that a coefficient that happens to vanish leaves no step too long. The bits of a
+    double, read as an integer, are its binary logarithm but for a piecewise linear mantissa, and a shift by four divides
+    that by 16: h comes out up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down.
+    """
+    one = 1023 << 52
+    last, before, earlier = (f"(abs(x{k}) + abs(y{k}))" for k in (ORDER, ORDER - 1, ORDER - 2))
     return [
-        *lines,
-        "h = math.sqrt(math.sqrt(math.sqrt(math.sqrt(tolerance / largest))))",
+        f"size = {last} + {before} + {_EARLIER_WEIGHT!r}*{earlier}",
+        "bits = np.float64(size*(1.0/tolerance)).view(np.int64)",
+        f"h = np.int64({one + one // 16} - (bits >> 4)).view(np.float64)",
         f"h = h if h < {LONGEST_STEP!r} else {LONGEST_STEP!r}",
+        f"h = h if size < {_BROKEN_DOWN!r} else np.nan",
     ]
 
 
@@ -148,8 +194,21 @@ def _horner(name: str, value: str, slope: str) -> list[str]:
     return lines
 
 
+def crossings_can_hide(terms: Polynomial) -> bool:
+    """Can a step hold two crossings of y = 0, which the signs at its ends do not show?
+
+    Where V is even in y, ÿ = −g(x, y) y. With g below (π/h)² two zeros of y are further than h apart, by Sturm's comparison
+    with the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
+    """
+    force = derivative(terms, 1)
+    if any(j % 2 == 0 for _, j in force):
+        return True
+    bound = sum(abs(c) * _FURTHEST ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
+    return bound >= (math.pi / LONGEST_STEP) ** 2
+
+
 def _hidden_crossings() -> list[str]:
-    """Can the step hold crossings of y = 0 that the signs at its ends do not show?
+    """The test of a step for crossings of y = 0 that may hide in it, where they can.
 
     bound = ½ Σ_{k≥2} |y_k| (2h)^k is at least h · max|ẏ − ẏ(0)|, and at least twice the distance of y from its chord.
     So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both ends lie on one side, further off than bound/2.
@@ -177,13 +236,13 @@ def _function(signature: str, body: list[str]) -> str:
     return "\n".join([*lines, *(f"        {line}" for line in body)]) + "\n"
 
 
-def _step(recurrence: list[str], channels: int) -> str:
+def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
     body = [
         *recurrence,
         *_step_size(),
         *_horner("x", "xh", "pxh"),
         *_horner("y", "yh", "pyh"),
-        *_hidden_crossings(),
+        *hidden,
         *_gates(channels),
         "th = t[i] + h",
         f"late = 0 if th <= horizon else {OVERSHOOT}",
@@ -201,6 +260,21 @@ def _step(recurrence: list[str], channels: int) -> str:
     return _function(f"step({arguments})", body)
 
 
+def _glide(recurrence: list[str]) -> str:
+    body = [
+        *recurrence,
+        *_horner("x", "xh", "pxh"),
+        *_horner("y", "yh", "pyh"),
+        "x_square[i] += weight*(x0*x0)",
+        "y_square[i] += weight*(y0*y0)",
+        "x[i] = xh",
+        "y[i] = yh",
+        "px[i] = pxh",
+        "py[i] = pyh",
+    ]
+    return _function("glide(n, h, weight, x, y, px, py, x_square, y_square)", body)
+
+
 def _jets(recurrence: list[str]) -> str:
     stores = [f"{name}_jet[{k}, i] = {name}{k}" for name in "xy" for k in range(ORDER + 1)]
     return _function("jets(n, x, y, px, py, x_jet, y_jet)", [*recurrence, *stores])
@@ -213,9 +287,10 @@ def _tangent(terms: Polynomial) -> str:
     forces = {"u": (("hxx", "u"), ("hxy", "v")), "v": (("hxy", "u"), ("hyy", "v"))}
     polynomials = (vx, vy, *hessian.values())
     products = plan_products({m for polynomial in polynomials for m in polynomial})
+    scales = _scales(products)
     body = [*_recurrence(vx, vy, products), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
     for k in range(ORDER - 1):
-        body += [f"{name}{k} = {_linear_combination(polynomial, k, -1.0)}" for name, polynomial in hessian.items()]
+        body += [f"{name}{k} = {_linear_combination(polynomial, scales, k, -1.0)}" for name, polynomial in hessian.items()]
         for name, pairs in forces.items():
             parts = [_cauchy(h, w, k) for h, w in pairs if hessian[h]]
             body.append(f"{name}{k + 2} = ({' + '.join(parts) or '0.0'})*({1.0 / ((k + 1) * (k + 2))!r})")
@@ -232,7 +307,7 @@ def _potential_value(terms: Polynomial) -> str:
 
 
 def generate_source(terms: Terms, channels: int) -> str:
-    """The source of ``step``, ``jets``, ``tangent`` and ``potential_value`` for one potential.
+    """The source of ``step``, ``glide``, ``jets``, ``tangent`` and ``potential_value`` for one potential.
 
     Parameters
     ----------
@@ -243,9 +318,18 @@ def generate_source(terms: Terms, channels: int) -> str:
 
     Returns
     -------
-    Python source that needs ``math`` and ``kernel`` in its namespace.
+    Python source that needs ``np`` and ``kernel`` in its namespace.
     """
     polynomial = {(i, j): c for i, j, c in terms}
     vx, vy = derivative(polynomial, 0), derivative(polynomial, 1)
     recurrence = _recurrence(vx, vy, plan_products({*vx, *vy}))
-    return _step(recurrence, channels) + _jets(recurrence) + _tangent(polynomial) + _potential_value(polynomial)
+    hidden = _hidden_crossings() if crossings_can_hide(polynomial) else ["hidden = 0"]
+    return "".join(
+        [
+            _step(recurrence, hidden, channels),
+            _glide(recurrence),
+            _jets(recurrence),
+            _tangent(polynomial),
+            _potential_value(polynomial),
+        ]
+    )

@@ -1,4 +1,4 @@
-"""What `codegen` writes for each potential, for the type checker: `loop` and `swing` are compiled behind it, never beside it."""
+"""What `codegen` writes for each potential, for the type checker; `loop`, `swing` and `gliding` are compiled behind it."""
 
 from numpy import ndarray
 
@@ -20,6 +20,17 @@ def step(
     h_taken: ndarray,
     flag: ndarray,
     crossed: ndarray,
+) -> None: ...
+def glide(
+    n: int,
+    h: float,
+    weight: float,
+    x: ndarray,
+    y: ndarray,
+    px: ndarray,
+    py: ndarray,
+    x_square: ndarray,
+    y_square: ndarray,
 ) -> None: ...
 def jets(n: int, x: ndarray, y: ndarray, px: ndarray, py: ndarray, x_jet: ndarray, y_jet: ndarray) -> None: ...
 def tangent(

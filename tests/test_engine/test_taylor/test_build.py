@@ -34,10 +34,9 @@ def test_source_already_there_is_not_written_again(fresh_folder: Path) -> None:
 
 
 def test_other_terms_or_channels_are_another_file(fresh_folder: Path) -> None:
-    build.load_kernels(TERMS, 0)
-    build.load_kernels(TERMS, 1)
-    build.load_kernels(((2, 0, 0.5),), 0)
-    assert len(list(fresh_folder.glob("*.py"))) == 3
+    modules = [build.load_kernels(TERMS, 0), build.load_kernels(TERMS, 1), build.load_kernels(((2, 0, 0.5),), 0)]
+    assert len({module.__file__ for module in modules}) == 3
+    assert all(Path(str(module.__file__)).parent == fresh_folder for module in modules)
 
 
 def test_a_folder_that_cannot_be_made_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

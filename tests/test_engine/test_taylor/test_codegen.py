@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.planes import Plane
 from engine.taylor.build import load_kernels
-from engine.taylor.codegen import ORDER, TOLERANCE, generate_source, plan_products
+from engine.taylor.codegen import ORDER, TOLERANCE, crossings_can_hide, generate_source, plan_products
 from tests.peers import taylor_heyoka
 
 # One potential beyond the paper's: odd in both coordinates, of degree 5, with a term in neither force's pattern.
@@ -164,4 +164,40 @@ def test_a_square_saves_a_product() -> None:
 @pytest.mark.parametrize("terms", [(), ((0, 0, 1.0),), ((1, 0, 2.0),), ((2, 0, 0.5),), ((6, 3, -1.0),)])
 def test_any_polynomial_becomes_valid_source(terms: tuple) -> None:
     names = [node.name for node in ast.parse(generate_source(terms, 0)).body if isinstance(node, ast.FunctionDef)]
-    assert names == ["step", "jets", "tangent", "potential_value"]
+    assert names == ["step", "glide", "jets", "tangent", "potential_value"]
+
+
+def test_crossings_cannot_hide_where_y_oscillates_slowly() -> None:
+    assert not any(crossings_can_hide({(i, j): c for i, j, c in potential.terms}) for potential in CASES.values())
+
+
+@pytest.mark.parametrize("terms", [{(0, 2): 0.5, (0, 3): 0.1}, {(0, 2): 5.0}, {(0, 2): 0.5, (2, 2): 1.0}])
+def test_crossings_can_hide_where_y_may_turn_back_within_a_step(terms: dict) -> None:
+    # Odd in y; faster than the longest step; faster far out.
+    assert crossings_can_hide(terms)
+
+
+@each_potential
+def test_gliding_is_the_flow_at_a_fixed_step(name: str) -> None:
+    n, h = 16, 0.25
+    potential, states = POTENTIALS[name], some_states(n)
+    gliding, squares = states.T.copy(), np.zeros((2, n))
+    load_kernels(potential.terms, potential.channels).glide(n, h, 2.0, *gliding, *squares)
+    np.testing.assert_allclose(gliding.T, flowed(potential, states, h), rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(squares.T, 2.0 * states[:, :2] ** 2)
+
+
+@pytest.mark.parametrize("exponent", range(-12, 13, 3))
+def test_the_step_is_the_sixteenth_root_to_within_6_percent(exponent: int) -> None:
+
+    potential, n = POTENTIALS["odd"], 16
+    states = np.repeat(some_states(1) * 1.5, n, axis=0)
+    x, y = jets_of(potential, states)[:, :, 0]
+    size = sum(w * (abs(x[-k]) + abs(y[-k])) for k, w in ((1, 1.0), (2, 1.0), (3, 0.3)))
+    tolerance = 10.0**exponent * TOLERANCE
+    new, h, flag, crossed = np.empty((5, n)), np.empty(n), np.zeros(n, np.int64), np.zeros(n, np.int64)
+    gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
+    step = load_kernels(potential.terms, potential.channels).step
+    step(n, tolerance, np.inf, gates, *states.T.copy(), np.zeros(n), *new, h, flag, crossed)
+    exact = min((tolerance / size) ** (1 / 16), 1.0)
+    assert 0.999 * exact <= h[0] <= 1.065 * exact

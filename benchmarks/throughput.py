@@ -1,0 +1,102 @@
+"""Raw speed on one core beside heyoka's batch mode: the same orbits to the same time, at a worst energy error of 1e-11.
+
+Our loop has its refill, exit and crossing tests; heyoka has no events, and the fastest tolerance that keeps the error.
+The share of the peak counts multiplications of a step alone, against a loop of independent multiply-adds.
+
+Run: uv run python -m benchmarks.throughput
+"""
+
+from __future__ import annotations
+
+import ast
+import statistics
+import time
+
+import heyoka as hy
+import numba
+import numpy as np
+
+from benchmarks.steps import ENERGIES, ORBITS, T_MAX, bounded_starts, measure
+from engine import CASES, Potential
+from engine.taylor.codegen import ORDER, TOLERANCE, generate_source
+from tests.peers.taylor_heyoka import equations
+
+REPEATS = 3
+PERMITTED_ERROR = 1e-11
+TOLERANCES = (2.2e-16, 1e-14, 1e-13, 2e-13, 4e-13, 7e-13)
+BATCH = hy.recommended_simd_size()
+
+
+def heyoka_units(case: str, tolerance: float) -> tuple[float, float]:
+    """Million time units a second, worst relative energy error."""
+    potential, states = CASES[case], bounded_starts(case)
+    integrator = hy.taylor_adaptive_batch(equations(potential), np.zeros((4, BATCH)), tol=tolerance)
+    seconds = worst = 0.0
+    for begin in range(0, ORBITS, BATCH):
+        integrator.set_time([0.0] * BATCH)
+        integrator.state[:] = states[begin : begin + BATCH].T
+        started = time.perf_counter()
+        integrator.propagate_until(np.full(BATCH, T_MAX))
+        seconds += time.perf_counter() - started
+        worst = max(worst, np.max(np.abs(potential.energy(integrator.state.T) / ENERGIES[case] - 1)))
+    return ORBITS * T_MAX / seconds / 1e6, worst
+
+
+def fastest_heyoka(case: str) -> tuple[float, float, float]:
+    """(million time units a second, worst energy error, tolerance) of the fastest tolerance that is accurate enough."""
+    trials = [(*heyoka_units(case, tolerance), tolerance) for tolerance in TOLERANCES]
+    return max(trial for trial in trials if trial[1] <= PERMITTED_ERROR)
+
+
+def multiplications(potential: Potential) -> int:
+    """In the source of one step."""
+    step = generate_source(potential.terms, potential.channels).split("@kernel\n")[1]
+    return sum(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) for node in ast.walk(ast.parse(step)))
+
+
+@numba.njit(fastmath={"contract"})
+def chains(repeats, a):
+    """Thirty-two multiply-adds on each number, in vectors; enough independent ones to hide their latency."""
+    for _ in range(repeats):
+        for i in range(a.shape[0]):
+            v = a[i]
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            v = v * 0.9 + 0.1
+            a[i] = v
+
+
+def peak() -> float:
+    """10^9 multiply-adds a second on one core."""
+    a, repeats = np.ones(256), 1_000_000
+    chains(1, a)
+    begin = time.perf_counter()
+    chains(repeats, a)
+    return 8 * a.size * repeats / (time.perf_counter() - begin) / 1e9
+
+
+def main() -> None:
+    print("| case | ours: million time units/s | worst error | heyoka | its tolerance | worst error | ratio | share of peak |")
+    print("|---|---|---|---|---|---|---|---|")
+    for case, potential in CASES.items():
+        ours, theirs, shares = [], [], []
+        for _ in range(REPEATS):
+            ours.append(measure(case, ORDER, TOLERANCE))
+            theirs.append(fastest_heyoka(case))
+            shares.append(ours[-1][0] * multiplications(potential) / peak() / 1e3)
+        units = statistics.median(run[1] for run in ours)
+        heyoka, error, tolerance = sorted(theirs)[REPEATS // 2]
+        print(
+            f"| {case} | {units:.1f} | {ours[0][2]:.1e} | {heyoka:.2f} | {tolerance:g} | {error:.1e} "
+            f"| {units / heyoka:.2f} | {statistics.median(shares):.0%} |",
+            flush=True,
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,92 @@
+"""Orbits side by side at one fixed step, exits unseen: their weighted averages, and where they pierce the section y = 0.
+
+Like `loop`, this text is compiled behind the generated kernels of each potential, never imported to run. All lanes keep the same
+time, so nothing is refilled; an orbit that leaves runs off to infinity, and its numbers with it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from engine.taylor.codegen import ORDER
+from engine.taylor.compilation import kernel
+from engine.taylor.events import series_slope, series_value
+
+if TYPE_CHECKING:
+    from engine.taylor.generated import glide, jets
+
+_NEWTON_STEPS = 12
+_ROOT_ACCURACY = 1e-14
+
+
+@kernel
+def average(h, weights, state, averages):
+    """Weighted averages of x² and y² over consecutive windows.
+
+    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (windows, 2, lanes), zeros.
+    """
+    for window in range(averages.shape[0]):
+        for weight in weights:
+            glide(state.shape[1], h, weight, state[0], state[1], state[2], state[3], averages[window, 0], averages[window, 1])
+
+
+@kernel
+def pierce(h, steps, state, points, found):
+    """The next points (x, px) in which orbits cross y = 0 upward, until all have found enough or `steps` are over.
+
+    state (4, lanes), changed in place; points (lanes, m, 2), found (lanes,): filled from where `found` says.
+    """
+    lanes = state.shape[1]
+    before = np.empty((4, lanes))
+    aside = np.zeros((4, lanes))
+    rider = np.empty(lanes, np.int64)
+    nothing = np.zeros((2, lanes))
+    waiting = 0
+    for taken in range(steps):
+        before[:] = state
+        glide(lanes, h, 0.0, state[0], state[1], state[2], state[3], nothing[0], nothing[1])
+        for i in range(lanes):
+            if not (before[1, i] < 0.0 and state[1, i] >= 0.0 and found[i] < points.shape[1]):
+                continue
+            for c in range(4):
+                aside[c, waiting] = before[c, i]
+            rider[waiting] = i
+            waiting += 1
+            if waiting == lanes:
+                _find_points(h, waiting, aside, rider, points, found)
+                waiting = 0
+        if taken % 16 == 0 and found.min() == points.shape[1]:
+            break
+    if waiting > 0:
+        _find_points(h, waiting, aside, rider, points, found)
+
+
+@kernel
+def _find_points(h, n, start, rider, points, found):
+    """Locate the upward crossing within each of `n` steps set aside, in the order in which they were."""
+    x_jet = np.empty((ORDER + 1, start.shape[1]))
+    y_jet = np.empty((ORDER + 1, start.shape[1]))
+    jets(start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    for i in range(n):
+        lane = rider[i]
+        if found[lane] == points.shape[1]:
+            continue
+        low, high = 0.0, h
+        tau = 0.5 * h
+        for _ in range(_NEWTON_STEPS):
+            value = series_value(y_jet, i, tau)
+            if value < 0.0:
+                low = tau
+            else:
+                high = tau
+            if abs(value) < _ROOT_ACCURACY:
+                break
+            slope = series_slope(y_jet, i, tau)
+            tau = tau - value / slope if slope != 0.0 else 0.5 * (low + high)
+            if not low < tau < high:
+                tau = 0.5 * (low + high)
+        points[lane, found[lane], 0] = series_value(x_jet, i, tau)
+        points[lane, found[lane], 1] = series_slope(x_jet, i, tau)
+        found[lane] += 1
