@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import IntEnum
 from importlib import metadata
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from engine.certificates import Certificate
 from engine.fates import Fate
 from engine.map_specs import MapSpec
 from engine.orbit_batches import OrbitBatch
@@ -27,6 +29,9 @@ class EscapeMap:
         (columns,), (rows,) pixel centres.
     fate, escape_time, crossings, energy_error
         As in `Outcomes`; pixels not decided yet are `Fate.NOT_COMPUTED`.
+    certificate
+        int8, the `Certificate` of each bounded orbit: what that word rests on. Crossings and energy error of an orbit
+        that was not followed to t_max count as far as it was.
     outside
         int8, the channel beyond whose Lyapunov orbit the start lies, 0 inside.
     stride
@@ -50,6 +55,7 @@ class EscapeMap:
     escape_time: np.ndarray
     crossings: np.ndarray
     energy_error: np.ndarray
+    certificate: np.ndarray
     outside: np.ndarray
     stride: int
     horizon: float
@@ -73,7 +79,9 @@ class EscapeMap:
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays, the state to go on from included."""
-        arrays = (self.fate, self.escape_time, self.crossings, self.energy_error, self.outside, self.started)
+        arrays = (
+            self.fate, self.escape_time, self.crossings, self.energy_error, self.certificate, self.outside, self.started,
+        )  # fmt: skip
         return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
@@ -107,10 +115,11 @@ class EscapeMap:
         spec = self.spec
         dims = (spec.plane.ordinate, "x")
         variables = {
-            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **_FATE_CODES}),
+            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **_codes(Fate)}),
             "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
             "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
             "outside": (dims, self.outside, {"long_name": "channel beyond whose Lyapunov orbit the start lies, 0 inside"}),
+            "certificate": (dims, self.certificate, {"long_name": "what bounded rests on", **_codes(Certificate)}),
             "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
         }
         coordinates = {
@@ -131,6 +140,7 @@ class EscapeMap:
             "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
             "resolution": spec.resolution,
             "t_max": spec.t_max,
+            "certify": int(spec.certify),
             "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
             "version": metadata.version("escape-explorer"),
             "worst_energy_error": self.worst_energy_error,
@@ -139,7 +149,8 @@ class EscapeMap:
         }
 
 
-_FATE_CODES = {"codes": "; ".join(f"{fate.value}: {fate.name.lower()}" for fate in Fate)}
+def _codes(codes: type[IntEnum]) -> dict[str, str]:
+    return {"codes": "; ".join(f"{code.value}: {code.name.lower()}" for code in codes)}
 
 
 def anchors(size: int, stride: int) -> np.ndarray:

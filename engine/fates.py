@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from enum import Enum, IntEnum
+from enum import IntEnum
 
 from engine.taylor import events
 
@@ -20,11 +20,16 @@ class Fate(IntEnum):
     FAILED = events.FAILED
 
 
-class Regularity(Enum):
-    """Character of a bounded orbit by SALI; the question does not arise for one that escapes."""
+class Regularity(IntEnum):
+    """Character of a bounded orbit; ``NO_QUESTION`` for one that escapes or does not exist, ``NOT_JUDGED`` until it is known."""
 
-    REGULAR = "regular"
-    CHAOTIC = "chaotic"
+    NO_QUESTION = 0
+    REGULAR = 1
+    CHAOTIC = 2
+    NOT_JUDGED = 3
+
+    def __str__(self) -> str:
+        return self.name.lower().replace("_", " ")
 
 
 _SENTENCES = {

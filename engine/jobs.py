@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from engine.escape_maps import EscapeMap
-from engine.map_runs import compute_map
 from engine.map_specs import MapSpec
+from engine.maps import compute_map
 from engine.orbit_batches import default_executor
 from engine.orbits import Orbit, integrate_orbit
 from engine.potentials import Potential

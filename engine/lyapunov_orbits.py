@@ -8,7 +8,7 @@ too far out falls outward; the orbit is the root of the velocity along the chann
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 
 import numpy as np
@@ -97,7 +97,37 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
 @functools.lru_cache(maxsize=4096)
 def _find_all(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    return tuple(_find(potential, energy, channel) for channel in potential.open_channels(energy))
+    found: dict[int, LyapunovOrbit] = {}
+    for channel in potential.open_channels(energy):
+        image = int(potential.mirror_channels[channel]) if potential.mirror_in_x else channel
+        found[channel] = _mirrored(found[image], channel) if image in found else _find(potential, energy, channel)
+        if image == channel and potential.mirror_in_x:
+            found[channel] = _symmetrised(found[channel])
+    return tuple(found.values())
+
+
+def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
+    """The image under x → −x, exact to the bit, so that mirror images of orbits escape at the very same time."""
+    arrays = (-orbit.x, orbit.y.copy(), _mirrored_curve(orbit.curve))
+    for array in arrays:
+        array.flags.writeable = False
+    return LyapunovOrbit(channel, orbit.energy, orbit.period, *arrays)
+
+
+def _mirrored_curve(curve: np.ndarray) -> np.ndarray:
+    """An exit curve in the axes of the mirrored saddle, where u is the same and q has the other sign."""
+    image = curve.copy()
+    image[[events.SADDLE_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
+    image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
+    image[events.COEFFICIENTS + 1 :: 2] *= -1.0
+    return image
+
+
+def _symmetrised(orbit: LyapunovOrbit) -> LyapunovOrbit:
+    """An orbit that is its own mirror image, made so to the bit."""
+    curve = 0.5 * (orbit.curve + _mirrored_curve(orbit.curve))
+    curve.flags.writeable = False
+    return replace(orbit, curve=curve)
 
 
 @functools.cache
@@ -107,7 +137,10 @@ def channel_axes(potential: Potential, channel: int) -> np.ndarray:
     vxx, vxy, vyy = potential.hessian(*saddle)
     outward = np.linalg.eigh(np.array([[vxx, vxy], [vxy, vyy]]))[1][:, 0]
     outward = np.where(np.abs(outward) < 1e-13, 0.0, outward)
-    return outward if outward @ saddle > 0 else -outward
+    outward = outward if outward @ saddle > 0 else -outward
+    if potential.mirror_in_x and saddle[0] < 0.0:
+        outward = channel_axes(potential, int(potential.mirror_channels[channel])) * [-1.0, 1.0]
+    return outward
 
 
 def _find(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:

@@ -1,27 +1,30 @@
-"""The computing of maps: coarse to fine and short horizon to long, in frames, cancellable and resumable."""
+"""One map on its way: coarse to fine, short horizon to long, certificates between; cancellable and resumable."""
 
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
 
+from engine.certificates import Certificate
+from engine.certification import SHORTEST_T_MAX, Certification
 from engine.escape_maps import EscapeMap, anchors
 from engine.fates import Fate
 from engine.lyapunov_orbits import closed_curves, exit_curves
 from engine.map_specs import MapSpec
 from engine.orbit_batches import OrbitBatch, carry_on
-from engine.outcomes import read_outcomes
-from engine.planes import Plane, start_states
+from engine.outcomes import Outcomes, read_outcomes
+from engine.planes import Plane, find_mirror_images, start_states
 
 # A first frame holds at most this many pixels.
 COARSE_PIXELS = 1200
 SHORTEST_HORIZON = 100.0
 HORIZON_FACTOR = 10.0
+# Most escapes are over by then: what is still open is worth a certificate.
+CERTIFIED_FROM = 1000.0
 # Seconds between frames within a stage.
 FRAME_PAUSE = 0.15
 
@@ -43,13 +46,27 @@ def _horizons(t_max: float) -> list[float]:
     return [*horizons, t_max]
 
 
-class _MapRun:
-    """One computation of a map on its way: the batch behind its pixels and the stage it is in."""
+class MapRun:
+    """The computation of a map, or of some rows of it, on its way: the batch behind its pixels and the stage it is in.
 
-    def __init__(self, spec: MapSpec, resume: EscapeMap | None) -> None:
+    Of two pixels that are mirror images of each other only the first is computed.
+
+    Parameters
+    ----------
+    spec
+        The request.
+    resume
+        An earlier map to go on from.
+    rows
+        Numbers of the rows, rising; None for all.
+    """
+
+    def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, rows: np.ndarray | None = None) -> None:
         self.spec = spec
         self.x, self.ordinate = spec.pixel_centres()
-        self.shape = (spec.resolution[1], spec.resolution[0])
+        self.ordinate = self.ordinate if rows is None else self.ordinate[rows]
+        self.shape = (self.ordinate.size, self.x.size)
+        self.images = find_mirror_images(spec.potential, spec.plane, self.x, self.ordinate)
         x, ordinate = (grid.ravel() for grid in np.meshgrid(self.x, self.ordinate))
         rows = np.repeat(np.arange(self.shape[0]), self.shape[1])
         self.energy = ordinate if isinstance(spec.energy, tuple) else np.full(x.size, spec.energy)
@@ -64,7 +81,7 @@ class _MapRun:
             self.batch, self.started = resume.batch.copy(), resume.started.ravel().copy()
             self.batch.reopen_bounded()
         self.curves = np.repeat(closed_curves(spec.potential)[None], self.curve_row[-1] + 1, axis=0)
-        self.stride = _coarsest_stride(spec.resolution)
+        self.stride = _coarsest_stride(self.shape)
         self.horizon = min(SHORTEST_HORIZON, spec.t_max)
         self.unsolved = set(range(len(self.curves)))
 
@@ -74,9 +91,22 @@ class _MapRun:
         stride = 1 if self.started.all() else self.stride
         while stride > 1:
             rows, columns = (np.unique(anchors(size, stride)) for size in self.shape)
-            yield numbers[np.ix_(rows, columns)].ravel(), stride
+            yield self._first_of_images(numbers[np.ix_(rows, columns)].ravel()), stride
             stride //= 2
-        yield numbers.ravel(), 1
+        yield self._first_of_images(numbers.ravel()), 1
+
+    def _first_of_images(self, pixels: np.ndarray) -> np.ndarray:
+        """The pixels to compute for these, each once."""
+        return pixels if self.images is None else np.unique(np.minimum(pixels, self.images[pixels]))
+
+    def stages(self) -> Iterator[tuple[np.ndarray, int, float]]:
+        """(pixels, stride, horizon): every level at the shortest horizon, then all pixels at longer ones."""
+        horizons = _horizons(self.spec.t_max)
+        for pixels, stride in self.levels():
+            yield pixels, stride, horizons[0]
+        everything = self._first_of_images(np.arange(self.started.size))
+        for horizon in horizons[1:]:
+            yield everything, 1, horizon
 
     def begin(self, pixels: np.ndarray, stride: int, horizon: float) -> np.ndarray:
         """Start a stage: find the exits that its pixels need, mark starts that lie outside, and return the exit curves."""
@@ -89,6 +119,25 @@ class _MapRun:
         self.started[fresh] = True
         return self.curves
 
+    def certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
+        """Settle the open orbits that can be shown never to leave."""
+        spec, batch = self.spec, self.batch
+        waiting = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
+        waiting = np.intersect1d(waiting, self._first_of_images(waiting))
+        closed = self.energy[waiting] <= spec.potential.escape_energy
+        batch.settle(waiting[closed], Certificate.CLOSED)
+        waiting = waiting[~closed]
+        place = np.column_stack(np.divmod(waiting, self.shape[1]))
+        energy = None if isinstance(spec.energy, tuple) else spec.energy
+        time_left = spec.t_max - self.horizon
+        certification = Certification(spec.potential, energy, batch.state[waiting], place, time_left, executor, cancel)
+
+        def settle() -> None:
+            batch.settle(waiting, certification.certificate)
+            on_round()
+
+        certification.run(settle)
+
     def _row_energy(self, row: int) -> float:
         return float(self.ordinate[row]) if self.spec.plane is Plane.X_H else float(self.energy[0])
 
@@ -96,12 +145,22 @@ class _MapRun:
         """The last frame, with the state to go on from."""
         return replace(self.frame(), batch=self.batch)
 
+    def outcomes(self) -> Outcomes:
+        """What is known of each pixel; (n,) arrays."""
+        if self.images is not None:
+            first = np.flatnonzero(self.started & (self.images > np.arange(self.images.size)))
+            self.batch.copy_to_images(first, self.images[first], self.spec.potential.mirror_channels)
+            self.started[self.images[first]] = True
+        return read_outcomes(self.spec.potential, self.energy, self.batch)
+
     def frame(self) -> EscapeMap:
-        outcomes = read_outcomes(self.spec.potential, self.energy, self.batch)
+        """The map so far."""
+        outcomes = self.outcomes()
         complete = bool(self.started.all() and not np.any(outcomes.fate == Fate.NOT_COMPUTED))
         arrays = {
             name: getattr(outcomes, name).reshape(self.shape) for name in ("fate", "escape_time", "crossings", "energy_error")
         }
+        arrays |= {"certificate": self.batch.certificates().reshape(self.shape)}
         arrays |= {"outside": self.batch.outside.reshape(self.shape).copy(), "started": self.started.reshape(self.shape).copy()}
         for array in (*arrays.values(), self.x, self.ordinate):
             array.flags.writeable = False
@@ -117,79 +176,22 @@ class _MapRun:
         return float(covered[interior].mean()) if interior.any() else 1.0
 
 
-def compute_map(
-    spec: MapSpec,
-    on_frame: Callable[[EscapeMap], None] | None = None,
-    cancel: threading.Event | None = None,
+def carry_through(
+    run: MapRun,
     executor: Executor | None = None,
-    *,
-    resume: EscapeMap | None = None,
-) -> EscapeMap:
-    """Compute a map of escapes.
-
-    Parameters
-    ----------
-    spec
-        The request.
-    on_frame
-        Called in this thread with the map so far, often at first: coarse pixels first, then all, then longer horizons.
-    cancel
-        When set, the map is returned as it is within about 0.1 s, with ``complete`` False.
-    executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
-    resume
-        An earlier map, finished or cancelled, whose spec differs at most by a smaller or equal t_max: its orbits go on
-        from where they are.
-
-    Returns
-    -------
-    `EscapeMap`, equal to the bit whatever the executor, the interruptions and the resumptions.
-
-    Raises
-    ------
-    ValueError
-        When `resume` belongs to another map, or no exit is defined at an energy that `spec` asks for.
-    """
-    if resume is not None:
-        _check_resumable(spec, resume)
-    run = _MapRun(spec, resume)
-
-    last = time.monotonic()
-
-    def publish(pause: float = 0.0) -> None:
-        nonlocal last
-        if on_frame is not None and time.monotonic() - last >= pause:
-            on_frame(run.frame())
-            last = time.monotonic()
-
-    for pixels, stride, horizon in _stages(run):
+    cancel: threading.Event | None = None,
+    publish: Callable[[float], None] = lambda pause: None,
+) -> None:
+    """Take a run through all its stages; `publish(pause)` is called with news, of which one in `pause` seconds is enough."""
+    spec = run.spec
+    for pixels, stride, horizon in run.stages():
         if cancel is not None and cancel.is_set():
             break
+        if spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= run.horizon:
+            run.certify(executor, cancel, lambda: publish(FRAME_PAUSE))
         curves = run.begin(pixels, stride, horizon)
         carry_on(
             spec.potential, curves, run.batch, pixels, horizon,
             final=horizon == spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: publish(FRAME_PAUSE),
         )  # fmt: skip
-        publish()
-    return run.result()
-
-
-def _stages(run: _MapRun) -> Iterator[tuple[np.ndarray, int, float]]:
-    """(pixels, stride, horizon): every level at the shortest horizon, then all pixels at longer ones."""
-    horizons = _horizons(run.spec.t_max)
-    for pixels, stride in run.levels():
-        yield pixels, stride, horizons[0]
-    everything = np.arange(run.started.size)
-    for horizon in horizons[1:]:
-        yield everything, 1, horizon
-
-
-def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
-    earlier = resume.spec
-    same = (earlier.potential, earlier.plane, earlier.energy, earlier.resolution, earlier.window) == (
-        spec.potential, spec.plane, spec.energy, spec.resolution, spec.window,
-    )  # fmt: skip
-    if resume.batch is None:
-        raise ValueError("resume: a frame holds no orbits to go on from; give the map that compute_map returned")
-    if not same or earlier.t_max > spec.t_max:
-        raise ValueError(f"resume: a map of {earlier} cannot go on to {spec}; all but a larger t_max must be equal")
+        publish(0.0)

@@ -41,6 +41,8 @@ class MapSpec:
         is the energy.
     t_max
         How long an orbit is followed, 0 < t_max ≤ 1e8.
+    certify
+        Whether an orbit may be called bounded before t_max when there is a certificate that it never leaves.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class MapSpec:
     resolution: tuple[int, int] = (225, 225)
     window: Window = None  # type: ignore[assignment]  # None is replaced below
     t_max: float = 1e5
+    certify: bool = True
 
     def __post_init__(self) -> None:
         plane = Plane(self.plane)
@@ -61,6 +64,7 @@ class MapSpec:
         for name, value in (("plane", plane), ("energy", energy), ("resolution", _checked_resolution(self.resolution))):
             object.__setattr__(self, name, value)
         object.__setattr__(self, "t_max", checked_t_max(self.t_max))
+        object.__setattr__(self, "certify", bool(self.certify))
         window: Any = self.window
         if window is None:
             window = default_window(self.potential, plane, energy)

@@ -8,16 +8,19 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, fields, replace
 from functools import cache
+from itertools import islice
 from typing import Any
 
 import numpy as np
 
+from engine.certificates import Certificate
 from engine.fates import Fate
 from engine.lyapunov_orbits import exit_gates
 from engine.potentials import Potential
 from engine.taylor.build import load_kernels
 from engine.taylor.codegen import TOLERANCE
 from engine.taylor.events import find_outside
+from engine.taylor.loop import VECTOR
 
 LANES = 64
 LARGEST_TILE = 2048
@@ -66,6 +69,8 @@ class OrbitBatch:
         (n,) the row of `curves` that holds the exits of this orbit's energy.
     outside
         (n,) int8: the channel beyond whose Lyapunov orbit the start lies, 0 inside.
+    certificate
+        (n,) int8 codes, see `Certificate`: why an orbit is bounded that has not been followed to t_max; 0 for all others.
     """
 
     state: np.ndarray
@@ -75,14 +80,15 @@ class OrbitBatch:
     fate: np.ndarray
     curve_row: np.ndarray
     outside: np.ndarray
+    certificate: np.ndarray
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
         """Orbits at t = 0; a start whose state is not finite is forbidden. Outside starts are found by `mark_outside`."""
         n = len(states)
         fate = np.where(np.isfinite(states).all(axis=1), Fate.NOT_COMPUTED, Fate.FORBIDDEN).astype(np.int8)
-        counts = np.zeros((2, n), np.int64)
-        return cls(states.copy(), np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), np.zeros(n, np.int8))
+        counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
+        return cls(states.copy(), np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), codes[0], codes[1])
 
     def mark_outside(self, which: np.ndarray, curves: np.ndarray) -> None:
         """Find those of the starts `which` that lie beyond an exit curve, and settle their fate."""
@@ -92,11 +98,34 @@ class OrbitBatch:
         self.outside[which] = channel
         self.fate[which[channel > 0]] = Fate.OUTSIDE
 
+    def settle(self, which: np.ndarray, certificate: np.ndarray | int) -> None:
+        """Call those of the orbits `which` bounded that have a certificate."""
+        self.certificate[which] = certificate
+        self.fate[which[self.certificate[which] != Certificate.NONE]] = Fate.BOUNDED
+
+    def copy_to_images(self, which: np.ndarray, images: np.ndarray, channels: np.ndarray) -> None:
+        """Give the orbits `images` what became of the orbits `which`, of which they are the exact images under x → −x.
+
+        channels: the channel that each one is carried into, see `Potential.mirror_channels`.
+        """
+        self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
+        for name in ("t", "crossings", "last_crossings"):
+            getattr(self, name)[images] = getattr(self, name)[which]
+        fate = self.fate[which]
+        self.fate[images] = np.where(fate > 0, channels[np.maximum(fate, 0)], fate)
+        self.outside[images] = channels[self.outside[which]]
+        self.certificate[images] = np.where(fate == Fate.BOUNDED, Certificate.MIRRORED, Certificate.NONE)
+
     def reopen_bounded(self) -> None:
-        """Make bounded orbits undecided again, so that they can be carried on to a later t_max."""
-        bounded = self.fate == Fate.BOUNDED
+        """Make orbits bounded until t_max undecided again, so that they can be carried on; certified ones stay bounded."""
+        bounded = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
         self.fate[bounded] = Fate.NOT_COMPUTED
         self.last_crossings[bounded] = 0
+
+    def certificates(self) -> np.ndarray:
+        """(n,) int8: the `Certificate` of each orbit, bounded ones followed to t_max included."""
+        followed = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
+        return np.where(followed, np.int8(Certificate.INTEGRATED), self.certificate)
 
     @property
     def nbytes(self) -> int:
@@ -116,6 +145,15 @@ class _Tile:
     batch: OrbitBatch
     waiting: np.ndarray
 
+    @classmethod
+    def taken_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> _Tile:
+        part = OrbitBatch(**{field.name: getattr(batch, field.name)[orbits] for field in fields(batch)})
+        return cls(orbits, part, np.ones(orbits.size, np.uint8))
+
+    def put_back(self, batch: OrbitBatch) -> None:
+        for field in fields(batch):
+            getattr(batch, field.name)[self.orbits] = getattr(self.batch, field.name)
+
 
 def _advance_tile(potential: Potential, curves: np.ndarray, gates: np.ndarray, tile: _Tile, horizon: float, final: bool) -> _Tile:
     """The work of a worker: one budget's worth of steps."""
@@ -133,8 +171,13 @@ def _tiles(batch: OrbitBatch, which: np.ndarray, workers: int) -> Iterator[_Tile
     share = -(-which.size // (4 * workers))
     size = int(np.clip(-(-share // LANES) * LANES, LANES, LARGEST_TILE))
     for orbits in (which[begin : begin + size] for begin in range(0, which.size, size)):
-        part = OrbitBatch(**{field.name: getattr(batch, field.name)[orbits] for field in fields(batch)})
-        yield _Tile(orbits, part, np.ones(orbits.size, np.uint8))
+        yield _Tile.taken_from(batch, orbits)
+
+
+def _halves(tile: _Tile) -> list[np.ndarray]:
+    """What a tile still waits for, in two parts when that is worth a second worker."""
+    waiting = tile.orbits[tile.waiting != 0]
+    return [part for part in np.array_split(waiting, 2 if waiting.size >= VECTOR else 1) if part.size]
 
 
 def carry_on(
@@ -174,15 +217,12 @@ def carry_on(
         stopped = cancel is not None and cancel.is_set()
         for future in done:
             tile = future.result()
-            _put_back(batch, tile)
-            following = tile if tile.waiting.any() else next(tiles, None)
-            if following is not None and not stopped:
-                submit(following)
+            tile.put_back(batch)
+            following = [tile] if tile.waiting.any() else list(islice(tiles, 1))
+            if len(following) + len(running) < workers:
+                following = [_Tile.taken_from(batch, part) for tile in following for part in _halves(tile)]
+            for tile in following if not stopped else ():
+                submit(tile)
         if on_progress is not None and not stopped:
             on_progress()
     return not (cancel is not None and cancel.is_set())
-
-
-def _put_back(batch: OrbitBatch, tile: _Tile) -> None:
-    for field in fields(batch):
-        getattr(batch, field.name)[tile.orbits] = getattr(tile.batch, field.name)

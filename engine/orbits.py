@@ -82,9 +82,7 @@ class Orbit:
             )
             return f"Escaped through channel {self.fate} at t = {self.escape_time:.6g}, {kind}."
         if self.regularity is not None:
-            return (
-                f"Bounded until t = {self.t[-1]:g} and {self.regularity.value}, with {self.crossings} upward crossings of y = 0."
-            )
+            return f"Bounded until t = {self.t[-1]:g} and {self.regularity}, with {self.crossings} upward crossings of y = 0."
         return describe_fate(self.fate)
 
 

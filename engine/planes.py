@@ -85,6 +85,26 @@ def start_states(
     return np.column_stack([x, y, px, np.sqrt(np.where(doubled >= 0, doubled, np.nan))])
 
 
+def find_mirror_images(potential: Potential, plane: Plane, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray | None:
+    """For each pixel the one whose orbit is the exact image of its own under x → −x.
+
+    Parameters
+    ----------
+    x, ordinate
+        (columns,), (rows,) pixel centres.
+
+    Returns
+    -------
+    (rows · columns,) pixel numbers, row by row; None where the potential, or the grid to the bit, has no such symmetry.
+    """
+    turned = plane is Plane.X_PX
+    exact = np.array_equal(x, -x[::-1]) and (not turned or np.array_equal(ordinate, -ordinate[::-1]))
+    if not (potential.mirror_in_x and exact):
+        return None
+    numbers = np.arange(x.size * ordinate.size).reshape(ordinate.size, x.size)
+    return (numbers[::-1, ::-1] if turned else numbers[:, ::-1]).ravel()
+
+
 def required_energy(potential: Potential, plane: Plane, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
     """The lowest energy at which a start exists; for (x, h), V(x, 0) − h, which is positive where it does not."""
     y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
@@ -150,7 +170,7 @@ def _interior_interval(potential: Potential, energy: float) -> tuple[float, floa
     zero = np.zeros_like(x)
     outside = find_outside(x, zero, exit_curves(potential, energy)[None], np.zeros(x.size, np.int64))
     run = _connected_run((potential.value(x, zero) <= energy) & (outside == 0))
-    return float(x[run][0]), float(x[run][-1])
+    return _rounded(x[run][0]), _rounded(x[run][-1])
 
 
 def _interior_extent(potential: Potential, energy: float) -> tuple[float, float, float, float]:
@@ -164,4 +184,9 @@ def _interior_extent(potential: Potential, energy: float) -> tuple[float, float,
     x, y = x[inside], y[inside]
     for orbit in find_lyapunov_orbits(potential, energy):
         x, y = np.append(x, orbit.x), np.append(y, orbit.y)
-    return float(x.min()), float(x.max()), float(y.min()), float(y.max())
+    return _rounded(x.min()), _rounded(x.max()), _rounded(y.min()), _rounded(y.max())
+
+
+def _rounded(edge: float) -> float:
+    """To twelve decimals, so that the window of a symmetric interior is symmetric to the bit."""
+    return round(float(edge), 12)

@@ -77,6 +77,11 @@ class Potential:
         return table
 
     @property
+    def mirror_in_x(self) -> bool:
+        """Whether V(−x, y) = V(x, y): then (x, px) → (−x, −px) carries orbits into orbits, to the bit."""
+        return all(i % 2 == 0 for i, _, _ in self.terms)
+
+    @property
     def _table(self) -> dict[tuple[int, int], float]:
         return {(i, j): c for i, j, c in self.terms}
 
@@ -93,8 +98,18 @@ class Potential:
         points = np.where(np.abs(points) < ROUNDING, 0.0, points)
         angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
         points = points[np.argsort(angle, kind="stable")]
+        if self.mirror_in_x:
+            _make_symmetric(points)
         points.flags.writeable = False
         return points
+
+    @cached_property
+    def mirror_channels(self) -> np.ndarray:
+        """(channels + 1,) the channel that each one is carried into by x → −x; entry 0 is 0. Only where `mirror_in_x` holds."""
+        apart = np.hypot(*(self.saddles[:, None] - self.saddles * [-1.0, 1.0]).T)
+        images = np.concatenate([[0], 1 + np.argmin(apart, axis=0)]).astype(np.int8)
+        images.flags.writeable = False
+        return images
 
     @cached_property
     def saddle_energies(self) -> np.ndarray:
@@ -116,6 +131,13 @@ class Potential:
     def open_channels(self, energy: float) -> tuple[int, ...]:
         """The channels whose saddle lies below `energy`; none at or below the escape energy."""
         return tuple(int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - SAME_ENERGY))
+
+
+def _make_symmetric(points: np.ndarray) -> None:
+    """Make points that come in mirror pairs in x exact images of each other: those at x < 0 of the others."""
+    right = points[points[:, 0] > 0.0]
+    for left in np.flatnonzero(points[:, 0] < 0.0):
+        points[left] = right[np.argmin(np.hypot(*(right - points[left] * [-1.0, 1.0]).T))] * [-1.0, 1.0]
 
 
 def _evaluate(table: Terms, x: Any, y: Any) -> Any:

@@ -6,6 +6,7 @@ time, so nothing is refilled; an orbit that leaves runs off to infinity, and its
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +16,9 @@ from engine.taylor.compilation import kernel
 from engine.taylor.events import series_slope, series_value
 
 if TYPE_CHECKING:
-    from engine.taylor.generated import glide, jets
+    from engine.taylor.generated import glide, jets, tangent
 
+_RENORMALISED_AFTER = 8
 _NEWTON_STEPS = 12
 _ROOT_ACCURACY = 1e-14
 
@@ -90,3 +92,37 @@ def _find_points(h, n, start, rider, points, found):
         points[lane, found[lane], 0] = series_value(x_jet, i, tau)
         points[lane, found[lane], 1] = series_slope(x_jet, i, tau)
         found[lane] += 1
+
+
+@kernel
+def align(h, steps, state, first, second, sali):
+    """The smallest SALI of orbits over `steps`: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, eq. 9 of Zotos (2014).
+
+    state, first, second (4, lanes), of orbits and deviations, are changed in place; sali (lanes,) is lowered, and is NaN from
+    where an orbit has run off.
+    """
+    lanes = state.shape[1]
+    duration = np.full(lanes, h)
+    nothing = np.zeros((2, lanes))
+    for taken in range(1, steps + 1):
+        for w in (first, second):
+            tangent(lanes, duration, state[0], state[1], state[2], state[3], w[0], w[1], w[2], w[3])
+        glide(lanes, h, 0.0, state[0], state[1], state[2], state[3], nothing[0], nothing[1])
+        if taken % _RENORMALISED_AFTER == 0 or taken == steps:
+            _renormalise(first)
+            _renormalise(second)
+            for i in range(lanes):
+                apart = 0.0
+                along = 0.0
+                for c in range(4):
+                    apart += (first[c, i] - second[c, i]) ** 2
+                    along += (first[c, i] + second[c, i]) ** 2
+                sali[i] = min(sali[i], math.sqrt(min(apart, along)))
+
+
+@kernel
+def _renormalise(w):
+    for i in range(w.shape[1]):
+        norm = math.sqrt(w[0, i] ** 2 + w[1, i] ** 2 + w[2, i] ** 2 + w[3, i] ** 2)
+        for c in range(4):
+            w[c, i] /= norm

@@ -29,7 +29,7 @@ def test_an_unknown_code_is_an_error() -> None:
 
 @pytest.mark.parametrize(("sali", "expected"), [(1.4, "regular"), (1.01e-7, "regular"), (1e-7, "chaotic"), (1e-16, "chaotic")])
 def test_sali_at_or_below_the_threshold_is_chaotic(sali: float, expected: str) -> None:
-    assert judge_regularity(sali) is Regularity(expected)
+    assert judge_regularity(sali) is Regularity[expected.upper()]
 
 
 def test_threshold_is_the_papers() -> None:

@@ -5,13 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, classify_orbits, compute_map
-
-BOX = (-1.1, 1.1, -1.1, 1.1)
-
-
-def turned_by_half(a: np.ndarray) -> np.ndarray:
-    return a[::-1, ::-1]
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, classify_orbits, compute_map, start_states
 
 
 def swapped(fate: np.ndarray, pairs: dict[int, int]) -> np.ndarray:
@@ -21,26 +15,39 @@ def swapped(fate: np.ndarray, pairs: dict[int, int]) -> np.ndarray:
     return out
 
 
-# Even powers only: a change of both signs leaves every product unchanged in floating point, so the maps agree exactly.
+def starts(plane: Plane, energy: float) -> np.ndarray:
+    x, ordinate = np.random.default_rng(6).uniform(-0.5, 0.5, (2, 3000))
+    states = start_states(CASES["III"], plane, energy, x, ordinate)
+    return states[np.isfinite(states).all(axis=1)]
+
+
+# Even powers only: a change of sign leaves every product unchanged in floating point, and the exits are exact images.
+@pytest.mark.parametrize("energy", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_Y])
+def test_orbits_of_case_3_and_their_mirror_images_fare_alike_to_the_bit(plane: Plane, energy: float) -> None:
+    states = starts(plane, energy)
+    one = classify_orbits(CASES["III"], energy, states, 100.0)
+    other = classify_orbits(CASES["III"], energy, states * [-1.0, 1.0, -1.0, 1.0], 100.0)
+    np.testing.assert_array_equal(one.fate, swapped(other.fate, {1: 2, 3: 4}))
+    np.testing.assert_array_equal(one.escape_time, other.escape_time)
+    np.testing.assert_array_equal(one.crossings, other.crossings)
+
+
 @pytest.mark.parametrize("resolution", [(60, 60), (61, 61), (60, 61), (225, 224)])
-@pytest.mark.parametrize("energy", [0.3, 0.5])
-def test_case_3_on_x_px_maps_onto_itself_with_channels_swapped(resolution: tuple[int, int], energy: float) -> None:
-    result = compute_map(MapSpec(CASES["III"], Plane.X_PX, energy, resolution, BOX, t_max=100.0))
-    np.testing.assert_array_equal(result.fate, swapped(turned_by_half(result.fate), {1: 2, 3: 4}))
-
-
-@pytest.mark.parametrize("resolution", [(60, 60), (61, 61)])
-def test_case_3_on_x_px_keeps_crossings_and_all_but_the_last_digits_of_times(resolution: tuple[int, int]) -> None:
-    result = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.5, resolution, BOX, t_max=100.0))
-    np.testing.assert_array_equal(result.crossings, turned_by_half(result.crossings))
-    # The exits are found one by one, so their curves are mirror images up to rounding.
-    np.testing.assert_allclose(result.escape_time, turned_by_half(result.escape_time), rtol=1e-9)
-
-
-@pytest.mark.parametrize("energy", [0.3, 0.8])
-def test_case_3_on_x_y_is_its_own_mirror_image_with_channels_swapped(energy: float) -> None:
-    result = compute_map(MapSpec(CASES["III"], Plane.X_Y, energy, (61, 60), BOX, t_max=100.0))
-    np.testing.assert_array_equal(result.fate, swapped(result.fate[:, ::-1], {1: 2, 3: 4}))
+@pytest.mark.parametrize("plane", Plane)
+def test_a_map_of_which_half_is_mirrored_holds_what_single_orbits_do(plane: Plane, resolution: tuple[int, int]) -> None:
+    energy = (0.5, 1.0) if plane is Plane.X_H else 0.5
+    result = compute_map(MapSpec(CASES["III"], plane, energy, resolution, None, t_max=100.0))
+    row = int(np.argmax(np.sum(result.fate >= 1, axis=1)))
+    x, ordinate = result.x, np.full(result.x.size, result.ordinate[row])
+    h = float(result.ordinate[row]) if plane is Plane.X_H else 0.5
+    states = start_states(CASES["III"], plane, h, x, ordinate)
+    there = (result.fate[row] >= 1) & np.isfinite(states).all(axis=1)
+    outcome = classify_orbits(CASES["III"], h, states[there], 100.0)
+    assert there.sum() > 10
+    np.testing.assert_array_equal(outcome.fate, result.fate[row][there])
+    np.testing.assert_array_equal(outcome.escape_time, result.escape_time[row][there])
+    np.testing.assert_array_equal(outcome.crossings, result.crossings[row][there])
 
 
 def outcomes_of(name: str, energy: float, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,81 @@
+"""Every map of the paper, both planes, nine energies, three cases, at 225 x 225 and t_max = 1e5: its time, its certificates.
+
+Run: uv run python -m benchmarks.all_maps            # the table, and the five slowest again without certificates
+     uv run python -m benchmarks.all_maps --validate # 61 x 61, each map with and without certificates: none may be wrong
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from app.paper_energies import ENERGIES
+from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map
+from engine.orbit_batches import default_executor
+
+SLOWEST = 5
+EARLY = [code for code in Certificate if code > Certificate.INTEGRATED]
+
+
+def specs(resolution: int) -> Iterator[MapSpec]:
+    for case, energies in ENERGIES.items():
+        for plane in (Plane.X_PX, Plane.X_Y):
+            for energy in energies.marked:
+                yield MapSpec(CASES[case], plane, energy, (resolution, resolution), t_max=1e5)
+
+
+def timed(spec: MapSpec) -> tuple[float, EscapeMap]:
+    begin = time.perf_counter()
+    result = compute_map(spec)
+    return time.perf_counter() - begin, result
+
+
+def shares(result: EscapeMap) -> str:
+    """Bounded share of the interior; of these, the share of each certificate."""
+    bounded = result.fate == Fate.BOUNDED
+    interior = (result.fate != Fate.FORBIDDEN) & (result.fate != Fate.OUTSIDE)
+    kinds = [np.count_nonzero(result.certificate[bounded] == code) / max(bounded.sum(), 1) for code in Certificate if code]
+    return " | ".join(f"{share:.1%}" for share in (bounded.sum() / interior.sum(), *kinds))
+
+
+def title(spec: MapSpec) -> str:
+    return f"{spec.potential.name} | {spec.plane.value} | {spec.energy}"
+
+
+def time_all() -> None:
+    print(f"225 x 225, t_max = 1e5, {default_executor()._max_workers} threads\n")
+    names = " | ".join(code.name.lower().replace("_", "-") for code in Certificate if code)
+    print(f"| case | plane | h | seconds | bounded | {names} | worst energy error |\n|{'---|' * (11)}")
+    times = {}
+    for spec in specs(225):
+        compute_map(replace(spec, resolution=(20, 20), t_max=1000.0))
+        times[spec], result = timed(spec)
+        print(f"| {title(spec)} | {times[spec]:.1f} | {shares(result)} | {result.worst_energy_error:.1e} |", flush=True)
+    print()
+    print("| case | plane | h | with certificates, s | without, s | ratio | other fates |\n|---|---|---|---|---|---|---|")
+    for spec in sorted(times, key=lambda spec: -times[spec])[:SLOWEST]:
+        seconds, whole = timed(replace(spec, certify=False))
+        differ = np.count_nonzero(whole.fate != compute_map(spec).fate)
+        print(f"| {title(spec)} | {times[spec]:.1f} | {seconds:.1f} | {seconds / times[spec]:.1f} | {differ} |", flush=True)
+
+
+def validate() -> None:
+    print("| case | plane | h | bounded | certified early | wrong | escape after t = 1000 |\n|---|---|---|---|---|---|---|")
+    totals = np.zeros(4, int)
+    for spec in specs(61):
+        certified, whole = compute_map(spec), compute_map(replace(spec, certify=False))
+        early = np.isin(certified.certificate, EARLY)
+        late = whole.escape_time > 1000.0
+        counts = np.array([np.sum(whole.fate == Fate.BOUNDED), early.sum(), np.sum(early & (whole.fate >= 1)), late.sum()])
+        assert np.array_equal(certified.fate[~early], whole.fate[~early])
+        totals += counts
+        print(f"| {title(spec)} | {' | '.join(map(str, counts))} |", flush=True)
+    print(f"| all | | | {' | '.join(map(str, totals))} |")
+
+
+if __name__ == "__main__":
+    validate() if "--validate" in sys.argv else time_all()

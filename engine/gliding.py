@@ -1,0 +1,55 @@
+"""Work on many orbits side by side at a fixed step, tile by tile, on any executor."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from typing import Any
+
+import numpy as np
+
+from engine.orbit_batches import LANES, default_executor
+from engine.potentials import Potential
+
+GLIDE_STEP = 1.0 / 3.0
+"""Step of orbits followed side by side: at the order in use their energy is kept as well as with steps of free size."""
+
+
+def glide(
+    work: Callable[..., np.ndarray],
+    potential: Potential,
+    states: np.ndarray,
+    *arguments: Any,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> np.ndarray:
+    """(n, …): what `work(potential, tile, *arguments)` makes of each tile of the (n, columns) states.
+
+    A tile is a (columns, LANES) array of its own, the last one filled up with copies of its last orbit. `work` is a function of
+    a module, so that processes elsewhere can run it; it returns (LANES, …) numbers. When `cancel` is set, orbits not
+    reached are NaN.
+    """
+    executor = executor or default_executor()
+    ahead = 2 * getattr(executor, "_max_workers", 2)
+    running: deque[tuple[int, Future[np.ndarray]]] = deque()
+    done: list[tuple[int, np.ndarray]] = []
+
+    def collect(most: int) -> None:
+        while len(running) > most:
+            begin, future = running.popleft()
+            done.append((begin, future.result()))
+
+    for begin in range(0, len(states), LANES):
+        collect(ahead - 1)
+        if cancel is not None and cancel.is_set():
+            break
+        tile = states[np.minimum(np.arange(begin, begin + LANES), len(states) - 1)].T.copy()
+        running.append((begin, executor.submit(work, potential, tile, *arguments)))
+    collect(0)
+    shape = done[0][1].shape[1:] if done else ()
+    results = np.full((len(states), *shape), np.nan)
+    for begin, part in done:
+        results[begin : begin + LANES] = part[: len(states) - begin]
+    return results

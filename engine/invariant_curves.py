@@ -1,0 +1,128 @@
+"""Closed invariant curves on the section y = 0, and what they part.
+
+At one energy an orbit of two degrees of freedom cannot pass through an invariant torus. A quasi-periodic orbit pierces the
+section in a closed curve, or in a chain of them around the islands of a resonance; what is on one side stays there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+MOST_ISLANDS = 24
+"""Longest chain of islands that is looked for."""
+
+_FEWEST_POINTS = 40
+# How far from the chord of its neighbours a point may lie, in units of the square root of the enclosed area.
+_ROUGHEST = 0.05
+# How near to the polygon the curve is taken to be, in units of the farthest that a point lies from the chord of its neighbours:
+# where the curvature is resolved, a quarter would do.
+_MARGIN = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class InvariantCurve:
+    """All loops in which one torus pierces the section: a wall that no orbit of the same energy passes.
+
+    Attributes
+    ----------
+    loops
+        A polygon for each loop, in the plane (x, px).
+    margins
+        How near to its polygon each loop is known to be.
+    """
+
+    loops: tuple[shapely.Polygon, ...]
+    margins: tuple[float, ...]
+
+    @property
+    def area(self) -> float:
+        """Enclosed by all loops together, dimensionless."""
+        return float(sum(loop.area for loop in self.loops))
+
+    def find_side(self, points: np.ndarray) -> np.ndarray:
+        """(n,) int8 side of the torus on which each of the (n, 2) points lies: −1 in a loop, 1 outside all, 0 too near to tell.
+
+        The torus cuts its energy surface in two. Stepping across a loop changes the part, and the flow carries the loops' insides
+        into each other: these are the one side, and all of the section outside the loops is the other.
+        """
+        side = np.ones(len(points), np.int8)
+        for loop, margin in zip(self.loops, self.margins, strict=True):
+            near = shapely.contains_xy(_prepared(loop.buffer(margin, quad_segs=1)), *points.T)
+            side[near] = 0
+            side[near] -= shapely.contains_xy(_prepared(loop.buffer(-margin, quad_segs=1)), *points[near].T)
+        return side
+
+    def mirrored(self) -> InvariantCurve:
+        """Its image under (x, px) → (−x, −px)."""
+        return InvariantCurve(tuple(shapely.transform(loop, np.negative) for loop in self.loops), self.margins)
+
+
+def _prepared(polygon: shapely.Polygon) -> shapely.Polygon:
+    shapely.prepare(polygon)
+    return polygon
+
+
+def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
+    """The closed curves that the section points of a quasi-periodic orbit lie on.
+
+    Parameters
+    ----------
+    points
+        (n, 2) successive points x, px of one orbit, finite.
+
+    Returns
+    -------
+    A curve with as many loops as the orbit's chain has islands, one for an orbit about a fixed point; None when the points
+    are too few, or not dense enough on smooth curves that do not cross themselves.
+    """
+    for islands in range(1, MOST_ISLANDS + 1):
+        if len(points) < islands * _FEWEST_POINTS:
+            break
+        found = [_close(points[first::islands]) for first in range(islands)] if _close(points[::islands]) else [None]
+        loops = [loop for loop in found if loop is not None]
+        if len(loops) == len(found):
+            polygons, margins = zip(*loops, strict=True)
+            return InvariantCurve(polygons, margins)
+    return None
+
+
+def _close(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
+    """The loop through successive points of a rotation and its margin; None when they do not lie on one."""
+    order = _order_along(points)
+    if order is None:
+        return None
+    rough = float(_distance_from_chord(points[order]).max())
+    polygon = shapely.Polygon(points[order])
+    fits = rough <= _ROUGHEST * np.sqrt(polygon.area) and polygon.is_valid
+    return (polygon, _MARGIN * rough) if fits else None
+
+
+def _order_along(points: np.ndarray) -> np.ndarray | None:
+    """The order of successive points of a rotation along their closed curve; None when they are not those of one.
+
+    The neighbours of the first point are the points of the nearest returns ahead and behind, a and b steps later. No point comes
+    nearer, so there are at most a + b (three-gap theorem, Sós 1958), in the order of the rotation by p/(a + b) with p a ≡ 1.
+    """
+    away = points[1:] - points[0]
+    distance = np.hypot(*away.T)
+    ahead = away @ away[np.argmin(distance)] > 0.0
+    if ahead.all():
+        return None
+    a = 1 + int(np.argmin(np.where(ahead, distance, np.inf)))
+    b = 1 + int(np.argmin(np.where(ahead, np.inf, distance)))
+    if math.gcd(a, b) != 1 or len(points) > a + b:
+        return None
+    return np.argsort(np.arange(len(points)) * pow(a, -1, a + b) % (a + b))
+
+
+def _distance_from_chord(loop: np.ndarray) -> np.ndarray:
+    """How far each point of a closed loop lies from the line through its neighbours."""
+    before, after = np.roll(loop, 1, axis=0), np.roll(loop, -1, axis=0)
+    along, across = after - before, loop - before
+    cross = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+    distance: np.ndarray = np.abs(cross) / np.maximum(np.hypot(*along.T), np.finfo(float).tiny)
+    return distance

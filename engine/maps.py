@@ -1,0 +1,137 @@
+"""Maps of escapes, computed: at once, or band by band where memory asks for it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from engine.escape_maps import EscapeMap
+from engine.fates import Fate
+from engine.map_runs import MapRun, carry_through
+from engine.map_specs import MapSpec
+from engine.planes import Plane
+
+LARGEST_RUN = 2**20
+"""Most pixels whose orbits are held in memory at once; larger maps are computed in bands of rows, which keep results only."""
+
+
+def compute_map(
+    spec: MapSpec,
+    on_frame: Callable[[EscapeMap], None] | None = None,
+    cancel: threading.Event | None = None,
+    executor: Executor | None = None,
+    *,
+    resume: EscapeMap | None = None,
+) -> EscapeMap:
+    """Compute a map of escapes.
+
+    Parameters
+    ----------
+    spec
+        The request.
+    on_frame
+        Called in this thread with the map so far, often at first: coarse pixels first, then all, then longer horizons. A
+        map of more than `LARGEST_RUN` pixels comes band by band.
+    cancel
+        When set, the map is returned as it is within about 0.1 s, with ``complete`` False.
+    executor
+        Any `concurrent.futures.Executor`; None for the pool of this process.
+    resume
+        An earlier map, finished or cancelled, whose spec differs at most by a smaller or equal t_max: its orbits go on
+        from where they are. Maps computed in bands hold none.
+
+    Returns
+    -------
+    `EscapeMap`; fates, escape times, and the crossings of what escapes, are equal to the bit whatever the executor, the
+    interruptions and the resumptions. Which certificate a bounded orbit has may depend on these.
+
+    Raises
+    ------
+    ValueError
+        When `resume` belongs to another map, or no exit is defined at an energy that `spec` asks for.
+    """
+    if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
+        return _compute_in_bands(spec, on_frame, cancel, executor)
+    if resume is not None:
+        _check_resumable(spec, resume)
+    run = MapRun(spec, resume)
+    last = time.monotonic()
+
+    def publish(pause: float) -> None:
+        nonlocal last
+        if on_frame is not None and time.monotonic() - last >= pause:
+            on_frame(run.frame())
+            last = time.monotonic()
+
+    carry_through(run, executor, cancel, publish)
+    return run.result()
+
+
+def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
+    if resume.batch is None:
+        raise ValueError("resume: this map holds no orbits to go on from; give one that compute_map returned, not a frame")
+    if replace(resume.spec, t_max=spec.t_max) != spec or resume.spec.t_max > spec.t_max:
+        raise ValueError(f"resume: a map of {resume.spec} cannot go on to {spec}; all but a larger t_max must be equal")
+
+
+def _compute_in_bands(
+    spec: MapSpec,
+    on_frame: Callable[[EscapeMap], None] | None,
+    cancel: threading.Event | None,
+    executor: Executor | None,
+) -> EscapeMap:
+    canvas = _blank(spec)
+    done = 0
+    for rows in _bands(spec):
+        run = MapRun(spec, rows=rows)
+        carry_through(run, executor, cancel)
+        part = run.frame()
+        for name in _IMAGES:
+            getattr(canvas, name)[rows] = getattr(part, name)
+        done += rows.size
+        stopped = cancel is not None and cancel.is_set()
+        canvas = replace(canvas, progress=done / spec.resolution[1], horizon=part.horizon)
+        if on_frame is not None and not stopped:
+            on_frame(canvas)
+        if stopped:
+            return canvas
+    for name in _IMAGES:
+        getattr(canvas, name).flags.writeable = False
+    return replace(canvas, complete=not np.any(canvas.fate == Fate.NOT_COMPUTED))
+
+
+_IMAGES = {
+    "fate": (np.int8, Fate.NOT_COMPUTED),
+    "escape_time": (np.float64, np.nan),
+    "crossings": (np.int32, 0),
+    "energy_error": (np.float64, np.nan),
+    "certificate": (np.int8, 0),
+    "outside": (np.int8, 0),
+    "started": (np.bool_, False),
+}
+
+
+def _blank(spec: MapSpec) -> EscapeMap:
+    """A map of which nothing is known."""
+    x, ordinate = spec.pixel_centres()
+    images: dict[str, Any] = {name: np.full((ordinate.size, x.size), value, dtype) for name, (dtype, value) in _IMAGES.items()}
+    return EscapeMap(spec, x, ordinate, stride=1, horizon=0.0, progress=0.0, complete=False, **images)
+
+
+def _bands(spec: MapSpec) -> Iterator[np.ndarray]:
+    """Numbers of rows that together hold every pixel; on (x, px) each band with its mirror image."""
+    columns, rows = spec.resolution
+    height = max(LARGEST_RUN // columns, 1)
+    if spec.plane is not Plane.X_PX:
+        yield from (np.arange(low, min(low + height, rows)) for low in range(0, rows, height))
+        return
+    half = max(height // 2, 1)
+    for low in range(0, (rows + 1) // 2, half):
+        lower = np.arange(low, min(low + half, (rows + 1) // 2))
+        yield np.union1d(lower, rows - 1 - lower)

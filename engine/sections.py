@@ -1,0 +1,57 @@
+"""Surfaces of section: where orbits cross y = 0 upward (py > 0), as points (x, px)."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import Executor
+
+import numpy as np
+
+from engine.gliding import GLIDE_STEP, glide
+from engine.potentials import Potential
+from engine.taylor.build import load_kernels
+
+
+def find_section_points(
+    potential: Potential,
+    states: np.ndarray,
+    count: int,
+    duration: float,
+    *,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> np.ndarray:
+    """The first `count` upward crossings of y = 0 of each orbit, the start not counted.
+
+    Exits are not seen: the points of an orbit that leaves end, or turn to nonsense far outside, where it does.
+
+    Parameters
+    ----------
+    potential
+        The `Potential`.
+    states
+        (n, 4) x, y, px, py, finite.
+    count
+        How many points to look for, 1 or more.
+    duration
+        For how long, dimensionless.
+    executor
+        Any `concurrent.futures.Executor`; None for the pool of this process.
+    cancel
+        When set, points not yet found stay NaN.
+
+    Returns
+    -------
+    (n, count, 2) x and px; NaN where fewer were found.
+    """
+    if not len(states):
+        return np.empty((0, count, 2))
+    return glide(_pierce, potential, states, count, duration, executor=executor, cancel=cancel)
+
+
+def _pierce(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
+    points = np.full((tile.shape[1], count, 2), np.nan)
+    found = np.zeros(tile.shape[1], np.int64)
+    steps = int(np.ceil(duration / GLIDE_STEP))
+    load_kernels(potential.terms, potential.channels).pierce(GLIDE_STEP, steps, tile, points, found)
+    return points
