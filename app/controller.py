@@ -10,7 +10,7 @@ import numpy as np
 
 from app.map_columns import map_columns
 from app.view_state import ViewState
-from engine import EscapeMap, Fate, Jobs, Orbit, OrbitSpec, Potential, Ticket, describe_fate
+from engine import EscapeMap, Fate, Jobs, Orbit, OrbitSpec, Potential, RegularityMap, Ticket, describe_fate
 
 log = logging.getLogger(__name__)
 
@@ -25,6 +25,9 @@ class MapListener(Protocol):
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """A frame of it is here; the last one is complete."""
+
+    def regularity_arrived(self, frame: EscapeMap, regularity: RegularityMap) -> None:
+        """More of the map's bounded orbits are judged, in the end all."""
 
     def map_stopped(self) -> None:
         """The user has cancelled it."""
@@ -52,13 +55,17 @@ class Controller:
     def __init__(self, state: ViewState, jobs: Jobs, listener: MapListener, locked: Locked) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None
+        self._regularity_ticket: Ticket | None = None
         self._orbit_ticket: Ticket | None = None
+        self._whole_map: EscapeMap | None = None
         self._generation = 0
         self._show_map = locked(self._map_arrived)
+        self._show_regularity = locked(self._regularity_arrived)
         self._show_map_problem = locked(self._map_failed)
         self._show_orbit = locked(self._orbit_arrived)
         self._show_orbit_problem = locked(self._orbit_failed)
         state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution", "window"])
+        state.param.watch(lambda event: self.request_regularity(), "judge")
         state.param.watch(lambda *events: self.request_orbit(), ["start", "energy", "t_max"])
 
     def request_map(self) -> None:
@@ -78,11 +85,27 @@ class Controller:
             lambda error: self._show_map_problem(generation, error),
         )
 
+    def request_regularity(self) -> None:
+        """Have the bounded orbits of the map in view judged, if that is wanted and the map is whole."""
+        if self._regularity_ticket is not None:
+            self._regularity_ticket.cancel()
+            self._regularity_ticket = None
+        frame, generation = self._whole_map, self._generation
+        if frame is None or not self._state.judge:
+            return
+        self._regularity_ticket = self._jobs.request_regularity(
+            frame.spec,
+            lambda regularity: self._show_regularity(generation, frame, regularity),
+            lambda error: self._show_map_problem(generation, error),
+        )
+
     def cancel_map(self) -> None:
-        """Stop the map on its way, if any."""
-        if self._map_ticket is not None:
-            self._map_ticket.cancel()
-            self._map_ticket = None
+        """Stop the map on its way, if any, and the judging of its orbits."""
+        self._whole_map = None
+        for ticket in (self._map_ticket, self._regularity_ticket):
+            if ticket is not None:
+                ticket.cancel()
+        self._map_ticket = self._regularity_ticket = None
 
     def stop_map(self) -> None:
         """The user's cancel: stop, and paint no late frame."""
@@ -120,6 +143,13 @@ class Controller:
     def _map_arrived(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         if generation == self._generation:
             self._listener.map_arrived(frame, columns)
+            if frame.complete:
+                self._whole_map = frame
+                self.request_regularity()
+
+    def _regularity_arrived(self, generation: int, frame: EscapeMap, regularity: RegularityMap) -> None:
+        if generation == self._generation and self._state.judge:
+            self._listener.regularity_arrived(frame, regularity)
 
     def _map_failed(self, generation: int, error: Exception) -> None:
         if generation == self._generation:

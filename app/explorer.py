@@ -17,7 +17,7 @@ from app.views.progress import ProgressView
 from app.views.verdict import VerdictView
 from app.views.zoom_buttons import ZoomButtons
 from app.zoom_history import ZoomHistory
-from engine import EscapeMap, Jobs, Orbit, Potential, Window
+from engine import EscapeMap, Jobs, Orbit, Potential, RegularityMap, Window
 
 
 @cache
@@ -48,6 +48,7 @@ class Explorer:
         self.state.param.watch(lambda *events: self.zoom_buttons.follow(self.state.window), ["window", "case", "plane"])
         self.state.param.watch(lambda event: self.verdict.follow_plane(event.new), "plane")
         self.state.param.watch(lambda event: self._mark_start(event.new), "start")
+        self.state.param.watch(lambda event: self.maps.show_characters(event.new), "judge")
         self.verdict.follow_plane(self.state.plane)
         pn.state.on_session_destroyed(self.controller.close)
         pn.state.onload(self.controller.request_map)
@@ -90,6 +91,11 @@ class Explorer:
             if self.state.window is None:
                 self.maps.set_home(frame.spec.window)
             self.progress.show(frame)
+
+    def regularity_arrived(self, frame: EscapeMap, regularity: RegularityMap) -> None:
+        """Paint what is judged."""
+        with pn.io.hold():
+            self.maps.show_regularity(frame, regularity)
 
     def map_stopped(self) -> None:
         """Show that the map has been cancelled."""

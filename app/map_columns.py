@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.palette import CROSSING_CLASSES, OUTCOMES
-from engine import EscapeMap, Fate
+from engine import Certificate, EscapeMap, Fate, Regularity, RegularityMap
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 _FIRST_CLASS = len(OUTCOMES)
@@ -24,12 +24,34 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
         "crossing_class": [_codes(fate, np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1)],
         "crossings": [crossings.astype(np.int32)],
         "escape_time": [shown["escape_time"].astype(np.float32)],
+        "certificate": [frame.certificate.astype(np.uint8)],
+        "character": [_character_codes(fate, _known_from_certificates(frame))],
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
         "dh": [window.ordinate_high - window.ordinate_low],
         "complete": [frame.complete],
     }
+
+
+def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, list[Any]]:
+    """The one column that the judging of bounded orbits changes."""
+    return {"character": [_character_codes(frame.fate, regularity.character)]}
+
+
+def _known_from_certificates(frame: EscapeMap) -> np.ndarray:
+    """What a map says by itself: on a torus an orbit is regular."""
+    known = np.where(frame.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NO_QUESTION)
+    known[frame.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
+    return known
+
+
+def _character_codes(fate: np.ndarray, character: np.ndarray) -> np.ndarray:
+    codes = (_FIRST_CLASS + character).astype(np.uint8)
+    for outcome, code in _OUTCOME_CODES.items():
+        if outcome is not Fate.BOUNDED:
+            codes[fate == outcome] = code
+    return codes
 
 
 def _codes(fate: np.ndarray, escaped_class: np.ndarray) -> np.ndarray:

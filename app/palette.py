@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bokeh.palettes import interp_palette
 
-from engine import Fate
+from engine import Fate, Regularity
 
 CHANNELS = ("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf")
 """Channels 1, 2, 3, 4 as in the paper: green, red, blue, orange; four more for potentials with more exits."""
@@ -63,6 +63,15 @@ CROSSING_CLASSES: tuple[tuple[int, Entry], ...] = (
 )
 """(fewest crossings, entry) of each class, in the paper's colours."""
 
+CHARACTERS: dict[Regularity, Entry] = {
+    Regularity.NO_QUESTION: Entry("escapes", "#f4ead2"),
+    Regularity.REGULAR: Entry("bounded and regular", "#2b6cb0"),
+    Regularity.CHAOTIC: Entry("bounded and chaotic", "#d9480f"),
+    Regularity.NOT_JUDGED: Entry("bounded, not judged yet", BOUNDED),
+}
+"""What the pixels of the picture of regular and chaotic orbits stand for, after the outcomes."""
+
+CHARACTER_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *(entry.colour for entry in CHARACTERS.values())]
 FATE_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *CHANNELS]
 CROSSING_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *(entry.colour for _, entry in CROSSING_CLASSES)]
 # Under the escape times, which cover the escaped pixels.

@@ -18,11 +18,12 @@ class ViewState(param.Parameterized):
     case = param.Selector(default="I", objects=list(CASES))
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
     energy = param.Number(default=ENERGIES["I"].first, doc="h; on (x, h) it is the ordinate instead")
-    t_max = param.Selector(default=1e4, objects=list(T_MAX_CHOICES.values()))
+    t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=225, objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
+    judge = param.Boolean(default=False, doc="whether bounded orbits are judged regular or chaotic")
     start = param.NumericTuple(default=None, length=2, allow_None=True)
 
     @property

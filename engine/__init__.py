@@ -11,6 +11,7 @@ from engine.orbits import Orbit, integrate_orbit
 from engine.outcomes import Outcomes, classify_orbits
 from engine.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.potentials import CASES, Potential
+from engine.preparation import prepare_kernels
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "integrate_orbit",
     "judge_bounded_orbits",
     "judge_regularity",
+    "prepare_kernels",
     "start_states",
     "trace_equipotentials",
     "trace_zero_velocity_curve",

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable, Iterator
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, Protocol
 
 from engine.escape_maps import EscapeMap
@@ -16,6 +17,7 @@ from engine.maps import compute_map
 from engine.orbit_batches import default_executor
 from engine.orbits import Orbit, integrate_orbit
 from engine.potentials import Potential
+from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
 # Threads that only wait for the pool and hand frames on; more jobs than this wait for their turn.
@@ -39,6 +41,13 @@ class OrbitSpec:
     potential: Potential
     state: tuple[float, float, float, float]
     t_max: float
+
+
+@dataclass(frozen=True)
+class _RegularitySpec:
+    """The request to judge the bounded orbits of a map."""
+
+    map_spec: MapSpec
 
 
 class Ticket:
@@ -145,6 +154,12 @@ class Jobs:
         """Ask for an orbit; it comes to `on_orbit` from another thread."""
         return self._request(spec, on_orbit, on_error, self._run_orbit)
 
+    def request_regularity(
+        self, spec: MapSpec, on_frame: Callable[[RegularityMap], None], on_error: Callable[[Exception], None]
+    ) -> Ticket:
+        """Ask which bounded orbits of a map are chaotic; the map itself is computed first where it is not kept."""
+        return self._request(_RegularitySpec(spec), on_frame, on_error, self._run_regularity)
+
     @property
     def in_flight(self) -> int:
         """Number of jobs under way."""
@@ -210,17 +225,28 @@ class Jobs:
         spec = job.key
         assert isinstance(spec, MapSpec)
 
-        def publish(frame: EscapeMap) -> None:
-            if frame.complete:
-                # The result itself, with the state to go on from, follows at once.
-                return
-            with self._lock:
-                job.latest = frame
-                tickets = list(job.tickets)
-            for ticket in tickets:
-                ticket.deliver(frame)
-
+        publish = partial(self._publish, job)
         return compute_map(spec, publish, job.cancel, self._executor, resume=self._find_resumable(spec))
+
+    def _run_regularity(self, job: _Job) -> RegularityMap:
+        assert isinstance(job.key, _RegularitySpec)
+        spec = job.key.map_spec
+        whole = self.cache.get(spec)
+        if whole is None or not whole.complete:
+            whole = compute_map(spec, None, job.cancel, self._executor, resume=self._find_resumable(spec))
+        if not whole.complete:
+            raise CancelledError
+        return judge_bounded_orbits(whole, partial(self._publish, job), job.cancel, self._executor)
+
+    def _publish(self, job: _Job, frame: EscapeMap | RegularityMap) -> None:
+        """Hand a frame on; the complete one is the result, which follows at once with all that belongs to it."""
+        if frame.complete:
+            return
+        with self._lock:
+            job.latest = frame
+            tickets = list(job.tickets)
+        for ticket in tickets:
+            ticket.deliver(frame)
 
     def _run_orbit(self, job: _Job) -> Orbit:
         spec = job.key
@@ -233,7 +259,8 @@ class Jobs:
         with self._lock:
             candidates = [key for key in self.cache if isinstance(key, MapSpec) and replace(key, t_max=spec.t_max) == spec]
             earlier = [key for key in candidates if key.t_max <= spec.t_max]
-            return self.cache.get(max(earlier, key=lambda key: key.t_max)) if earlier else None
+            kept = self.cache.get(max(earlier, key=lambda key: key.t_max)) if earlier else None
+            return kept if kept is not None and kept.batch is not None else None
 
 
 def _is_less_than_kept(result: Sized, kept: Any) -> bool:

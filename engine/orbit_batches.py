@@ -114,7 +114,8 @@ class OrbitBatch:
         fate = self.fate[which]
         self.fate[images] = np.where(fate > 0, channels[np.maximum(fate, 0)], fate)
         self.outside[images] = channels[self.outside[which]]
-        self.certificate[images] = np.where(fate == Fate.BOUNDED, Certificate.MIRRORED, Certificate.NONE)
+        certified = self.certificate[which] != Certificate.NONE
+        self.certificate[images] = np.where(certified, Certificate.MIRRORED, Certificate.NONE)
 
     def reopen_bounded(self) -> None:
         """Make orbits bounded until t_max undecided again, so that they can be carried on; certified ones stay bounded."""

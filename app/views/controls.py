@@ -37,6 +37,7 @@ class Controls:
         self.resolution = pmui.Select(
             label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small"
         )
+        self.judge = pmui.Switch(label="Regular or chaotic", value=state.judge, width=180)
         self.facts = pn.pane.HTML(margin=(0, 10))
         self._follow_case()
         self._connect()
@@ -51,6 +52,7 @@ class Controls:
             self.exact_energy,
             self.t_max,
             self.resolution,
+            self.judge,
             align_items="center",
             gap="6px",
             sizing_mode="stretch_width",
@@ -67,6 +69,7 @@ class Controls:
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
         self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
+        self.judge.param.watch(lambda event: state.param.update(judge=event.new), "value")
         state.param.watch(lambda event: self._follow_case(), "case")
         state.param.watch(lambda event: self._follow_energy(), ["energy", "plane"])
 

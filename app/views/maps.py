@@ -27,10 +27,10 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app import palette
-from app.map_columns import longest_typical_time
+from app.map_columns import character_column, longest_typical_time
 from app.views.legends import legend
 from app.views.outlines import Outlines
-from engine import EscapeMap, Fate, MapSpec, Window
+from engine import Certificate, EscapeMap, Fate, MapSpec, Regularity, RegularityMap, Window, describe_certificate
 
 FRAME = 300
 """Side of each picture in pixels: four fit a screen of 1600, one fits a phone of 420."""
@@ -43,6 +43,7 @@ TITLES = {
     "basins": "Basins of escape",
     "times": "Escape time",
     "crossings": "Crossings of y = 0",
+    "characters": "Regular or chaotic",
 }
 
 
@@ -71,14 +72,19 @@ class MapsView:
         for plot in self.figures.values():
             plot.on_event(Tap, lambda event: on_tap(*self._snapped(event.x, event.y)))
         self._legends = {name: pn.pane.HTML(width=FRAME + 60, margin=(0, 5)) for name in TITLES}
+        self._columns = {
+            name: pn.Column(pn.pane.Bokeh(self.figures[name], margin=0), self._legends[name], margin=(0, 6), width=FRAME + 75)
+            for name in TITLES
+        }
+        self.show_characters(False)
 
     def layout(self) -> pn.viewable.Viewable:
         """The pictures in a row that wraps."""
-        columns = [
-            pn.Column(pn.pane.Bokeh(self.figures[name], margin=0), self._legends[name], margin=(0, 6), width=FRAME + 75)
-            for name in TITLES
-        ]
-        return pn.FlexBox(*columns, justify_content="center", gap="4px")
+        return pn.FlexBox(*self._columns.values(), justify_content="center", gap="4px")
+
+    def show_characters(self, visible: bool) -> None:
+        """Show or hide the picture of regular and chaotic orbits."""
+        self._columns["characters"].visible = visible
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame; the ranges follow a new window."""
@@ -89,6 +95,19 @@ class MapsView:
         if frame.stride == 1:
             self._time_mapper.high = longest_typical_time(frame)
         self.source.data = columns
+
+    def show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
+        """Paint which bounded orbits are regular and which chaotic, as far as it is known."""
+        self.source.data = {**self.source.data, **character_column(frame, regularity)}
+        judged = f"{regularity.chaotic_share:.1%} of the bounded orbits are chaotic."
+        open_share = np.mean(regularity.character[frame.fate == Fate.BOUNDED] == Regularity.NOT_JUDGED)
+        sentence = judged if regularity.complete else f"Following deviations: {open_share:.1%} of the bounded orbits still open …"
+        nothing = not np.any(frame.fate == Fate.BOUNDED)
+        self._legends["characters"].object = self._character_legend("No orbit is bounded." if nothing else sentence)
+
+    def _character_legend(self, sentence: str) -> str:
+        entries = [palette.CHARACTERS[key] for key in palette.CHARACTERS]
+        return legend(entries) + f'<div style="font-size:12px">{sentence}</div>'
 
     def mark_start(self, start: tuple[float, float] | None) -> None:
         """Put the cross of the chosen start on every picture, or take it away."""
@@ -150,6 +169,7 @@ class MapsView:
             "times": legend(list(reversed(outcomes))),
             "crossings": legend([*(entry for _, entry in palette.CROSSING_CLASSES), *reversed(outcomes)]),
         }
+        texts["characters"] = self._character_legend("")
         for name, text in texts.items():
             self._legends[name].object = text
 
@@ -175,6 +195,7 @@ class MapsView:
             "basins": [("fate", _code_mapper(palette.FATE_COLOURS))],
             "times": [("fate", _code_mapper(palette.BACKGROUND_COLOURS)), ("escape_time", self._time_mapper)],
             "crossings": [("crossing_class", _code_mapper(palette.CROSSING_COLOURS))],
+            "characters": [("character", _code_mapper(palette.CHARACTER_COLOURS))],
         }
         for name, plot in self.figures.items():
             for column, mapper in layers[name]:
@@ -204,7 +225,7 @@ def _code_mapper(colours: list[str]) -> LinearColorMapper:
 def _blank() -> dict[str, list[Any]]:
     """A picture of one pixel that nobody has decided yet."""
     codes = np.zeros((1, 1), np.uint8)
-    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class")}
+    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "certificate", "character")}
     columns |= {"crossings": [np.zeros((1, 1), np.int32)], "escape_time": [np.full((1, 1), np.nan, np.float32)]}
     return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "complete": [False]}
 
@@ -215,7 +236,9 @@ const fate = source.data.fate[0][flat_index]
 if (fate < bounded) return ""
 const time = source.data.escape_time[0][flat_index]
 const crossings = `crossings of y = 0: ${source.data.crossings[0][flat_index]}`
-return Number.isFinite(time) ? `escape time ${time.toPrecision(5)}, ${crossings}` : crossings
+if (Number.isFinite(time)) return `escape time ${time.toPrecision(5)}, ${crossings}`
+const reason = certificates[source.data.certificate[0][flat_index]]
+return fate > bounded ? crossings : reason
 """
 
 
@@ -228,7 +251,9 @@ def _hover_text(source: ColumnDataSource) -> tuple[str, dict[str, CustomJSHover]
     names += [f"escapes through channel {k + 1}" for k in range(len(palette.CHANNELS))]
     fate = CustomJSHover(args={"names": names}, code="return names[value] ?? names[0]")
     bounded = list(palette.OUTCOMES).index(Fate.BOUNDED)
-    details = CustomJSHover(args={"source": source, "bounded": bounded}, code=_HOVER_DETAILS)
+    certificates = [describe_certificate(code) for code in Certificate]
+    arguments = {"source": source, "bounded": bounded, "certificates": certificates}
+    details = CustomJSHover(args=arguments, code=_HOVER_DETAILS)
     text = (
         '<div style="font-size:11px;line-height:14px"><b>@fate{custom}</b><br>'
         "@crossing_class{custom}<br>($x{0.0000}, $y{0.0000})</div>"

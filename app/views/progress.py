@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 
-from engine import EscapeMap
+from engine import Certificate, EscapeMap, Fate
 
 
 class ProgressView:
@@ -41,7 +42,8 @@ class ProgressView:
             fractions = frame.fractions()
             channels = (f"channel {k}: {fractions[k]:.1%}" for k in range(1, frame.spec.potential.channels + 1))
             text = (
-                f"Done to t = {frame.spec.t_max:g}. Of the interior starts {', '.join(channels)}, bounded: {fractions[0]:.1%}. "
+                f"Done to t = {frame.spec.t_max:g}. Of the interior starts {', '.join(channels)}, bounded: {fractions[0]:.1%}"
+                f"{_certified(frame)}. "
             )
             text += f"Worst energy error {frame.worst_energy_error:.1e}."
         else:
@@ -70,3 +72,10 @@ class ProgressView:
         self._running = running
         self.button.param.update(label=label, disabled=not running)
         self.text.object = text
+
+
+def _certified(frame: EscapeMap) -> str:
+    """How many bounded orbits needed not be followed to the end, in brackets; nothing where all were."""
+    certificates = frame.certificate[frame.fate == Fate.BOUNDED]
+    early = ~np.isin(certificates, (Certificate.NONE, Certificate.INTEGRATED))
+    return f" ({np.mean(early):.0%} of them certified, the rest followed)" if early.any() else ""

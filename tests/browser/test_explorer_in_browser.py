@@ -9,15 +9,33 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from engine import CASES, Fate, MapSpec, Plane, compute_map, integrate_orbit
+from engine import (
+    CASES,
+    Certificate,
+    EscapeMap,
+    Fate,
+    MapSpec,
+    Plane,
+    Regularity,
+    compute_map,
+    integrate_orbit,
+    judge_bounded_orbits,
+)
 from tests.browser.explorer_page import ExplorerPage
 
 PICTURES = ("curves", "basins", "times", "crossings")
 
 
+def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
+    """Of what escapes: a certified orbit's count goes as far as it was followed, which an interruption may change."""
+    escaped = expected.fate >= 1
+    np.testing.assert_array_equal(explorer.column("crossings")[escaped], expected.crossings[escaped])
+    np.testing.assert_array_equal(np.isfinite(explorer.column("escape_time")), escaped)
+
+
 def test_the_first_map_is_the_engine_s(explorer: ExplorerPage) -> None:
-    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e4))
-    np.testing.assert_array_equal(explorer.column("crossings"), expected.crossings)
+    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5))
+    assert_same_crossings(explorer, expected)
 
 
 def test_dragging_the_energy_gives_another_map(explorer: ExplorerPage) -> None:
@@ -70,8 +88,8 @@ def test_an_energy_can_be_typed(explorer: ExplorerPage) -> None:
     explorer.type_number("h exactly", "0.2345")
     explorer.wait_for_new_pixels()
     explorer.wait_until_complete()
-    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2345, t_max=1e4))
-    np.testing.assert_array_equal(explorer.column("crossings"), expected.crossings)
+    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2345, t_max=1e5))
+    assert_same_crossings(explorer, expected)
 
 
 def test_an_energy_without_exits_is_answered_with_a_sentence_and_the_picture_stays(explorer: ExplorerPage) -> None:
@@ -83,12 +101,12 @@ def test_an_energy_without_exits_is_answered_with_a_sentence_and_the_picture_sta
 
 @pytest.mark.parametrize("picture", PICTURES)
 def test_a_click_integrates_the_orbit_of_that_pixel(explorer: ExplorerPage, picture: str) -> None:
-    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e4)
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5)
     pixel = spec.pixel_at(0.1, 0.05)
     assert pixel is not None
     columns, rows = spec.pixel_centres()
     x, px = float(columns[pixel[1]]), float(rows[pixel[0]])
-    orbit = integrate_orbit(spec.potential, (x, 0.0, px, np.sqrt(2 * (0.19 - x * x / 2) - px * px)), 1e4)
+    orbit = integrate_orbit(spec.potential, (x, 0.0, px, np.sqrt(2 * (0.19 - x * x / 2) - px * px)), 1e5)
     explorer.click(picture, 0.1, 0.05)
     expect(explorer.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
 
@@ -121,7 +139,7 @@ def test_a_start_can_be_typed(explorer: ExplorerPage) -> None:
     explorer.type_number("x", "0.1")
     explorer.type_number("px", "0.2")
     explorer.press("Integrate this start")
-    orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.2, np.sqrt(2 * (0.19 - 0.005) - 0.04)), 1e4)
+    orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.2, np.sqrt(2 * (0.19 - 0.005) - 0.04)), 1e5)
     expect(explorer.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
 
 
@@ -147,7 +165,7 @@ def test_zooming_computes_the_region_and_back_returns(explorer: ExplorerPage) ->
     window = (x, x + dw, y, y + dh)
     assert explorer.ranges("basins") == pytest.approx(window)
     # The browser holds the window in double precision, but as an origin and a size.
-    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, window=window, t_max=1e4))
+    expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, window=window, t_max=1e5))
     assert np.mean(explorer.column("crossings") == expected.crossings) > 0.98
     explorer.forget_pixels()
     explorer.press("← Back")
@@ -165,8 +183,6 @@ def test_hovering_reads_the_pixel_out(explorer: ExplorerPage, picture: str) -> N
 
 
 def test_a_map_can_be_cancelled_and_gone_on_with(explorer: ExplorerPage) -> None:
-    explorer.choose("t_max", "100 000")
-    explorer.wait_until_complete()
     explorer.forget_pixels()
     explorer.press("III")
     explorer.wait_for_new_pixels()
@@ -177,6 +193,28 @@ def test_a_map_can_be_cancelled_and_gone_on_with(explorer: ExplorerPage) -> None
     explorer.press("Go on")
     explorer.wait_for_new_pixels()
     expect(explorer.page.get_by_role("button", name="Cancel", exact=True)).to_be_enabled()
+
+
+def test_bounded_orbits_say_what_that_rests_on(explorer: ExplorerPage) -> None:
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5)
+    whole = compute_map(spec)
+    row, column = np.argwhere(whole.certificate == Certificate.ENCLOSED)[0]
+    explorer.hover("basins", float(whole.x[column]), float(whole.ordinate[row]))
+    expect(explorer.text("invariant curves part it from every exit")).to_be_visible()
+
+
+def test_regular_and_chaotic_orbits_can_be_told_apart(explorer: ExplorerPage) -> None:
+    title = explorer.page.get_by_text("bounded and chaotic")
+    expect(title).to_have_count(0)
+    explorer.page.get_by_label("Regular or chaotic").click()
+    expect(title).to_be_visible()
+    expect(explorer.text(re.compile(r"\d% of the bounded orbits are chaotic"))).to_be_visible(timeout=120_000)
+    codes = explorer.column("character")
+    expected = judge_bounded_orbits(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5)))
+    chaotic = expected.character == Regularity.CHAOTIC
+    assert len(set(codes[chaotic])) == 1
+    explorer.page.get_by_label("Regular or chaotic").click()
+    expect(title).to_have_count(0)
 
 
 def test_two_visitors_do_not_disturb_each_other(open_explorer: Callable[..., ExplorerPage]) -> None:

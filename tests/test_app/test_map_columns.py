@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from app import palette
-from app.map_columns import longest_typical_time, map_columns
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
+from app.map_columns import character_column, longest_typical_time, map_columns
+from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Regularity, compute_map, judge_bounded_orbits
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +43,29 @@ def test_images_are_small_types_with_row_0_lowest(escape_map: EscapeMap) -> None
     ]
     assert (columns["x"], columns["y"], columns["dw"], columns["dh"]) == ([-1.0], [-0.8], [2.4], [1.6])
     np.testing.assert_array_equal(columns["escape_time"][0], escape_map.escape_time.astype(np.float32))
+
+
+def character_colours(columns: dict) -> np.ndarray:
+    return np.array(palette.CHARACTER_COLOURS)[columns["character"][0]]
+
+
+def test_regular_and_chaotic_orbits_have_colours_of_their_own() -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
+    regularity = judge_bounded_orbits(whole)
+    colours = character_colours(character_column(whole, regularity))
+    for character in (Regularity.REGULAR, Regularity.CHAOTIC):
+        assert set(colours[regularity.character == character]) == {palette.CHARACTERS[character].colour}
+    assert set(colours[whole.fate == Fate.FORBIDDEN]) == {palette.FORBIDDEN}
+
+
+def test_what_is_certified_as_a_torus_is_shown_as_regular_at_once() -> None:
+    whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
+    colours = character_colours(map_columns(whole))
+    certified = whole.certificate == Certificate.QUASI_PERIODIC
+    assert certified.any()
+    assert set(colours[certified]) == {palette.CHARACTERS[Regularity.REGULAR].colour}
+    assert set(colours[whole.certificate == Certificate.ENCLOSED]) == {palette.CHARACTERS[Regularity.NOT_JUDGED].colour}
+    assert set(colours[whole.fate >= 1]) == {palette.CHARACTERS[Regularity.NO_QUESTION].colour}
 
 
 def test_a_coarse_frame_fills_the_picture() -> None:

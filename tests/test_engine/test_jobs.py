@@ -9,7 +9,19 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Jobs, MapSpec, Orbit, OrbitSpec, Plane, compute_map, integrate_orbit
+from engine import (
+    CASES,
+    EscapeMap,
+    Jobs,
+    MapSpec,
+    Orbit,
+    OrbitSpec,
+    Plane,
+    RegularityMap,
+    compute_map,
+    integrate_orbit,
+    judge_bounded_orbits,
+)
 from engine.jobs import ResultCache
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
@@ -20,7 +32,7 @@ class Inbox:
     """Collects what a request delivers."""
 
     def __init__(self) -> None:
-        self.results: list[EscapeMap | Orbit] = []
+        self.results: list[EscapeMap | Orbit | RegularityMap] = []
         self.errors: list[Exception] = []
         self.first, self.done = threading.Event(), threading.Event()
 
@@ -49,6 +61,24 @@ def test_the_last_frame_is_the_map() -> None:
     expected = compute_map(QUICK)
     np.testing.assert_array_equal(inbox.results[-1].fate, expected.fate)
     np.testing.assert_array_equal(inbox.results[-1].escape_time, expected.escape_time)
+
+
+def test_the_bounded_orbits_of_a_kept_map_are_judged_without_computing_it_again() -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    jobs.request_map(QUICK, first.result, first.error)
+    assert first.done.wait(30)
+    wait_until_idle(jobs)
+    jobs.request_regularity(QUICK, second.result, second.error)
+    assert second.done.wait(30)
+    expected = judge_bounded_orbits(first.results[-1])
+    np.testing.assert_array_equal(second.results[-1].character, expected.character)
+
+
+def test_a_map_not_kept_is_computed_to_judge_its_orbits() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    jobs.request_regularity(QUICK, inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    assert inbox.results[-1].complete
 
 
 def test_a_finished_map_is_kept() -> None:

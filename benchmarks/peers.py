@@ -1,0 +1,156 @@
+"""The whole job of a map on one core: beside heyoka with exact events, SciPy's DOP853, and a plain compiled Runge-Kutta loop.
+
+All classify starts of the same map to the same t_max; the slower ones a random part of it. What is compared is orbits a second.
+
+Run: uv run python -m benchmarks.peers
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numba
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.integrate._ivp import dop853_coefficients as dop853
+
+from benchmarks.scaling import one_core
+from engine import CASES, Fate, MapSpec, Plane, Potential, compute_map, start_states
+from engine.lyapunov_orbits import exit_curves
+from engine.taylor.events import outside_channel
+from tests.peers import taylor_heyoka
+from tests.peers.exit_lines import exit_lines
+
+MAPS = (("I", 0.19), ("III", 0.45))
+T_MAX = 1000.0
+SAMPLES = {"heyoka": 300, "scipy": 12, "numba": 2000}
+HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-14
+
+
+def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
+    """Interior starts of a map and what became of them."""
+    result = compute_map(spec, executor=one_core())
+    x, ordinate = np.meshgrid(result.x, result.ordinate)
+    inside = (result.fate != Fate.FORBIDDEN) & (result.fate != Fate.OUTSIDE)
+    return start_states(spec.potential, spec.plane, float(spec.energy), x[inside], ordinate[inside]), result.fate[inside]
+
+
+def by_scipy(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
+    """As one writes it first: solve_ivp, an event for each exit."""
+    lines = exit_lines(potential, energy)
+
+    def motion(_t: float, s: np.ndarray) -> list[float]:
+        vx, vy = potential.gradient(s[0], s[1])
+        return [s[2], s[3], -vx, -vy]
+
+    def past(line):
+        def event(_t: float, s: np.ndarray) -> float:
+            return float(line.past(s[0], s[1]))
+
+        event.terminal, event.direction = True, 1.0
+        return event
+
+    def upward(_t: float, s: np.ndarray) -> float:
+        return s[1]
+
+    upward.direction = 1.0
+    events = [*map(past, lines), upward]
+    fate = np.zeros(len(states), int)
+    for n, state in enumerate(states):
+        tolerances = {"rtol": SCIPY_TOLERANCE, "atol": SCIPY_TOLERANCE}
+        solution = solve_ivp(motion, (0.0, T_MAX), state, "DOP853", events=events, **tolerances)
+        left = [line.channel for line, times in zip(lines, solution.t_events, strict=False) if len(times)]
+        fate[n] = left[0] if left else 0
+    return fate
+
+
+A, B, E5 = dop853.A[:12, :12].copy(), dop853.B.copy(), dop853.E5.copy()
+
+
+@numba.njit
+def runge_kutta(terms, states, t_max, tolerance, curves):
+    """Fates by an adaptive Runge-Kutta method of order 8, exits and crossings looked at after each step."""
+    fate = np.zeros(states.shape[0], np.int64)
+    crossings = np.zeros(states.shape[0], np.int64)
+    k = np.empty((13, 4))
+    for n in range(states.shape[0]):
+        s = states[n].copy()
+        t, h = 0.0, 0.1
+        while t < t_max:
+            h = min(h, t_max - t)
+            for stage in range(12):
+                point = s.copy()
+                for j in range(stage):
+                    point += h * A[stage, j] * k[j]
+                k[stage] = slope(terms, point)
+            new = s.copy()
+            for j in range(12):
+                new += h * B[j] * k[j]
+            k[12] = slope(terms, new)
+            error = np.zeros(4)
+            for j in range(13):
+                error += h * E5[j] * k[j]
+            size = np.abs(error).max() / tolerance
+            if size <= 1.0:
+                crossings[n] += s[1] < 0.0 and new[1] >= 0.0
+                s = new
+                t += h
+                channel = outside_channel(s[0], s[1], curves)
+                if channel > 0:
+                    fate[n] = channel
+                    break
+            h *= min(2.0, max(0.3, 0.9 * (1.0 / max(size, 1e-30)) ** 0.125))
+        states[n] = s
+    return fate, crossings
+
+
+@numba.njit
+def slope(terms, s):
+    fx = fy = 0.0
+    for i, j, c in terms:
+        if i > 0:
+            fx -= c * i * s[0] ** (i - 1) * s[1] ** j
+        if j > 0:
+            fy -= c * j * s[0] ** i * s[1] ** (j - 1)
+    return np.array([s[2], s[3], fx, fy])
+
+
+def by_numba(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
+    return runge_kutta(potential.terms, states.copy(), T_MAX, NUMBA_TOLERANCE, exit_curves(potential, energy))[0]
+
+
+def by_heyoka(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
+    return taylor_heyoka.classify(potential, exit_lines(potential, energy), states, T_MAX, HEYOKA_TOLERANCE).fate
+
+
+PEERS: dict[str, Callable[[Potential, float, np.ndarray], np.ndarray]] = {
+    "heyoka": by_heyoka,
+    "scipy": by_scipy,
+    "numba": by_numba,
+}
+
+
+def main() -> None:
+    print("| case | h | who | orbits | orbits/s | ours is faster by | other fates |\n|---|---|---|---|---|---|---|")
+    for case, energy in MAPS:
+        potential = CASES[case]
+        spec = MapSpec(potential, Plane.X_PX, energy, t_max=T_MAX)
+        states, fates = starts_of(spec)
+        begin = time.perf_counter()
+        compute_map(spec, executor=one_core())
+        ours = len(states) / (time.perf_counter() - begin)
+        print(f"| {case} | {energy} | this engine, whole map | {len(states)} | {ours:.0f} | 1 | 0 |")
+        chosen = np.random.default_rng(1).permutation(len(states))
+        for name, classify in PEERS.items():
+            part = chosen[: SAMPLES[name]]
+            classify(potential, energy, states[part[:1]])
+            begin = time.perf_counter()
+            theirs = classify(potential, energy, states[part])
+            rate = part.size / (time.perf_counter() - begin)
+            differ = np.count_nonzero(theirs != fates[part])
+            print(f"| {case} | {energy} | {name} | {part.size} | {rate:.1f} | {ours / rate:.0f} | {differ} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
