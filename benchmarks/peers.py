@@ -25,7 +25,7 @@ from tests.peers.exit_lines import exit_lines
 MAPS = (("I", 0.19), ("III", 0.45))
 T_MAX = 1000.0
 SAMPLES = {"heyoka": 300, "scipy": 12, "numba": 2000}
-HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-14
+HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-11
 
 
 def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
@@ -68,56 +68,73 @@ def by_scipy(potential: Potential, energy: float, states: np.ndarray) -> np.ndar
 A, B, E5 = dop853.A[:12, :12].copy(), dop853.B.copy(), dop853.E5.copy()
 
 
-@numba.njit
-def runge_kutta(terms, states, t_max, tolerance, curves):
+@numba.njit(fastmath=True)
+def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves):
     """Fates by an adaptive Runge-Kutta method of order 8, exits and crossings looked at after each step."""
     fate = np.zeros(states.shape[0], np.int64)
     crossings = np.zeros(states.shape[0], np.int64)
-    k = np.empty((13, 4))
+    k, point, new, error = np.empty((13, 4)), np.empty(4), np.empty(4), np.empty(4)
     for n in range(states.shape[0]):
-        s = states[n].copy()
+        s = states[n]
         t, h = 0.0, 0.1
+        slope(exponents, coefficients, s, k[0])
         while t < t_max:
             h = min(h, t_max - t)
-            for stage in range(12):
-                point = s.copy()
-                for j in range(stage):
-                    point += h * A[stage, j] * k[j]
-                k[stage] = slope(terms, point)
-            new = s.copy()
-            for j in range(12):
-                new += h * B[j] * k[j]
-            k[12] = slope(terms, new)
-            error = np.zeros(4)
-            for j in range(13):
-                error += h * E5[j] * k[j]
-            size = np.abs(error).max() / tolerance
+            for stage in range(1, 12):
+                for c in range(4):
+                    point[c] = s[c]
+                    for j in range(stage):
+                        point[c] += h * A[stage, j] * k[j, c]
+                slope(exponents, coefficients, point, k[stage])
+            for c in range(4):
+                new[c] = s[c]
+                for j in range(12):
+                    new[c] += h * B[j] * k[j, c]
+            slope(exponents, coefficients, new, k[12])
+            size = 0.0
+            for c in range(4):
+                error[c] = 0.0
+                for j in range(13):
+                    error[c] += h * E5[j] * k[j, c]
+                size = max(size, abs(error[c]) / tolerance)
             if size <= 1.0:
                 crossings[n] += s[1] < 0.0 and new[1] >= 0.0
-                s = new
+                s[:] = new
+                k[0] = k[12]
                 t += h
                 channel = outside_channel(s[0], s[1], curves)
                 if channel > 0:
                     fate[n] = channel
                     break
             h *= min(2.0, max(0.3, 0.9 * (1.0 / max(size, 1e-30)) ** 0.125))
-        states[n] = s
     return fate, crossings
 
 
-@numba.njit
-def slope(terms, s):
-    fx = fy = 0.0
-    for i, j, c in terms:
+@numba.njit(fastmath=True)
+def slope(exponents, coefficients, s, out):
+    out[0], out[1], out[2], out[3] = s[2], s[3], 0.0, 0.0
+    for term in range(coefficients.size):
+        i, j = exponents[term]
+        power_x = power_y = 1.0
+        for _ in range(i - 1):
+            power_x *= s[0]
+        for _ in range(j - 1):
+            power_y *= s[1]
         if i > 0:
-            fx -= c * i * s[0] ** (i - 1) * s[1] ** j
+            out[2] -= coefficients[term] * i * power_x * (power_y * s[1] if j > 0 else 1.0)
         if j > 0:
-            fy -= c * j * s[0] ** i * s[1] ** (j - 1)
-    return np.array([s[2], s[3], fx, fy])
+            out[3] -= coefficients[term] * j * power_y * (power_x * s[0] if i > 0 else 1.0)
 
 
 def by_numba(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
-    return runge_kutta(potential.terms, states.copy(), T_MAX, NUMBA_TOLERANCE, exit_curves(potential, energy))[0]
+    exponents = np.array([term[:2] for term in potential.terms])
+    coefficients = np.array([term[2] for term in potential.terms])
+    after, curves = states.copy(), exit_curves(potential, energy)
+    fate = runge_kutta(exponents, coefficients, after, T_MAX, NUMBA_TOLERANCE, curves)[0]
+    bounded = fate == 0
+    worst = np.max(np.abs(potential.energy(after[bounded]) / energy - 1)) if bounded.any() else np.nan
+    print(f"(numba: worst energy error of a bounded orbit {worst:.1e})")
+    return fate
 
 
 def by_heyoka(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from engine.taylor.events import NOT_COMPUTED
 T_MAX = 1e5
 ORBITS = 64
 ENERGIES = {"I": 0.12, "II": 0.16, "III": 0.24}
-TRIALS = ((17, 1e-16), (18, 1e-16), (19, 1e-16), (19, 3e-16), (19, 5e-16), (20, 5e-16), (22, 1e-15))
+TRIALS = ((17, 1e-15), (18, 1e-15), (18, 3e-15), (19, 1e-15), (19, 3e-15), (19, 1e-14), (20, 3e-15), (22, 1e-14))
 
 
 def bounded_starts(case: str) -> np.ndarray:

@@ -24,7 +24,7 @@ from engine.taylor.build import load_kernels
 CERTIFIED_DIGITS = 8.0
 """Digits to which both averages of two windows must agree for a torus.
 
-The most that an orbit which escapes later reached, of all that were tried, is in `benchmarks/README.md`.
+Of 1975 orbits on five maps that escape after t = 1000, the best reached 6.1.
 """
 
 # Shape β of the Kaiser window: higher ones fade out further, and need a longer window to do so.

@@ -18,6 +18,7 @@ _FORMULAS = {
 }
 _ENERGY_STEP = 0.001
 _PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
+_ONE_LINE = {"& .MuiFormControlLabel-label": {"whiteSpace": "nowrap"}}
 
 
 class Controls:
@@ -37,14 +38,14 @@ class Controls:
         self.resolution = pmui.Select(
             label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small"
         )
-        self.judge = pmui.Switch(label="Regular or chaotic", value=state.judge, width=180)
+        self.judge = pmui.Switch(label="Regular or chaotic", value=state.judge, width=190, sx=_ONE_LINE)
         self.facts = pn.pane.HTML(margin=(0, 10))
         self._follow_case()
         self._connect()
 
     def layout(self) -> pn.viewable.Viewable:
         """A strip that wraps on narrow screens."""
-        energy = pn.Column(self.energy, min_width=300, max_width=560, sizing_mode="stretch_width", margin=(0, 20))
+        energy = pn.Column(self.energy, min_width=300, max_width=430, sizing_mode="stretch_width", margin=(0, 20))
         choices = pn.Column(self.case, min_width=150), pn.Column(self.plane, min_width=230)
         strip = pn.FlexBox(
             *choices,

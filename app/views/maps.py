@@ -76,15 +76,17 @@ class MapsView:
             name: pn.Column(pn.pane.Bokeh(self.figures[name], margin=0), self._legends[name], margin=(0, 6), width=FRAME + 75)
             for name in TITLES
         }
+        self._row = pn.FlexBox(justify_content="center", gap="4px")
         self.show_characters(False)
 
     def layout(self) -> pn.viewable.Viewable:
         """The pictures in a row that wraps."""
-        return pn.FlexBox(*self._columns.values(), justify_content="center", gap="4px")
+        return self._row
 
     def show_characters(self, visible: bool) -> None:
         """Show or hide the picture of regular and chaotic orbits."""
-        self._columns["characters"].visible = visible
+        # A picture that is only hidden would be painted with every frame all the same.
+        self._row.objects = [column for name, column in self._columns.items() if visible or name != "characters"]
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame; the ranges follow a new window."""

@@ -17,8 +17,9 @@ Four functions come out for each potential, every one a loop over lanes `i`:
 from __future__ import annotations
 
 import functools
+import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 ORDER = 19
@@ -129,22 +130,38 @@ def _series(monomial: Monomial) -> str:
     return {_X: "x", _Y: "y"}.get(monomial, f"x{monomial[0]}y{monomial[1]}_")
 
 
-def _sum_of_products(pairs: list[tuple[str, str]]) -> str:
-    """a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
+def _sum_of_products(pairs: list[tuple[str, str]], subtracted: Sequence[tuple[str, str]] = ()) -> str:
+    """a·b + c·d + … − e·f − …, nested so that each addition contracts into a multiply-add."""
     text = "*".join(pairs[0])
     for left, right in pairs[1:]:
         text = f"({text} + {left}*{right})"
+    for left, right in subtracted:
+        text = f"({text} - {left}*{right})"
     return text
 
 
 def _cauchy(left: str, right: str, k: int) -> str:
     """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
     if left == right:
-        pairs = [(f"{left}{j}", f"{left}{k - j}") for j in reversed(range((k + 1) // 2))]
-        middle = [(f"(0.5*{left}{k // 2})", f"{left}{k // 2}")] if k % 2 == 0 else []
-        return _sum_of_products([*middle, *pairs])
+        return _sum_of_products(_half_square(left, k))
     order = sorted(range(k + 1), key=lambda j: max(j, k - j))
     return _sum_of_products([(f"{left}{j}", f"{right}{k - j}") for j in order])
+
+
+def _half_square(factor: str, k: int) -> list[tuple[str, str]]:
+    pairs = [(f"{factor}{j}", f"{factor}{k - j}") for j in reversed(range((k + 1) // 2))]
+    middle = [(f"(0.5*{factor}{k // 2})", f"{factor}{k // 2}")] if k % 2 == 0 else []
+    return [*middle, *pairs]
+
+
+def _find_difference(products: list[_Product], polynomials: Sequence[Polynomial]) -> tuple[_Product, _Product] | None:
+    """Two squares that enter everything as their difference only: one series then does for both."""
+    factors = {monomial for p in products for monomial in (p.left, p.right)}
+    squares = [p for p in products if p.left == p.right and p.monomial not in factors]
+    for one, other in itertools.combinations(squares, 2):
+        if all(polynomial.get(one.monomial, 0.0) == -polynomial.get(other.monomial, 0.0) for polynomial in polynomials):
+            return one, other
+    return None
 
 
 def _linear_combination(polynomial: Polynomial, scales: Mapping[Monomial, float], k: int, factor: float) -> str:
@@ -157,12 +174,20 @@ def _linear_combination(polynomial: Polynomial, scales: Mapping[Monomial, float]
     return " + ".join(parts) or "0.0"
 
 
-def _recurrence(vx: Polynomial, vy: Polynomial, products: list[_Product]) -> list[str]:
-    """Statements for x0 … x_ORDER, y0 … y_ORDER and the products they need."""
+def _recurrence(vx: Polynomial, vy: Polynomial, products: list[_Product], also: Sequence[Polynomial] = ()) -> list[str]:
+    """Statements for x0 … x_ORDER, y0 … y_ORDER and the products that they, and the polynomials `also`, need."""
     lines = ["x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]"]
     scales = _scales(products)
+    difference = _find_difference(products, (vx, vy, *also))
+    if difference is not None:
+        one, other = difference
+        products = [p for p in products if p not in difference]
+        vx, vy = ({m: c for m, c in force.items() if m != other.monomial} for force in (vx, vy))
     for k in range(ORDER - 1):
         lines += [f"{_series(p.monomial)}{k} = {_cauchy(_series(p.left), _series(p.right), k)}" for p in products]
+        if difference is not None:
+            halves = (_half_square(_series(p.left), k) for p in difference)
+            lines.append(f"{_series(one.monomial)}{k} = {_sum_of_products(*halves)}")
         factor = -1.0 / ((k + 1) * (k + 2))
         lines += [f"{name}{k + 2} = {_linear_combination(force, scales, k, factor)}" for name, force in (("x", vx), ("y", vy))]
     return lines
@@ -288,7 +313,7 @@ def _tangent(terms: Polynomial) -> str:
     polynomials = (vx, vy, *hessian.values())
     products = plan_products({m for polynomial in polynomials for m in polynomial})
     scales = _scales(products)
-    body = [*_recurrence(vx, vy, products), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
+    body = [*_recurrence(vx, vy, products, tuple(hessian.values())), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
     for k in range(ORDER - 1):
         body += [f"{name}{k} = {_linear_combination(polynomial, scales, k, -1.0)}" for name, polynomial in hessian.items()]
         for name, pairs in forces.items():

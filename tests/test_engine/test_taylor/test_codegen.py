@@ -201,3 +201,15 @@ def test_the_step_is_the_sixteenth_root_to_within_6_percent(exponent: int) -> No
     step(n, tolerance, np.inf, gates, *states.T.copy(), np.zeros(n), *new, h, flag, crossed)
     exact = min((tolerance / size) ** (1 / 16), 1.0)
     assert 0.999 * exact <= h[0] <= 1.065 * exact
+
+
+def test_squares_that_enter_as_their_difference_become_one_series() -> None:
+    step = generate_source(CASES["II"].terms, 0).split("def glide")[0]
+    assert ("x2y0_0 = " in step) != ("x0y2_0 = " in step)
+
+
+def test_squares_that_enter_on_their_own_do_not() -> None:
+    # V_x holds x², V_y holds y²: no difference anywhere.
+    source = generate_source(((2, 0, 0.5), (0, 2, 0.5), (3, 0, 0.1), (0, 3, 0.2)), 0)
+    assert "x2y0_0 = " in source
+    assert "x0y2_0 = " in source
