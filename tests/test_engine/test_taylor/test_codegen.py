@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import platform
+import re
 
 import heyoka as hy
 import numpy as np
@@ -10,6 +12,7 @@ import pytest
 import sympy
 from hypothesis import given
 from hypothesis import strategies as st
+from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.planes import Plane
@@ -213,3 +216,22 @@ def test_squares_that_enter_on_their_own_do_not() -> None:
     source = generate_source(((2, 0, 0.5), (0, 2, 0.5), (3, 0, 0.1), (0, 3, 0.2)), 0)
     assert "x2y0_0 = " in source
     assert "x0y2_0 = " in source
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="reads the assembly of x86-64")
+@pytest.mark.parametrize("name", CASES)
+def test_a_step_is_vector_code_throughout(name: str) -> None:
+    """One library call, or one branch, in the loop and the compiler gives up: every product is then scalar."""
+    n = 16
+    # Compiled here: what comes from the cache cannot be inspected.
+    namespace = {"np": np, "kernel": njit(error_model="numpy", fastmath={"contract"})}
+    exec(generate_source(CASES[name].terms, CASES[name].channels), namespace)
+    flags = np.zeros((2, n), np.int64)
+    namespace["step"](n, TOLERANCE, np.inf, np.zeros((CASES[name].channels, 3)), *np.zeros((11, n)), *flags)
+    assembly = "".join(namespace["step"].inspect_asm().values())
+    packed, scalar = (len(re.findall(rf"\bv(?:fn?m|mul)\w*{kind}\b", assembly)) for kind in ("pd", "sd"))
+    assert packed > 300
+    # The remainder of a loop that is no whole number of vectors is there too, and never runs.
+    assert packed >= scalar
+    assert "sqrt" not in assembly
+    assert "call" not in assembly.split("vfm", 1)[1].rsplit("vfm", 1)[0]
