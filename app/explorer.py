@@ -9,6 +9,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.controller import Controller
+from app.link import read_link, write_link
 from app.view_state import ViewState
 from app.views.controls import Controls
 from app.views.maps import MapsView
@@ -18,6 +19,14 @@ from app.views.verdict import VerdictView
 from app.views.zoom_buttons import ZoomButtons
 from app.zoom_history import ZoomHistory
 from engine import EscapeMap, Jobs, Orbit, Potential, RegularityMap, Window
+
+# What a link holds of the view state.
+_LINKED = ("case", "plane", "energy", "t_max", "resolution", "window", "start", "judge")
+
+
+def _arguments() -> dict[str, list[bytes]]:
+    """The parameters in the page's address."""
+    return dict(pn.state.session_args or {})
 
 
 @cache
@@ -32,7 +41,8 @@ class Explorer:
     def __init__(self) -> None:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
-        self.state = ViewState()
+        values, self._problems = read_link({name: texts[0].decode(errors="replace") for name, texts in _arguments().items()})
+        self.state = ViewState(**values)
         self.maps = MapsView(self._choose_start, self._zoom)
         self.history = ZoomHistory()
         self.zoom_buttons = ZoomButtons(self.history, self._go_to)
@@ -49,9 +59,14 @@ class Explorer:
         self.state.param.watch(lambda event: self.verdict.follow_plane(event.new), "plane")
         self.state.param.watch(lambda event: self._mark_start(event.new), "start")
         self.state.param.watch(lambda event: self.maps.show_characters(event.new), "judge")
+        self.state.param.watch(lambda *events: self._write_link(), list(_LINKED))
         self.verdict.follow_plane(self.state.plane)
+        self.maps.show_characters(self.state.judge)
+        if self.state.window is not None:
+            self.history.visit(self.state.window)
+            self.zoom_buttons.follow(self.state.window)
         pn.state.on_session_destroyed(self.controller.close)
-        pn.state.onload(self.controller.request_map)
+        pn.state.onload(self._begin)
 
     def layout(self) -> pn.viewable.Viewable:
         """The whole page."""
@@ -68,6 +83,19 @@ class Explorer:
             margin=(0, 10),
         )
         return pmui.Page(title="Escape Explorer", main=[main], theme_toggle=False)
+
+    def _begin(self) -> None:
+        """The page is there: show what the link, or nobody, asked for."""
+        self.controller.request_map()
+        if self.state.start is not None:
+            self._mark_start(self.state.start)
+            self.controller.request_orbit()
+        if self._problems:
+            self.progress.warn(" ".join(self._problems))
+
+    def _write_link(self) -> None:
+        if pn.state.location is not None:
+            pn.state.location.search = write_link(self.state)
 
     def _choose_start(self, x: float, ordinate: float) -> None:
         self.state.start = (x, ordinate)

@@ -78,7 +78,7 @@ class Certification:
     def run(self, on_round: Callable[[], None]) -> None:
         """Certify what can be; `on_round` is called whenever some more may have been."""
         for window, chosen in self._rounds():
-            if self._cancel is not None and self._cancel.is_set():
+            if self._is_cancelled():
                 return
             self._digits[chosen] = count_agreeing_digits(self.potential, self.states[chosen], window, **self._pool)
             certified = chosen[self._digits[chosen] >= CERTIFIED_DIGITS]
@@ -120,6 +120,9 @@ class Certification:
             if saved * self._time_left < chosen.size * duration:
                 return
 
+    def _is_cancelled(self) -> bool:
+        return self._cancel is not None and self._cancel.is_set()
+
     def _open(self) -> np.ndarray:
         still_open: np.ndarray = self.certificate == Certificate.NONE
         return still_open
@@ -127,8 +130,10 @@ class Certification:
     def _build_walls(self, certified: np.ndarray) -> None:
         certified = certified[:: -(-certified.size // _CURVES_A_ROUND) or 1]
         points = find_section_points(self.potential, self.states[certified], _CURVE_POINTS, _CURVE_TIME, **self._pool)
-        curves = [find_invariant_curve(p[np.isfinite(p).all(axis=1)]) for p in points]
+        curves = [None if self._is_cancelled() else find_invariant_curve(p[np.isfinite(p).all(axis=1)]) for p in points]
         for number in _from_both_ends([0.0 if curve is None else curve.area for curve in curves]):
+            if self._is_cancelled():
+                return
             curve = curves[number]
             # Within walls already, a torus parts nothing more.
             if curve is not None and not self._parted[certified[number]].all():

@@ -57,6 +57,10 @@ class ProgressView:
         self._set(running=False, label="Go on", text=f"Stopped: {self.text.object}")
         self.button.disabled = False
 
+    def warn(self, sentence: str) -> None:
+        """Something was asked for that cannot be had; the map is none the worse for it."""
+        self.problem.param.update(object=sentence, visible=True)
+
     def fail(self, sentence: str) -> None:
         """The map cannot be had; the last good picture stays."""
         self._set(running=False, label="Cancel", text="")

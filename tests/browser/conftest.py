@@ -86,17 +86,17 @@ class Watch:
 
 @pytest.fixture
 def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
-    """Opens the page in a visitor of its own, as often as called, at a given width and height of the screen."""
+    """Opens the page, or a link to a view, in a visitor of its own, at a given width and height of the screen."""
     contexts: list[BrowserContext] = []
     watches: list[Watch] = []
 
-    def open_page(width: int = 1600, height: int = 1400) -> ExplorerPage:
+    def open_page(width: int = 1600, height: int = 1400, link: str = "") -> ExplorerPage:
         context = chromium.new_context(viewport={"width": width, "height": height})
         contexts.append(context)
         page = context.new_page()
         page.set_default_timeout(PATIENCE_MS)
         watches.append(Watch(page))
-        page.goto(server)
+        page.goto(server + link)
         explorer = ExplorerPage(page)
         explorer.wait_until_complete()
         return explorer

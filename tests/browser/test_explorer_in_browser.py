@@ -219,6 +219,37 @@ def test_regular_and_chaotic_orbits_can_be_told_apart(explorer: ExplorerPage) ->
     expect(title).not_to_be_visible()
 
 
+def test_the_address_opens_the_same_view_elsewhere(open_explorer: Callable[..., ExplorerPage]) -> None:
+    here = open_explorer()
+    here.forget_pixels()
+    here.press("III")
+    here.wait_for_new_pixels()
+    here.type_number("h exactly", "0.4567")
+    here.forget_pixels()
+    here.choose("Resolution", "113 × 113")
+    here.page.wait_for_url(re.compile(r"h=0\.4567.*resolution=113"))
+    here.wait_for_new_pixels()
+    here.wait_until_complete()
+    here.click("basins", 0.1, 0.05)
+    here.page.wait_for_url(re.compile("start="))
+    expect(here.text(re.compile("Escaped through|Bounded until"))).to_be_visible()
+    here.wait_until_complete()
+    there = open_explorer(link="?" + here.page.url.split("?")[1])
+    expect(there.text(re.compile("Escaped through|Bounded until"))).to_be_visible()
+    np.testing.assert_array_equal(there.column("fate"), here.column("fate"))
+    assert there.column("fate").shape == (113, 113)
+    assert there.page.get_by_label("h exactly", exact=True).first.input_value() == "0.4567"
+
+
+def test_a_bad_link_says_what_is_wrong_and_shows_the_rest(open_explorer: Callable[..., ExplorerPage]) -> None:
+    page = open_explorer(link="?case=II&h=%3Cimg%20src=x%20onerror=alert(1)%3E&t_max=100").page
+    expect(
+        page.get_by_text("In the link, h=?img src?x onerror?alert?1?? is of no use: it must be a finite number.")
+    ).to_be_visible()
+    expect(page.get_by_text("3 exit channels")).to_be_visible()
+    assert page.locator("img[src=x]").count() == 0
+
+
 def test_two_visitors_do_not_disturb_each_other(open_explorer: Callable[..., ExplorerPage]) -> None:
     one, other = open_explorer(), open_explorer()
     before = one.column("fate")

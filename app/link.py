@@ -1,0 +1,106 @@
+"""The view as a link: everything that was chosen, at full precision, in the address of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import astuple
+from typing import Any
+from urllib.parse import urlencode
+
+import numpy as np
+
+from app.paper_energies import ENERGIES
+from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
+from engine import CASES, Plane, Window
+
+LONGEST_VALUE = 200
+"""Most characters that a value in a link may have."""
+
+_SHOWN = 40
+
+
+def write_link(state: ViewState) -> str:
+    """The query string, with its question mark, that opens the page on this view."""
+    chosen: dict[str, Any] = {
+        "case": state.case,
+        "plane": state.plane.name.lower(),
+        "h": repr(float(state.energy)),
+        "t_max": f"{state.t_max:g}",
+        "resolution": state.resolution,
+    }
+    if state.window is not None:
+        chosen["window"] = _joined(astuple(state.window))
+    if state.start is not None:
+        chosen["start"] = _joined(state.start)
+    if state.judge:
+        chosen["judge"] = "yes"
+    return "?" + urlencode(chosen, safe=",")
+
+
+def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
+    """What a link asks for, as values of the view state, and a sentence for each value that is of no use.
+
+    Values that are of no use are left out, as are parameters that nobody here knows: other sites append their own.
+    """
+    values: dict[str, Any] = {}
+    problems: list[str] = []
+    for name, (attribute, read, legal) in _READERS.items():
+        if name not in parameters:
+            continue
+        text = parameters[name]
+        try:
+            if len(text) > LONGEST_VALUE:
+                raise ValueError
+            values[attribute] = read(text)
+        except (ValueError, KeyError):
+            problems.append(f"In the link, {name}={_shown(text)} is of no use: it must be {legal}.")
+    if "case" in values and "energy" not in values:
+        values["energy"] = ENERGIES[values["case"]].first
+    return values, problems
+
+
+def _shown(text: str) -> str:
+    """A visitor's text as it may be shown: short, and without a character that any markup gives a meaning to."""
+    safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_SHOWN])
+    return safe + " …" if len(text) > _SHOWN else safe
+
+
+def _joined(numbers: tuple[float, ...]) -> str:
+    return ",".join(repr(float(number)) for number in numbers)
+
+
+def _read_number(text: str) -> float:
+    number = float(text)
+    if not np.isfinite(number):
+        raise ValueError
+    return number
+
+
+def _read_numbers(text: str, count: int) -> tuple[float, ...]:
+    numbers = tuple(map(_read_number, text.split(",")))
+    if len(numbers) != count:
+        raise ValueError
+    return numbers
+
+
+def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
+    return lambda text: choices[text]
+
+
+_CASES = {name: name for name in CASES}
+_PLANES = {plane.name.lower(): plane for plane in Plane}
+_TIMES = {f"{t_max:g}": t_max for t_max in T_MAX_CHOICES.values()}
+_RESOLUTIONS = {str(side): side for side in RESOLUTION_CHOICES.values()}
+_SWITCH = {"yes": True, "no": False}
+
+# For each parameter: what it sets, how it is read, and what is legal.
+_READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
+    "case": ("case", _one_of(_CASES), f"one of {', '.join(_CASES)}"),
+    "plane": ("plane", _one_of(_PLANES), f"one of {', '.join(_PLANES)}"),
+    "h": ("energy", _read_number, "a finite number"),
+    "t_max": ("t_max", _one_of(_TIMES), f"one of {', '.join(_TIMES)}"),
+    "resolution": ("resolution", _one_of(_RESOLUTIONS), f"one of {', '.join(_RESOLUTIONS)}"),
+    "window": ("window", lambda text: Window(*_read_numbers(text, 4)), "x_low,x_high,ordinate_low,ordinate_high"),
+    "start": ("start", lambda text: _read_numbers(text, 2), "two numbers, x and the ordinate"),
+    "judge": ("judge", _one_of(_SWITCH), "yes or no"),
+}
