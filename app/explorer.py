@@ -9,7 +9,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.controller import Controller
-from app.link import read_link, write_link
+from app.link import LINKED, read_link, write_link
 from app.view_state import ViewState
 from app.views.controls import Controls
 from app.views.maps import MapsView
@@ -19,9 +19,6 @@ from app.views.verdict import VerdictView
 from app.views.zoom_buttons import ZoomButtons
 from app.zoom_history import ZoomHistory
 from engine import EscapeMap, Jobs, Orbit, Potential, RegularityMap, Window
-
-# What a link holds of the view state.
-_LINKED = ("case", "plane", "energy", "t_max", "resolution", "window", "start", "judge")
 
 
 def _arguments() -> dict[str, list[bytes]]:
@@ -59,7 +56,7 @@ class Explorer:
         self.state.param.watch(lambda event: self.verdict.follow_plane(event.new), "plane")
         self.state.param.watch(lambda event: self._mark_start(event.new), "start")
         self.state.param.watch(lambda event: self.maps.show_characters(event.new), "judge")
-        self.state.param.watch(lambda *events: self._write_link(), list(_LINKED))
+        self.state.param.watch(lambda *events: self._write_link(), list(LINKED))
         self.verdict.follow_plane(self.state.plane)
         self.maps.show_characters(self.state.judge)
         if self.state.window is not None:

@@ -104,3 +104,6 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "start": ("start", lambda text: _read_numbers(text, 2), "two numbers, x and the ordinate"),
     "judge": ("judge", _one_of(_SWITCH), "yes or no"),
 }
+
+LINKED = tuple(attribute for attribute, _, _ in _READERS.values())
+"""What a link holds of the view state."""

@@ -25,7 +25,7 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
         "crossings": [crossings.astype(np.int32)],
         "escape_time": [shown["escape_time"].astype(np.float32)],
         "certificate": [frame.certificate.astype(np.uint8)],
-        "character": [_character_codes(fate, _known_from_certificates(frame))],
+        "character": [_codes(fate, _known_from_certificates(frame), bounded_too=True)],
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
@@ -36,7 +36,7 @@ def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
 
 def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, list[Any]]:
     """The one column that the judging of bounded orbits changes."""
-    return {"character": [_character_codes(frame.fate, regularity.character)]}
+    return {"character": [_codes(frame.fate, regularity.character, bounded_too=True)]}
 
 
 def _known_from_certificates(frame: EscapeMap) -> np.ndarray:
@@ -46,19 +46,12 @@ def _known_from_certificates(frame: EscapeMap) -> np.ndarray:
     return known
 
 
-def _character_codes(fate: np.ndarray, character: np.ndarray) -> np.ndarray:
-    codes = (_FIRST_CLASS + character).astype(np.uint8)
+def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
+    """Pixel codes: outcomes by their place in the palette, escaped pixels, or bounded ones too, by their class after those."""
+    codes = (_FIRST_CLASS + classes).astype(np.uint8)
     for outcome, code in _OUTCOME_CODES.items():
-        if outcome is not Fate.BOUNDED:
+        if not (bounded_too and outcome is Fate.BOUNDED):
             codes[fate == outcome] = code
-    return codes
-
-
-def _codes(fate: np.ndarray, escaped_class: np.ndarray) -> np.ndarray:
-    """Pixel codes: outcomes by their place in the palette, escaped pixels by a class of their own after those."""
-    codes = (_FIRST_CLASS + escaped_class).astype(np.uint8)
-    for outcome, code in _OUTCOME_CODES.items():
-        codes[fate == outcome] = code
     return codes
 
 

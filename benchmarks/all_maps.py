@@ -37,9 +37,8 @@ def timed(spec: MapSpec) -> tuple[float, EscapeMap]:
 def shares(result: EscapeMap) -> str:
     """Bounded share of the interior; of these, the share of each certificate."""
     bounded = result.fate == Fate.BOUNDED
-    interior = (result.fate != Fate.FORBIDDEN) & (result.fate != Fate.OUTSIDE)
     kinds = [np.count_nonzero(result.certificate[bounded] == code) / max(bounded.sum(), 1) for code in Certificate if code]
-    return " | ".join(f"{share:.1%}" for share in (bounded.sum() / interior.sum(), *kinds))
+    return " | ".join(f"{share:.1%}" for share in (bounded.sum() / result.interior.sum(), *kinds))
 
 
 def title(spec: MapSpec) -> str:

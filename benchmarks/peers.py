@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from benchmarks.scaling import one_core
-from engine import CASES, Fate, MapSpec, Plane, Potential, compute_map, start_states
+from engine import CASES, MapSpec, Plane, Potential, compute_map, start_states
 from engine.lyapunov_orbits import exit_curves
 from engine.taylor.events import outside_channel
 from tests.peers import taylor_heyoka
@@ -32,7 +32,7 @@ def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
     """Interior starts of a map and what became of them."""
     result = compute_map(spec, executor=one_core())
     x, ordinate = np.meshgrid(result.x, result.ordinate)
-    inside = (result.fate != Fate.FORBIDDEN) & (result.fate != Fate.OUTSIDE)
+    inside = result.interior
     return start_states(spec.potential, spec.plane, float(spec.energy), x[inside], ordinate[inside]), result.fate[inside]
 
 

@@ -56,7 +56,7 @@ def multiplications(potential: Potential) -> int:
 
 @numba.njit(fastmath={"contract"})
 def chains(repeats, a):
-    """Thirty-two multiply-adds on each number, in vectors; enough independent ones to hide their latency."""
+    """Eight multiply-adds on each number, in vectors; enough independent ones to hide their latency."""
     for _ in range(repeats):
         for i in range(a.shape[0]):
             v = a[i]

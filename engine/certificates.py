@@ -10,7 +10,8 @@ class Certificate(IntEnum):
 
     ``NONE`` stands where nothing is called bounded. ``INTEGRATED``: followed to t_max. ``CLOSED``: its energy is below
     every saddle. ``QUASI_PERIODIC``: its weighted averages converge as only those of a torus do. ``ENCLOSED``: invariant
-    curves of certified orbits part it from every exit; it may be chaotic itself. ``MIRRORED``: the mirror image of one of these.
+    curves of certified orbits part it from every exit; it may be chaotic itself. ``MIRRORED``: the mirror image of an orbit
+    certified early.
     """
 
     NONE = 0

@@ -14,13 +14,12 @@ from engine.entries import find_entry_points
 from engine.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.orbit_batches import LANES
 from engine.potentials import Potential
-from engine.quasi_periodicity import CERTIFIED_DIGITS, count_agreeing_digits
+from engine.quasi_periodicity import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.sections import find_section_points
 
 SHORTEST_T_MAX = 1e4
 """Below this t_max, following all orbits costs no more than certifying them."""
 
-_WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
 # To how many digits an orbit's averages over the window before must have agreed to make the next one worth trying.
 _PROMISING = 3.5
 # A window is tried on every promising orbit when it takes less than this share of the time still to be covered; a longer one only
@@ -89,7 +88,7 @@ class Certification:
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
         """(window, orbits) of each round; what a round certifies is taken into account in the next."""
-        for window in _WINDOWS:
+        for window in WINDOWS:
             promising = self._digits >= _PROMISING
             if 2.0 * window <= _SHARE_OF_TIME * self._time_left:
                 yield from ((window, chosen) for chosen in self._lattices(promising))

@@ -6,11 +6,11 @@ import functools
 
 import numpy as np
 
-from engine.lyapunov_orbits import LyapunovOrbit, channel_axes, exit_curves, find_lyapunov_orbits
+from engine.lyapunov_orbits import LyapunovOrbit, channel_axes, find_lyapunov_orbits, find_outside_exits
 from engine.orbit_batches import SerialExecutor
+from engine.planes import Plane, required_energy
 from engine.potentials import Potential
 from engine.sections import find_section_points
-from engine.taylor.events import find_outside
 
 # Starts over each exit: positions along the Lyapunov orbit, its ends left out, and directions about straight inward.
 _POSITIONS = slice(10, -10, 10)
@@ -46,11 +46,9 @@ def _entries(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.nd
 
 def _inside(potential: Potential, energy: float, points: np.ndarray) -> np.ndarray:
     """Which points are real and within all exits; an orbit that has left again is followed by nobody."""
-    x, zero = points[:, 0], np.zeros(len(points))
+    x, px = points.T
     with np.errstate(invalid="ignore"):
-        possible = 0.5 * points[:, 1] ** 2 + potential.value(x, zero) <= energy
-    outside = find_outside(
-        np.where(possible, x, 0.0), zero, exit_curves(potential, energy)[None], np.zeros(len(points), np.int64)
-    )
+        possible = required_energy(potential, Plane.X_PX, x, px) <= energy
+    outside = find_outside_exits(potential, energy, np.where(possible, x, 0.0), np.zeros_like(x))
     inside: np.ndarray = possible & (outside == 0)
     return inside

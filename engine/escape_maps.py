@@ -16,6 +16,17 @@ from engine.map_specs import MapSpec
 from engine.orbit_batches import OrbitBatch
 from engine.taylor.codegen import ORDER, TOLERANCE
 
+IMAGES: dict[str, tuple[type, float]] = {
+    "fate": (np.int8, Fate.NOT_COMPUTED),
+    "escape_time": (np.float64, np.nan),
+    "crossings": (np.int32, 0),
+    "energy_error": (np.float64, np.nan),
+    "certificate": (np.int8, Certificate.NONE),
+    "outside": (np.int8, 0),
+    "started": (np.bool_, False),
+}
+"""The arrays of a map that have a number for each pixel: their type, and the number where nothing is known."""
+
 
 @dataclass(frozen=True, eq=False)
 class EscapeMap:
@@ -65,10 +76,14 @@ class EscapeMap:
     batch: OrbitBatch | None = field(default=None, repr=False)
 
     @property
+    def interior(self) -> np.ndarray:
+        """(rows, columns) bool, the starts that exist and are not outside."""
+        return find_interior(self.fate)
+
+    @property
     def undecided(self) -> float:
         """Share of the interior starts whose fate is still open."""
-        interior = (self.fate != Fate.FORBIDDEN) & (self.fate != Fate.OUTSIDE)
-        return float(np.mean(self.fate[interior] == Fate.NOT_COMPUTED)) if interior.any() else 0.0
+        return float(np.mean(self.fate[self.interior] == Fate.NOT_COMPUTED)) if self.interior.any() else 0.0
 
     @property
     def worst_energy_error(self) -> float:
@@ -79,10 +94,8 @@ class EscapeMap:
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays, the state to go on from included."""
-        arrays = (
-            self.fate, self.escape_time, self.crossings, self.energy_error, self.certificate, self.outside, self.started,
-        )  # fmt: skip
-        return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
+        images: list[np.ndarray] = [getattr(self, name) for name in IMAGES]
+        return sum(image.nbytes for image in images) + (self.batch.nbytes if self.batch else 0)
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
         """Share of the starts for each channel, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
@@ -93,7 +106,7 @@ class EscapeMap:
         fate = self.fate
         if count_outside:
             fate = np.where(fate == Fate.OUTSIDE, self.outside, fate)
-        fate = fate[(fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)]
+        fate = fate[find_interior(fate)]
         codes = (*range(1, self.spec.potential.channels + 1), Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
         return {int(code): float(np.mean(fate == code)) if fate.size else 0.0 for code in codes}
 
@@ -106,8 +119,7 @@ class EscapeMap:
         use = np.where(
             self.started, np.arange(self.fate.size).reshape(self.fate.shape), rows[:, None] * self.fate.shape[1] + columns
         )
-        empty = (self.fate == Fate.FORBIDDEN) | (self.fate == Fate.OUTSIDE)
-        use = np.where(empty, np.arange(self.fate.size).reshape(self.fate.shape), use)
+        use = np.where(self.interior, use, np.arange(self.fate.size).reshape(self.fate.shape))
         return {name: getattr(self, name).ravel()[use] for name in names}
 
     def to_xarray(self) -> xr.Dataset:
@@ -151,6 +163,12 @@ class EscapeMap:
 
 def _codes(codes: type[IntEnum]) -> dict[str, str]:
     return {"codes": "; ".join(f"{code.value}: {code.name.lower()}" for code in codes)}
+
+
+def find_interior(fate: np.ndarray) -> np.ndarray:
+    """bool, shaped like the codes: the starts that exist and are not outside."""
+    interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
+    return interior
 
 
 def anchors(size: int, stride: int) -> np.ndarray:

@@ -22,24 +22,25 @@ def glide(
     potential: Potential,
     states: np.ndarray,
     *arguments: Any,
+    shape: tuple[int, ...] = (),
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> np.ndarray:
-    """(n, …): what `work(potential, tile, *arguments)` makes of each tile of the (n, columns) states.
+    """(n, *shape): what `work(potential, tile, *arguments)` makes of each tile of the (n, columns) states.
 
     A tile is a (columns, LANES) array of its own, the last one filled up with copies of its last orbit. `work` is a function of
-    a module, so that processes elsewhere can run it; it returns (LANES, …) numbers. When `cancel` is set, orbits not
+    a module, so that processes elsewhere can run it; it returns (LANES, *shape) numbers. When `cancel` is set, orbits not
     reached are NaN.
     """
     executor = executor or default_executor()
     ahead = 2 * getattr(executor, "_max_workers", 2)
     running: deque[tuple[int, Future[np.ndarray]]] = deque()
-    done: list[tuple[int, np.ndarray]] = []
+    results = np.full((len(states), *shape), np.nan)
 
     def collect(most: int) -> None:
         while len(running) > most:
             begin, future = running.popleft()
-            done.append((begin, future.result()))
+            results[begin : begin + LANES] = future.result()[: len(states) - begin]
 
     for begin in range(0, len(states), LANES):
         collect(ahead - 1)
@@ -48,8 +49,4 @@ def glide(
         tile = states[np.minimum(np.arange(begin, begin + LANES), len(states) - 1)].T.copy()
         running.append((begin, executor.submit(work, potential, tile, *arguments)))
     collect(0)
-    shape = done[0][1].shape[1:] if done else ()
-    results = np.full((len(states), *shape), np.nan)
-    for begin, part in done:
-        results[begin : begin + LANES] = part[: len(states) - begin]
     return results

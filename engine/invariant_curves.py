@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -50,20 +51,25 @@ class InvariantCurve:
         into each other: these are the one side, and all of the section outside the loops is the other.
         """
         side = np.ones(len(points), np.int8)
-        for loop, margin in zip(self.loops, self.margins, strict=True):
-            near = shapely.contains_xy(_prepared(loop.buffer(margin, quad_segs=1)), *points.T)
+        for outer, inner in self._bounds:
+            near = shapely.contains_xy(outer, *points.T)
             side[near] = 0
-            side[near] -= shapely.contains_xy(_prepared(loop.buffer(-margin, quad_segs=1)), *points[near].T)
+            side[near] -= shapely.contains_xy(inner, *points[near].T)
         return side
+
+    @cached_property
+    def _bounds(self) -> list[tuple[shapely.Polygon, shapely.Polygon]]:
+        """What each loop certainly lies within, and what certainly lies within it."""
+        polygons = [
+            (loop.buffer(margin, quad_segs=1), loop.buffer(-margin, quad_segs=1))
+            for loop, margin in zip(self.loops, self.margins, strict=True)
+        ]
+        shapely.prepare([polygon for pair in polygons for polygon in pair])
+        return polygons
 
     def mirrored(self) -> InvariantCurve:
         """Its image under (x, px) → (−x, −px)."""
         return InvariantCurve(tuple(shapely.transform(loop, np.negative) for loop in self.loops), self.margins)
-
-
-def _prepared(polygon: shapely.Polygon) -> shapely.Polygon:
-    shapely.prepare(polygon)
-    return polygon
 
 
 def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
@@ -82,12 +88,22 @@ def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
     for islands in range(1, MOST_ISLANDS + 1):
         if len(points) < islands * _FEWEST_POINTS:
             break
-        found = [_close(points[first::islands]) for first in range(islands)] if _close(points[::islands]) else [None]
-        loops = [loop for loop in found if loop is not None]
-        if len(loops) == len(found):
+        loops = _close_chain(points, islands)
+        if loops:
             polygons, margins = zip(*loops, strict=True)
             return InvariantCurve(polygons, margins)
     return None
+
+
+def _close_chain(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon, float]]:
+    """The loops of a chain of so many islands; none when any of them does not close."""
+    loops = []
+    for first in range(islands):
+        loop = _close(points[first::islands])
+        if loop is None:
+            return []
+        loops.append(loop)
+    return loops
 
 
 def _close(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:

@@ -246,6 +246,13 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
     return curves
 
 
+def find_outside_exits(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """int8, shaped like x and y: the channel beyond whose Lyapunov orbit each point lies, 0 inside."""
+    row = np.zeros(x.size, np.int64)
+    outside: np.ndarray = events.find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row)
+    return outside.reshape(x.shape)
+
+
 def exit_gates(curves: np.ndarray) -> np.ndarray:
     """(channels, 3) lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
     rows = curves.reshape(-1, *curves.shape[-2:])

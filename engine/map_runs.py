@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.certificates import Certificate
 from engine.certification import SHORTEST_T_MAX, Certification
-from engine.escape_maps import EscapeMap, anchors
+from engine.escape_maps import EscapeMap, anchors, find_interior
 from engine.fates import Fate
 from engine.lyapunov_orbits import closed_curves, exit_curves
 from engine.map_specs import MapSpec
@@ -172,7 +172,7 @@ class MapRun:
     def _progress(self) -> float:
         fate = self.batch.fate
         covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self.batch.t / self.spec.t_max, 1.0), 1.0)
-        interior = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
+        interior = find_interior(fate)
         return float(covered[interior].mean()) if interior.any() else 1.0
 
 

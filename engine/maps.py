@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.escape_maps import EscapeMap
+from engine.escape_maps import IMAGES, EscapeMap
 from engine.fates import Fate
 from engine.map_runs import MapRun, carry_through
 from engine.map_specs import MapSpec
@@ -92,35 +92,30 @@ def _compute_in_bands(
         run = MapRun(spec, rows=rows)
         carry_through(run, executor, cancel)
         part = run.frame()
-        for name in _IMAGES:
+        for name in IMAGES:
             getattr(canvas, name)[rows] = getattr(part, name)
         done += rows.size
         stopped = cancel is not None and cancel.is_set()
         canvas = replace(canvas, progress=done / spec.resolution[1], horizon=part.horizon)
-        if on_frame is not None and not stopped:
-            on_frame(canvas)
         if stopped:
-            return canvas
-    for name in _IMAGES:
-        getattr(canvas, name).flags.writeable = False
-    return replace(canvas, complete=not np.any(canvas.fate == Fate.NOT_COMPUTED))
+            break
+        if on_frame is not None:
+            on_frame(_read_only(canvas))
+    return replace(_read_only(canvas), complete=not np.any(canvas.fate == Fate.NOT_COMPUTED))
 
 
-_IMAGES = {
-    "fate": (np.int8, Fate.NOT_COMPUTED),
-    "escape_time": (np.float64, np.nan),
-    "crossings": (np.int32, 0),
-    "energy_error": (np.float64, np.nan),
-    "certificate": (np.int8, 0),
-    "outside": (np.int8, 0),
-    "started": (np.bool_, False),
-}
+def _read_only(canvas: EscapeMap) -> EscapeMap:
+    """The same map for others to look at; a copy would not be within the bound on memory."""
+    images: dict[str, Any] = {name: getattr(canvas, name).view() for name in IMAGES}
+    for image in images.values():
+        image.flags.writeable = False
+    return replace(canvas, **images)
 
 
 def _blank(spec: MapSpec) -> EscapeMap:
     """A map of which nothing is known."""
     x, ordinate = spec.pixel_centres()
-    images: dict[str, Any] = {name: np.full((ordinate.size, x.size), value, dtype) for name, (dtype, value) in _IMAGES.items()}
+    images: dict[str, Any] = {name: np.full((ordinate.size, x.size), value, dtype) for name, (dtype, value) in IMAGES.items()}
     return EscapeMap(spec, x, ordinate, stride=1, horizon=0.0, progress=0.0, complete=False, **images)
 
 

@@ -16,9 +16,8 @@ from enum import Enum
 import contourpy
 import numpy as np
 
-from engine.lyapunov_orbits import exit_curves, find_lyapunov_orbits
+from engine.lyapunov_orbits import find_lyapunov_orbits, find_outside_exits
 from engine.potentials import Potential
-from engine.taylor.events import find_outside
 
 # The default window leaves this share of its side free around what it shows.
 _MARGIN = 0.03
@@ -168,7 +167,7 @@ def _interior_interval(potential: Potential, energy: float) -> tuple[float, floa
     """The x between which the axis y = 0 lies in the interior, to about a thousandth."""
     x = np.linspace(-_FURTHEST, _FURTHEST, 4 * _SCAN)
     zero = np.zeros_like(x)
-    outside = find_outside(x, zero, exit_curves(potential, energy)[None], np.zeros(x.size, np.int64))
+    outside = find_outside_exits(potential, energy, x, zero)
     run = _connected_run((potential.value(x, zero) <= energy) & (outside == 0))
     return _rounded(x[run][0]), _rounded(x[run][-1])
 
@@ -178,8 +177,7 @@ def _interior_extent(potential: Potential, energy: float) -> tuple[float, float,
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, _FURTHEST, _SCAN // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
-    row = np.zeros(x.size, np.int64)
-    outside = find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row).reshape(x.shape)
+    outside = find_outside_exits(potential, energy, x, y)
     inside = np.logical_and.accumulate((potential.value(x, y) <= energy) & (outside == 0), axis=1)
     x, y = x[inside], y[inside]
     for orbit in find_lyapunov_orbits(potential, energy):

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from engine.critical_points import find_critical_points
-from engine.taylor.codegen import derivative
+from engine.taylor.products import derivative
 
 Terms = Mapping[tuple[int, int], float]
 

@@ -19,13 +19,12 @@ from engine.map_specs import MapSpec
 from engine.orbits import DEVIATION_VECTORS
 from engine.planes import find_mirror_images, start_states
 from engine.potentials import Potential
-from engine.quasi_periodicity import CERTIFIED_DIGITS, count_agreeing_digits
+from engine.quasi_periodicity import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.taylor.build import load_kernels
 
 # SALI up to these times, with the search for tori between: what is strongly chaotic falls early, most of what is regular shows
 # itself as a torus, and the few that are neither are followed to t_max.
 _SALI_TIMES = (1000.0, 5000.0, 20000.0)
-_WINDOWS = (1000.0, 4000.0, 16000.0)
 # A piece of the way, after which orbits already judged are left behind.
 _PIECE = 5000.0
 
@@ -125,7 +124,7 @@ class _Judgement:
 
     def rounds(self) -> Iterator[Callable[[], None]]:
         """The work in pieces, shortest first."""
-        for until, window in zip(_SALI_TIMES, _WINDOWS, strict=True):
+        for until, window in zip(_SALI_TIMES, WINDOWS, strict=False):
             if 2.0 * until > self.spec.t_max:
                 break
             yield partial(self.follow, until)
@@ -139,7 +138,7 @@ class _Judgement:
         if not self.pixels.size:
             return
         steps = max(1, round((until - self.time) / GLIDE_STEP))
-        carried = glide(_carry, self.potential, self.orbits, steps, **self.pool)
+        carried = glide(_carry, self.potential, self.orbits, steps, shape=self.orbits.shape[1:], **self.pool)
         if self.cancelled():
             return
         self.orbits, self.time = carried, until

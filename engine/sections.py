@@ -44,9 +44,7 @@ def find_section_points(
     -------
     (n, count, 2) x and px; NaN where fewer were found.
     """
-    if not len(states):
-        return np.empty((0, count, 2))
-    return glide(_pierce, potential, states, count, duration, executor=executor, cancel=cancel)
+    return glide(_pierce, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
 
 
 def _pierce(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:

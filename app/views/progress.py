@@ -64,7 +64,7 @@ class ProgressView:
     def fail(self, sentence: str) -> None:
         """The map cannot be had; the last good picture stays."""
         self._set(running=False, label="Cancel", text="")
-        self.problem.param.update(object=sentence, visible=True)
+        self.warn(sentence)
 
     def _press(self) -> None:
         if self._running:

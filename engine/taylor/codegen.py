@@ -16,11 +16,10 @@ Four functions come out for each potential, every one a loop over lanes `i`:
 
 from __future__ import annotations
 
-import functools
-import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+
+from engine.taylor.products import Monomial, Polynomial, Product, X, Y, derivative, find_difference, find_scales, plan_products
 
 ORDER = 19
 """Order of the series. With TOLERANCE the cheapest tried that keeps energy well within 1e-11 over 1e5 time units."""
@@ -43,91 +42,12 @@ _BROKEN_DOWN = 1e90
 HIDDEN, GATE, OVERSHOOT = 1, 2, 4
 """Flags of a step: crossings of y = 0 may hide in it; its end is past an exit's gate; it ends beyond the horizon."""
 
-Monomial = tuple[int, int]
-Polynomial = Mapping[Monomial, float]
 Terms = tuple[tuple[int, int, float], ...]
-
-_X, _Y = (1, 0), (0, 1)
-
-
-@dataclass(frozen=True)
-class _Product:
-    """One Cauchy product: the series of `monomial` from the series of two factors already known.
-
-    What is kept of a square is half of it, which saves a multiplication in every other coefficient; so the series of a
-    monomial carries a factor, see `_scales`.
-    """
-
-    monomial: Monomial
-    left: Monomial
-    right: Monomial
-
-
-def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
-    """The terms of ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
-    if axis == 0:
-        return {(i - 1, j): i * c for (i, j), c in terms.items() if i}
-    return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
-
-
-def plan_products(needed: set[Monomial]) -> list[_Product]:
-    """A short list of Cauchy products that yields every needed monomial.
-
-    Greedy, monomial after monomial; tried also with each monomial that divides a needed one made first, and the cheapest kept.
-    """
-    seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
-    plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]
-    return min(plans, key=lambda plan: sum(map(_cost, plan)))
-
-
-def _by_degree(monomial: Monomial) -> tuple[int, Monomial]:
-    return sum(monomial), monomial
-
-
-def _cost(product: _Product) -> float:
-    """In full products: a square has half the terms and a little more to do."""
-    return 0.55 if product.left == product.right else 1.0
-
-
-def _greedy_plan(wanted: list[Monomial]) -> list[_Product]:
-    known = {_X, _Y, (0, 0)}
-    plan: list[_Product] = []
-    for monomial in wanted:
-        for product in _cheapest(monomial, frozenset(known))[1]:
-            known.add(product.monomial)
-            plan.append(product)
-    return plan
-
-
-@functools.cache
-def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[_Product]]:
-    if monomial in known:
-        return 0.0, []
-    best: tuple[float, list[_Product]] = (float("inf"), [])
-    for left in ((a, b) for a in range(monomial[0] + 1) for b in range(monomial[1] + 1)):
-        right = (monomial[0] - left[0], monomial[1] - left[1])
-        if left < right or sum(right) == 0:
-            continue
-        cost_left, plan_left = _cheapest(left, known)
-        cost_right, plan_right = _cheapest(right, known | {p.monomial for p in plan_left})
-        product = _Product(monomial, left, right)
-        cost = cost_left + cost_right + _cost(product)
-        if cost < best[0]:
-            best = cost, [*plan_left, *plan_right, product]
-    return best
-
-
-def _scales(plan: list[_Product]) -> dict[Monomial, float]:
-    """The factor that the series of each monomial carries."""
-    scales = {_X: 1.0, _Y: 1.0, (0, 0): 1.0}
-    for p in plan:
-        scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)
-    return scales
 
 
 def _series(monomial: Monomial) -> str:
     """The stem of the names that hold the coefficients of a monomial's series."""
-    return {_X: "x", _Y: "y"}.get(monomial, f"x{monomial[0]}y{monomial[1]}_")
+    return {X: "x", Y: "y"}.get(monomial, f"x{monomial[0]}y{monomial[1]}_")
 
 
 def _sum_of_products(pairs: list[tuple[str, str]], subtracted: Sequence[tuple[str, str]] = ()) -> str:
@@ -154,16 +74,6 @@ def _half_square(factor: str, k: int) -> list[tuple[str, str]]:
     return [*middle, *pairs]
 
 
-def _find_difference(products: list[_Product], polynomials: Sequence[Polynomial]) -> tuple[_Product, _Product] | None:
-    """Two squares that enter everything as their difference only: one series then does for both."""
-    factors = {monomial for p in products for monomial in (p.left, p.right)}
-    squares = [p for p in products if p.left == p.right and p.monomial not in factors]
-    for one, other in itertools.combinations(squares, 2):
-        if all(polynomial.get(one.monomial, 0.0) == -polynomial.get(other.monomial, 0.0) for polynomial in polynomials):
-            return one, other
-    return None
-
-
 def _linear_combination(polynomial: Polynomial, scales: Mapping[Monomial, float], k: int, factor: float) -> str:
     """factor · (coefficient k of the polynomial's series)."""
     parts = [
@@ -174,11 +84,11 @@ def _linear_combination(polynomial: Polynomial, scales: Mapping[Monomial, float]
     return " + ".join(parts) or "0.0"
 
 
-def _recurrence(vx: Polynomial, vy: Polynomial, products: list[_Product], also: Sequence[Polynomial] = ()) -> list[str]:
+def _recurrence(vx: Polynomial, vy: Polynomial, products: list[Product], also: Sequence[Polynomial] = ()) -> list[str]:
     """Statements for x0 … x_ORDER, y0 … y_ORDER and the products that they, and the polynomials `also`, need."""
     lines = ["x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]"]
-    scales = _scales(products)
-    difference = _find_difference(products, (vx, vy, *also))
+    scales = find_scales(products)
+    difference = find_difference(products, (vx, vy, *also))
     if difference is not None:
         one, other = difference
         products = [p for p in products if p not in difference]
@@ -312,7 +222,7 @@ def _tangent(terms: Polynomial) -> str:
     forces = {"u": (("hxx", "u"), ("hxy", "v")), "v": (("hxy", "u"), ("hyy", "v"))}
     polynomials = (vx, vy, *hessian.values())
     products = plan_products({m for polynomial in polynomials for m in polynomial})
-    scales = _scales(products)
+    scales = find_scales(products)
     body = [*_recurrence(vx, vy, products, tuple(hessian.values())), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
     for k in range(ORDER - 1):
         body += [f"{name}{k} = {_linear_combination(polynomial, scales, k, -1.0)}" for name, polynomial in hessian.items()]

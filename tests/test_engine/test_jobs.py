@@ -54,6 +54,17 @@ def wait_until_idle(jobs: Jobs, seconds: float = 20.0) -> None:
     assert jobs.in_flight == 0
 
 
+def kept_map(jobs: Jobs) -> EscapeMap:
+    """The map of `QUICK`, computed and kept."""
+    inbox = Inbox()
+    jobs.request_map(QUICK, inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    wait_until_idle(jobs)
+    result = inbox.results[-1]
+    assert isinstance(result, EscapeMap)
+    return result
+
+
 def test_the_last_frame_is_the_map() -> None:
     inbox, jobs = Inbox(), Jobs()
     jobs.request_map(QUICK, inbox.result, inbox.error)
@@ -64,13 +75,11 @@ def test_the_last_frame_is_the_map() -> None:
 
 
 def test_the_bounded_orbits_of_a_kept_map_are_judged_without_computing_it_again() -> None:
-    jobs, first, second = Jobs(), Inbox(), Inbox()
-    jobs.request_map(QUICK, first.result, first.error)
-    assert first.done.wait(30)
-    wait_until_idle(jobs)
+    jobs, second = Jobs(), Inbox()
+    first = kept_map(jobs)
     jobs.request_regularity(QUICK, second.result, second.error)
     assert second.done.wait(30)
-    expected = judge_bounded_orbits(first.results[-1])
+    expected = judge_bounded_orbits(first)
     np.testing.assert_array_equal(second.results[-1].character, expected.character)
 
 
@@ -82,12 +91,10 @@ def test_a_map_not_kept_is_computed_to_judge_its_orbits() -> None:
 
 
 def test_a_finished_map_is_kept() -> None:
-    jobs, first, second = Jobs(), Inbox(), Inbox()
-    jobs.request_map(QUICK, first.result, first.error)
-    assert first.done.wait(30)
-    wait_until_idle(jobs)
+    jobs, second = Jobs(), Inbox()
+    first = kept_map(jobs)
     jobs.request_map(QUICK, second.result, second.error)
-    assert second.results == [first.results[-1]]
+    assert second.results == [first]
     assert jobs.in_flight == 0
 
 
@@ -124,10 +131,8 @@ def test_a_cancelled_map_goes_on_from_where_it_was() -> None:
 
 
 def test_a_longer_t_max_starts_from_the_kept_map(monkeypatch: pytest.MonkeyPatch) -> None:
-    jobs, first, second = Jobs(), Inbox(), Inbox()
-    jobs.request_map(QUICK, first.result, first.error)
-    assert first.done.wait(30)
-    wait_until_idle(jobs)
+    jobs, second = Jobs(), Inbox()
+    kept_map(jobs)
     resumed = []
 
     def spy(spec, *args, resume=None, **kwargs):  # type: ignore[no-untyped-def]

@@ -62,4 +62,6 @@ def test_no_orbits_have_no_points() -> None:
 def test_when_cancelled_no_points_are_looked_for(states: np.ndarray) -> None:
     cancel = threading.Event()
     cancel.set()
-    assert np.isnan(find_section_points(POTENTIAL, states, 3, 60.0, cancel=cancel)).all()
+    points = find_section_points(POTENTIAL, states, 3, 60.0, cancel=cancel)
+    assert points.shape == (len(states), 3, 2)
+    assert np.isnan(points).all()

@@ -10,14 +10,12 @@ import heyoka as hy
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given
-from hypothesis import strategies as st
 from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.planes import Plane
 from engine.taylor.build import load_kernels
-from engine.taylor.codegen import ORDER, TOLERANCE, crossings_can_hide, generate_source, plan_products
+from engine.taylor.codegen import ORDER, TOLERANCE, crossings_can_hide, generate_source
 from tests.peers import taylor_heyoka
 
 # One potential beyond the paper's: odd in both coordinates, of degree 5, with a term in neither force's pattern.
@@ -147,21 +145,6 @@ def test_energy_is_kept_to_1e_11_over_1e5_time_units(name: str, energy: float) -
     bounded = outcome.fate == Fate.BOUNDED
     assert bounded.sum() >= 24
     assert outcome.energy_error[bounded].max() <= 1e-11
-
-
-@given(st.sets(st.tuples(st.integers(0, 5), st.integers(0, 5)), min_size=1, max_size=5))
-def test_every_product_is_planned_after_its_factors(needed: set[tuple[int, int]]) -> None:
-    known = {(1, 0), (0, 1)}
-    for product in plan_products(needed):
-        assert {product.left, product.right} <= known
-        assert tuple(np.add(product.left, product.right)) == product.monomial
-        known.add(product.monomial)
-    assert {m for m in needed if sum(m) > 1} <= known
-
-
-def test_a_square_saves_a_product() -> None:
-    # x⁴ as (x²)² takes two products, not three.
-    assert len(plan_products({(4, 0)})) == 2
 
 
 @pytest.mark.parametrize("terms", [(), ((0, 0, 1.0),), ((1, 0, 2.0),), ((2, 0, 0.5),), ((6, 3, -1.0),)])

@@ -1,0 +1,98 @@
+"""Which Cauchy products to form: the cheapest few that yield every monomial in the forces, and the factors they carry."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+Monomial = tuple[int, int]
+Polynomial = Mapping[Monomial, float]
+
+X, Y = (1, 0), (0, 1)
+
+
+@dataclass(frozen=True)
+class Product:
+    """One Cauchy product: the series of `monomial` from the series of two factors already known.
+
+    What is kept of a square is half of it, which saves a multiplication in every other coefficient; so the series of a
+    monomial carries a factor, see `find_scales`.
+    """
+
+    monomial: Monomial
+    left: Monomial
+    right: Monomial
+
+
+def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
+    """The terms of ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
+    if axis == 0:
+        return {(i - 1, j): i * c for (i, j), c in terms.items() if i}
+    return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
+
+
+def plan_products(needed: set[Monomial]) -> list[Product]:
+    """A short list of Cauchy products that yields every needed monomial.
+
+    Greedy, monomial after monomial; tried also with each monomial that divides a needed one made first, and the cheapest kept.
+    """
+    seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
+    plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]
+    return min(plans, key=lambda plan: sum(map(_cost, plan)))
+
+
+def _by_degree(monomial: Monomial) -> tuple[int, Monomial]:
+    return sum(monomial), monomial
+
+
+def _cost(product: Product) -> float:
+    """In full products: a square has half the terms and a little more to do."""
+    return 0.55 if product.left == product.right else 1.0
+
+
+def _greedy_plan(wanted: list[Monomial]) -> list[Product]:
+    known = {X, Y, (0, 0)}
+    plan: list[Product] = []
+    for monomial in wanted:
+        for product in _cheapest(monomial, frozenset(known))[1]:
+            known.add(product.monomial)
+            plan.append(product)
+    return plan
+
+
+@functools.cache
+def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[Product]]:
+    if monomial in known:
+        return 0.0, []
+    best: tuple[float, list[Product]] = (float("inf"), [])
+    for left in ((a, b) for a in range(monomial[0] + 1) for b in range(monomial[1] + 1)):
+        right = (monomial[0] - left[0], monomial[1] - left[1])
+        if left < right or sum(right) == 0:
+            continue
+        cost_left, plan_left = _cheapest(left, known)
+        cost_right, plan_right = _cheapest(right, known | {p.monomial for p in plan_left})
+        product = Product(monomial, left, right)
+        cost = cost_left + cost_right + _cost(product)
+        if cost < best[0]:
+            best = cost, [*plan_left, *plan_right, product]
+    return best
+
+
+def find_scales(plan: list[Product]) -> dict[Monomial, float]:
+    """The factor that the series of each monomial carries."""
+    scales = {X: 1.0, Y: 1.0, (0, 0): 1.0}
+    for p in plan:
+        scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)
+    return scales
+
+
+def find_difference(products: list[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
+    """Two squares that enter everything as their difference only: one series then does for both."""
+    factors = {monomial for p in products for monomial in (p.left, p.right)}
+    squares = [p for p in products if p.left == p.right and p.monomial not in factors]
+    for one, other in itertools.combinations(squares, 2):
+        if all(polynomial.get(one.monomial, 0.0) == -polynomial.get(other.monomial, 0.0) for polynomial in polynomials):
+            return one, other
+    return None
