@@ -81,7 +81,7 @@ class Controller:
         self._listener.map_requested()
         self._map_ticket = self._jobs.request_map(
             spec,
-            lambda frame: self._show_map(generation, frame, map_columns(frame)),
+            lambda frame: self._show_map(generation, frame, map_columns(frame, characters=self._state.judge)),
             lambda error: self._show_map_problem(generation, error),
         )
 

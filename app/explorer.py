@@ -7,6 +7,7 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from panel.util import edit_readonly
 
 from app.controller import Controller
 from app.link import LINKED, read_link, write_link
@@ -79,7 +80,11 @@ class Explorer:
             sizing_mode="stretch_width",
             margin=(0, 10),
         )
-        return pmui.Page(title="Escape Explorer", main=[main], theme_toggle=False)
+        page = pmui.Page(title="Escape Explorer", main=[main], theme_toggle=False, busy_indicator=None)
+        # A page that shows how busy it is looks through all its models at the begin and end of every callback: 50 ms each.
+        with edit_readonly(page):
+            page.busy = False
+        return page
 
     def _begin(self) -> None:
         """The page is there: show what the link, or nobody, asked for."""

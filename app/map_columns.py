@@ -14,18 +14,23 @@ _FIRST_CLASS = len(OUTCOMES)
 _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
-def map_columns(frame: EscapeMap) -> dict[str, list[Any]]:
-    """One image a column, in the smallest types that hold it, and the place of the image in the plane."""
-    shown = frame.stretched()
-    fate, crossings = shown["fate"], shown["crossings"]
-    window = frame.spec.window
+def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[Any]]:
+    """One image a column, in the smallest types that hold it, and the place of the images in the plane.
+
+    A coarse frame has coarse images. Without `characters` that column is a single pixel: nobody looks at it.
+    """
+    images, window = frame.thinned()
+    fate, crossings = images["fate"], images["crossings"]
+    classes = np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1
+    # A bounded pixel has its certificate instead.
+    classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["certificate"][fate == Fate.BOUNDED]
+    character = _codes(fate, _known_from_certificates(images), bounded_too=True) if characters else np.zeros((1, 1), np.uint8)
     return {
         "fate": [_codes(fate, fate - 1)],
-        "crossing_class": [_codes(fate, np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1)],
-        "crossings": [crossings.astype(np.int32)],
-        "escape_time": [shown["escape_time"].astype(np.float32)],
-        "certificate": [frame.certificate.astype(np.uint8)],
-        "character": [_codes(fate, _known_from_certificates(frame), bounded_too=True)],
+        "crossing_class": [_codes(fate, classes, bounded_too=True)],
+        "crossings": [crossings.astype(np.min_scalar_type(crossings.max(initial=0)))],
+        "escape_time": [images["escape_time"].astype(np.float32)],
+        "character": [character],
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
@@ -39,10 +44,10 @@ def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, l
     return {"character": [_codes(frame.fate, regularity.character, bounded_too=True)]}
 
 
-def _known_from_certificates(frame: EscapeMap) -> np.ndarray:
+def _known_from_certificates(images: dict[str, np.ndarray]) -> np.ndarray:
     """What a map says by itself: on a torus an orbit is regular."""
-    known = np.where(frame.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NO_QUESTION)
-    known[frame.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
+    known = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NO_QUESTION)
+    known[images["certificate"] == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
     return known
 
 

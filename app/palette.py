@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from bokeh.palettes import interp_palette
 
-from engine import Fate, Regularity
+from engine import Certificate, Fate, Regularity
 
 CHANNELS = ("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf")
 """Channels 1, 2, 3, 4 as in the paper: green, red, blue, orange; four more for potentials with more exits."""
@@ -73,7 +73,12 @@ CHARACTERS: dict[Regularity, Entry] = {
 
 CHARACTER_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *(entry.colour for entry in CHARACTERS.values())]
 FATE_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *CHANNELS]
-CROSSING_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *(entry.colour for _, entry in CROSSING_CLASSES)]
+CROSSING_COLOURS = [
+    *(entry.colour for entry in OUTCOMES.values()),
+    *(entry.colour for _, entry in CROSSING_CLASSES),
+    # Bounded pixels, by their certificates.
+    *(BOUNDED for _ in Certificate),
+]
 # Under the escape times, which cover the escaped pixels.
 BACKGROUND_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *["#ffffff"] * len(CHANNELS)]
 # The plain interior of the first map.

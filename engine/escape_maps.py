@@ -14,6 +14,7 @@ from engine.certificates import Certificate
 from engine.fates import Fate
 from engine.map_specs import MapSpec
 from engine.orbit_batches import OrbitBatch
+from engine.planes import Window
 from engine.taylor.codegen import ORDER, TOLERANCE
 
 IMAGES: dict[str, tuple[type, float]] = {
@@ -110,17 +111,23 @@ class EscapeMap:
         codes = (*range(1, self.spec.potential.channels + 1), Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
         return {int(code): float(np.mean(fate == code)) if fate.size else 0.0 for code in codes}
 
-    def stretched(self) -> dict[str, np.ndarray]:
-        """fate, escape_time and crossings with pixels not started yet painted like a started one of their square."""
-        names = ("fate", "escape_time", "crossings")
+    def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
+        """fate, escape_time, crossings and certificate of the one pixel that stands for each square of `stride`.
+
+        Returns
+        -------
+        The images, (rows, columns) over `stride` rounded up, and the window that they fill: up to a square larger than the
+        map's, as the last squares may reach beyond it.
+        """
+        names = ("fate", "escape_time", "crossings", "certificate")
         if self.stride == 1:
-            return {name: getattr(self, name) for name in names}
-        rows, columns = (anchors(size, self.stride) for size in self.fate.shape)
-        use = np.where(
-            self.started, np.arange(self.fate.size).reshape(self.fate.shape), rows[:, None] * self.fate.shape[1] + columns
-        )
-        use = np.where(self.interior, use, np.arange(self.fate.size).reshape(self.fate.shape))
-        return {name: getattr(self, name).ravel()[use] for name in names}
+            return {name: getattr(self, name) for name in names}, self.spec.window
+        places = np.ix_(*(np.unique(anchors(size, self.stride)) for size in self.fate.shape))
+        images = {name: getattr(self, name)[places] for name in names}
+        (rows, columns), window = images["fate"].shape, self.spec.window
+        x_high = window.x_low + (window.x_high - window.x_low) * columns * self.stride / self.fate.shape[1]
+        high = window.ordinate_low + (window.ordinate_high - window.ordinate_low) * rows * self.stride / self.fate.shape[0]
+        return images, Window(window.x_low, x_high, window.ordinate_low, high)
 
     def to_xarray(self) -> xr.Dataset:
         """The map with named axes, units and provenance, fit for NetCDF."""

@@ -25,8 +25,6 @@ SHORTEST_HORIZON = 100.0
 HORIZON_FACTOR = 10.0
 # Most escapes are over by then: what is still open is worth a certificate.
 CERTIFIED_FROM = 1000.0
-# Seconds between frames within a stage.
-FRAME_PAUSE = 0.15
 
 
 def _coarsest_stride(resolution: tuple[int, int]) -> int:
@@ -180,18 +178,18 @@ def carry_through(
     run: MapRun,
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
-    publish: Callable[[float], None] = lambda pause: None,
+    publish: Callable[[bool], None] = lambda stage_over: None,
 ) -> None:
-    """Take a run through all its stages; `publish(pause)` is called with news, of which one in `pause` seconds is enough."""
+    """Take a run through all its stages; `publish(stage_over)` is called whenever there may be news."""
     spec = run.spec
     for pixels, stride, horizon in run.stages():
         if cancel is not None and cancel.is_set():
             break
         if spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= run.horizon:
-            run.certify(executor, cancel, lambda: publish(FRAME_PAUSE))
+            run.certify(executor, cancel, lambda: publish(False))
         curves = run.begin(pixels, stride, horizon)
         carry_on(
             spec.potential, curves, run.batch, pixels, horizon,
-            final=horizon == spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: publish(FRAME_PAUSE),
+            final=horizon == spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: publish(False),
         )  # fmt: skip
-        publish(0.0)
+        publish(True)

@@ -20,6 +20,10 @@ from engine.planes import Plane
 LARGEST_RUN = 2**20
 """Most pixels whose orbits are held in memory at once; larger maps are computed in bands of rows, which keep results only."""
 
+_SHORTEST_PAUSE, _LONGEST_PAUSE = 0.1, 1.0
+# Of the time that has passed, the share that one frame lasts.
+_PAUSE_SHARE = 0.3
+
 
 def compute_map(
     spec: MapSpec,
@@ -36,8 +40,8 @@ def compute_map(
     spec
         The request.
     on_frame
-        Called in this thread with the map so far, often at first: coarse pixels first, then all, then longer horizons. A
-        map of more than `LARGEST_RUN` pixels comes band by band.
+        Called in this thread with the map so far, often at first: coarse pixels first, then all, then longer horizons
+        (`frame_pause`). A map of more than `LARGEST_RUN` pixels comes band by band.
     cancel
         When set, the map is returned as it is within about 0.1 s, with ``complete`` False.
     executor
@@ -61,16 +65,30 @@ def compute_map(
     if resume is not None:
         _check_resumable(spec, resume)
     run = MapRun(spec, resume)
-    last = time.monotonic()
+    begun = time.monotonic()
+    due: float | None = None
 
-    def publish(pause: float) -> None:
-        nonlocal last
-        if on_frame is not None and time.monotonic() - last >= pause:
-            on_frame(run.frame())
-            last = time.monotonic()
+    def publish(stage_over: bool) -> None:
+        nonlocal due
+        now = time.monotonic()
+        # The first frame is the whole of the coarsest stage.
+        if on_frame is None or (now < due if due is not None else not stage_over):
+            return
+        frame = run.frame()
+        if not frame.complete:
+            on_frame(frame)
+            due = time.monotonic() + frame_pause(now - begun)
 
     carry_through(run, executor, cancel, publish)
-    return run.result()
+    result = run.result()
+    if on_frame is not None and result.complete:
+        on_frame(replace(result, batch=None))
+    return result
+
+
+def frame_pause(elapsed: float) -> float:
+    """Seconds to wait after a frame that came `elapsed` seconds into the work: a quick map need not show every stage of it."""
+    return min(max(_SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), _LONGEST_PAUSE)
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:

@@ -227,7 +227,7 @@ def _code_mapper(colours: list[str]) -> LinearColorMapper:
 def _blank() -> dict[str, list[Any]]:
     """A picture of one pixel that nobody has decided yet."""
     codes = np.zeros((1, 1), np.uint8)
-    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "certificate", "character")}
+    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "character")}
     columns |= {"crossings": [np.zeros((1, 1), np.int32)], "escape_time": [np.full((1, 1), np.nan, np.float32)]}
     return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "complete": [False]}
 
@@ -239,7 +239,7 @@ if (fate < bounded) return ""
 const time = source.data.escape_time[0][flat_index]
 const crossings = `crossings of y = 0: ${source.data.crossings[0][flat_index]}`
 if (Number.isFinite(time)) return `escape time ${time.toPrecision(5)}, ${crossings}`
-const reason = certificates[source.data.certificate[0][flat_index]]
+const reason = certificates[source.data.crossing_class[0][flat_index] - first]
 return fate > bounded ? crossings : reason
 """
 
@@ -254,7 +254,8 @@ def _hover_text(source: ColumnDataSource) -> tuple[str, dict[str, CustomJSHover]
     fate = CustomJSHover(args={"names": names}, code="return names[value] ?? names[0]")
     bounded = list(palette.OUTCOMES).index(Fate.BOUNDED)
     certificates = [describe_certificate(code) for code in Certificate]
-    arguments = {"source": source, "bounded": bounded, "certificates": certificates}
+    first = len(palette.OUTCOMES) + len(palette.CROSSING_CLASSES)
+    arguments = {"source": source, "bounded": bounded, "certificates": certificates, "first": first}
     details = CustomJSHover(args=arguments, code=_HOVER_DETAILS)
     text = (
         '<div style="font-size:11px;line-height:14px"><b>@fate{custom}</b><br>'

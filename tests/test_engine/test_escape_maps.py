@@ -25,6 +25,7 @@ from engine import (
     start_states,
 )
 from engine.map_runs import COARSE_PIXELS
+from engine.maps import frame_pause
 
 ARRAYS = ("fate", "escape_time", "crossings", "energy_error", "outside", "started")
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
@@ -221,26 +222,33 @@ def test_every_square_of_a_frame_holds_a_started_pixel(frames: list[EscapeMap]) 
 
 
 @pytest.mark.parametrize("name", ["fate", "escape_time", "crossings"])
-def test_a_preview_paints_each_pixel_like_a_started_one_of_its_square(frames: list[EscapeMap], name: str) -> None:
+def test_a_thinned_frame_shows_a_started_pixel_of_each_square(frames: list[EscapeMap], name: str) -> None:
     frame = frames[0]
-    preview, stride = frame.stretched()[name], frame.stride
-    for row in range(0, frame.fate.shape[0], 7):
-        for column in range(0, frame.fate.shape[1], 5):
-            square = np.s_[row // stride * stride :, column // stride * stride :]
-            candidates = getattr(frame, name)[square][:stride, :stride][frame.started[square][:stride, :stride]]
-            own = getattr(frame, name)[row, column]
-            forbidden = frame.fate[row, column] == Fate.FORBIDDEN
-            allowed = [own] if forbidden or frame.started[row, column] else candidates
-            assert np.any(np.isclose(preview[row, column], allowed, equal_nan=True))
+    thinned, stride = frame.thinned()[0][name], frame.stride
+    for row, column in np.ndindex(thinned.shape):
+        square = np.s_[row * stride : (row + 1) * stride, column * stride : (column + 1) * stride]
+        candidates = getattr(frame, name)[square][frame.started[square]]
+        assert np.any(np.isclose(thinned[row, column], candidates, equal_nan=True))
 
 
-def test_a_preview_leaves_forbidden_pixels_forbidden(frames: list[EscapeMap]) -> None:
-    for frame in frames:
-        np.testing.assert_array_equal(frame.stretched()["fate"][frame.fate == Fate.FORBIDDEN], Fate.FORBIDDEN)
+def test_a_thinned_frame_knows_the_window_of_its_squares(frames: list[EscapeMap]) -> None:
+    frame = frames[0]
+    images, window = frame.thinned()
+    x, ordinate = window.pixel_centres(*images["fate"].shape[::-1])
+    for centres, fine in ((x, frame.x), (ordinate, frame.ordinate)):
+        pixel = fine[1] - fine[0]
+        np.testing.assert_allclose(centres, fine[0] + pixel * (frame.stride * np.arange(centres.size) + (frame.stride - 1) / 2))
 
 
-def test_a_finished_map_is_its_own_preview(whole: EscapeMap) -> None:
-    assert whole.stretched()["fate"] is whole.fate
+def test_a_finished_map_is_thinned_to_itself(whole: EscapeMap) -> None:
+    images, window = whole.thinned()
+    assert images["fate"] is whole.fate
+    assert window is whole.spec.window
+
+
+@pytest.mark.parametrize(("elapsed", "pause"), [(0.0, 0.1), (1.0, 0.3), (60.0, 1.0)])
+def test_frames_come_seldomer_the_longer_it_takes(elapsed: float, pause: float) -> None:
+    assert frame_pause(elapsed) == pytest.approx(pause)
 
 
 # Bit for bit.
@@ -274,7 +282,7 @@ def test_tiles_make_no_difference(whole: EscapeMap, monkeypatch: pytest.MonkeyPa
 def test_a_cancelled_map_goes_on_to_the_same_result(whole: EscapeMap, frame: int, monkeypatch: pytest.MonkeyPatch) -> None:
     # A small budget, so that cancelling comes in the middle of orbits; no pause, so that every tile is a frame.
     monkeypatch.setattr(orbit_batches, "BUDGET", 3_000)
-    monkeypatch.setattr("engine.map_runs.FRAME_PAUSE", 0.0)
+    monkeypatch.setattr("engine.maps.frame_pause", lambda elapsed: 0.0)
     cancel = CancelAfter(frame)
     half_done = compute_map(SPEC, cancel, cancel.event)
     assert not half_done.complete
@@ -282,8 +290,8 @@ def test_a_cancelled_map_goes_on_to_the_same_result(whole: EscapeMap, frame: int
 
 
 def test_cancelling_again_and_again_makes_no_difference(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orbit_batches, "BUDGET", 8_000)
-    monkeypatch.setattr("engine.map_runs.FRAME_PAUSE", 0.0)
+    monkeypatch.setattr(orbit_batches, "BUDGET", 3_000)
+    monkeypatch.setattr("engine.maps.frame_pause", lambda elapsed: 0.0)
     result, rounds = None, 0
     while result is None or not result.complete:
         # Each round goes through finished stages again, frame by frame, so later rounds need more of them.
