@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from typing import Any, Protocol
 
-import numpy as np
-
 from app.map_columns import map_columns
+from app.preview_requests import PreviewRequests
+from app.sentences import sentence
 from app.view_state import ViewState
-from engine import EscapeMap, Fate, Jobs, Orbit, OrbitSpec, Potential, RegularityMap, Ticket, describe_fate
-
-log = logging.getLogger(__name__)
+from engine import EscapeMap, Jobs, RegularityMap, Ticket
 
 Locked = Callable[[Callable[..., None]], Callable[..., None]]
 
@@ -35,14 +32,8 @@ class MapListener(Protocol):
     def map_failed(self, sentence: str) -> None:
         """It cannot be had, for the reason given."""
 
-    def orbit_requested(self, start: tuple[float, float]) -> None:
-        """An orbit has been asked for."""
-
-    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
-        """Here it is."""
-
-    def orbit_refused(self, sentence: str) -> None:
-        """It cannot be had, for the reason given."""
+    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """A quick look at an energy that the user passes by is here."""
 
 
 class Controller:
@@ -56,20 +47,18 @@ class Controller:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None
         self._regularity_ticket: Ticket | None = None
-        self._orbit_ticket: Ticket | None = None
         self._whole_map: EscapeMap | None = None
         self._generation = 0
         self._show_map = locked(self._map_arrived)
         self._show_regularity = locked(self._regularity_arrived)
         self._show_map_problem = locked(self._map_failed)
-        self._show_orbit = locked(self._orbit_arrived)
-        self._show_orbit_problem = locked(self._orbit_failed)
+        self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked)
         state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution", "window"])
         state.param.watch(lambda event: self.request_regularity(), "judge")
-        state.param.watch(lambda *events: self.request_orbit(), ["start", "energy", "t_max"])
 
     def request_map(self) -> None:
         """Ask for the map in view; whatever was on its way for this session is cancelled."""
+        self.previews.cancel()
         self.cancel_map()
         self._generation += 1
         generation = self._generation
@@ -84,6 +73,12 @@ class Controller:
             lambda frame: self._show_map(generation, frame, map_columns(frame, characters=self._state.judge)),
             lambda error: self._show_map_problem(generation, error),
         )
+
+    def request_preview(self, energy: float) -> None:
+        """Look quickly at another energy; the map on its way is cancelled, as its energy is not looked at any more."""
+        self.cancel_map()
+        self._generation += 1
+        self.previews.request(energy)
 
     def request_regularity(self) -> None:
         """Have the bounded orbits of the map in view judged, if that is wanted and the map is whole."""
@@ -113,32 +108,11 @@ class Controller:
         self._generation += 1
         self._listener.map_stopped()
 
-    def request_orbit(self) -> None:
-        """Ask for the orbit of the chosen start; a start that no orbit has is refused in words."""
-        if self._orbit_ticket is not None:
-            self._orbit_ticket.cancel()
-            self._orbit_ticket = None
-        start = self._state.start
-        if start is None:
-            return
-        self._listener.orbit_requested(start)
-        state = self._state.start_state()
-        if not np.isfinite(state).all():
-            self._listener.orbit_refused(describe_fate(Fate.FORBIDDEN))
-            return
-        spec = OrbitSpec(self._state.potential, state, self._state.t_max)
-        self._orbit_ticket = self._jobs.request_orbit(
-            spec,
-            lambda orbit: self._show_orbit(spec, orbit),
-            lambda error: self._show_orbit_problem(spec, error),
-        )
-
     def close(self, *_: Any) -> None:
         """The session is over: nobody waits for its jobs any more."""
         self._generation += 1
         self.cancel_map()
-        if self._orbit_ticket is not None:
-            self._orbit_ticket.cancel()
+        self.previews.cancel()
 
     def _map_arrived(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         if generation == self._generation:
@@ -153,24 +127,4 @@ class Controller:
 
     def _map_failed(self, generation: int, error: Exception) -> None:
         if generation == self._generation:
-            self._listener.map_failed(_sentence(error))
-
-    def _orbit_arrived(self, spec: OrbitSpec, orbit: Orbit) -> None:
-        if self._is_wanted(spec):
-            self._listener.orbit_arrived(spec.potential, orbit)
-
-    def _orbit_failed(self, spec: OrbitSpec, error: Exception) -> None:
-        if self._is_wanted(spec):
-            self._listener.orbit_refused(_sentence(error))
-
-    def _is_wanted(self, spec: OrbitSpec) -> bool:
-        state = self._state
-        return state.start is not None and spec == OrbitSpec(state.potential, state.start_state(), state.t_max)
-
-
-def _sentence(error: Exception) -> str:
-    """What a person may read of an error; the rest goes to the log."""
-    if isinstance(error, ValueError):
-        return str(error)
-    log.error("a job failed", exc_info=error)
-    return "This could not be computed; the server's log says why."
+            self._listener.map_failed(sentence(error))

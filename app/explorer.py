@@ -1,30 +1,39 @@
-"""The page of one session: view state, controller and views, put together."""
+"""The explorer of one session: view state, requests and views, put together; frames and orbits go to the views."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 from typing import Any
 
 import panel as pn
-import panel_material_ui as pmui
-from panel.util import edit_readonly
 
 from app.controller import Controller
+from app.energy_sweep import EnergySweep
+from app.gallery import Preset
 from app.link import LINKED, read_link, write_link
+from app.navigation import Navigation
+from app.orbit_requests import ChosenOrbit, OrbitRequests
+from app.paper_energies import ENERGIES
+from app.separation_request import SeparationRequest
+from app.twin_request import TwinRequest
 from app.view_state import ViewState
-from app.views.controls import Controls
+from app.views.controls import Controls, EnergyActions
+from app.views.gallery import Gallery
+from app.views.keyboard import Keyboard
 from app.views.maps import MapsView
+from app.views.marks import NO_POINTS
+from app.views.numbers import NumbersView
+from app.views.orbit_desk import DeskActions, OrbitDesk
 from app.views.orbit_panes import OrbitPanes
 from app.views.progress import ProgressView
-from app.views.verdict import VerdictView
+from app.views.separation_pane import SeparationPane
+from app.views.take_along import TakeAlong
+from app.views.time_bar import TimeBar
+from app.views.tour import Tour
+from app.views.words import WordsView
 from app.views.zoom_buttons import ZoomButtons
-from app.zoom_history import ZoomHistory
-from engine import EscapeMap, Jobs, Orbit, Potential, RegularityMap, Window
-
-
-def _arguments() -> dict[str, list[bytes]]:
-    """The parameters in the page's address."""
-    return dict(pn.state.session_args or {})
+from engine import EscapeMap, Jobs, Plane, RegularityMap, Window
 
 
 @cache
@@ -39,59 +48,85 @@ class Explorer:
     def __init__(self) -> None:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
-        values, self._problems = read_link({name: texts[0].decode(errors="replace") for name, texts in _arguments().items()})
+        values, self._problems = read_link(_parameters())
         self.state = ViewState(**values)
-        self.maps = MapsView(self._choose_start, self._zoom)
-        self.history = ZoomHistory()
-        self.zoom_buttons = ZoomButtons(self.history, self._go_to)
-        self.panes = OrbitPanes()
-        self.verdict = VerdictView(self._choose_start)
-        self.controls = Controls(self.state)
-        locked = partial(document.locked_callback, policy="latest")
-        # A button's click comes without the session's lock, which the marks, being bare Bokeh, need.
-        self._mark_start = locked(self.maps.mark_start)
-        self.controller = Controller(self.state, shared_jobs(), self, locked)
-        self.progress = ProgressView(self.controller.stop_map, self.controller.request_map)
-        self.state.param.watch(lambda *events: self.history.clear(), ["case", "plane"])
-        self.state.param.watch(lambda *events: self.zoom_buttons.follow(self.state.window), ["window", "case", "plane"])
-        self.state.param.watch(lambda event: self.verdict.follow_plane(event.new), "plane")
-        self.state.param.watch(lambda event: self._mark_start(event.new), "start")
-        self.state.param.watch(lambda event: self.maps.show_characters(event.new), "judge")
-        self.state.param.watch(lambda *events: self._write_link(), list(LINKED))
-        self.verdict.follow_plane(self.state.plane)
-        self.maps.show_characters(self.state.judge)
-        if self.state.window is not None:
-            self.history.visit(self.state.window)
-            self.zoom_buttons.follow(self.state.window)
-        pn.state.on_session_destroyed(self.controller.close)
+        self._latest = partial(document.locked_callback, policy="latest")
+        # Clicks come without the session's lock, which bare Bokeh models need.
+        self._locked: Callable[..., Any] = document.locked_callback
+        self._make_views()
+        jobs = shared_jobs()
+        self.controller = Controller(self.state, jobs, self, self._latest)
+        self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
+        self.twin = TwinRequest(self.state, jobs, self.desk.say, self._locked)
+        self.separation = SeparationRequest(self.state, jobs, self.separation_pane.show, self.desk.say, self._locked)
+        self.progress = ProgressView(self._locked(self.controller.stop_map), self._locked(self.controller.request_map))
+        self.sweep = EnergySweep(document, lambda: self.controller.previews.under_way, self._pass_by, self._end_sweep)
+        self._known: tuple[ChosenOrbit, ...] = ()
+        self._connect()
+        pn.state.on_session_destroyed(self.close)
         pn.state.onload(self._begin)
 
-    def layout(self) -> pn.viewable.Viewable:
-        """The whole page."""
-        orbit = pn.FlexBox(
-            self.verdict.layout(), self.panes.path, self.panes.sali, self.panes.r2, justify_content="center", gap="4px"
+    def _make_views(self) -> None:
+        state, locked = self.state, self._locked
+        self.navigation = Navigation(state)
+        self.maps = MapsView(self._add_start, self.navigation.visit, self._count_in)
+        self.zoom_buttons = ZoomButtons(
+            locked(self.navigation.back), locked(self.navigation.forward), locked(lambda: self.navigation.visit(None))
         )
-        main = pn.Column(
-            self.controls.layout(),
-            self.progress.layout(),
-            self.zoom_buttons.layout(),
-            self.maps.layout(),
-            orbit,
-            sizing_mode="stretch_width",
-            margin=(0, 10),
+        self.desk: OrbitDesk = OrbitDesk(
+            DeskActions(
+                add=locked(self._add_start),
+                choose=lambda place: state.param.update(chosen=place),
+                remove=locked(lambda: state.remove_start(state.chosen)),
+                clear=locked(lambda: state.param.update(starts=(), chosen=0)),
+                find_twin=locked(lambda: self.twin.search()),
+                open_plane=locked(self._open_plane),
+            )
         )
-        page = pmui.Page(title="Escape Explorer", main=[main], theme_toggle=False, busy_indicator=None)
-        # A page that shows how busy it is looks through all its models at the begin and end of every callback: 50 ms each.
-        with edit_readonly(page):
-            page.busy = False
-        return page
+        self.panes = OrbitPanes()
+        self.separation_pane: SeparationPane = SeparationPane()
+        self.time_bar = TimeBar(self.panes.set_time)
+        self.numbers = NumbersView(locked(lambda: self._count_in(None)))
+        self.words = WordsView(state)
+        self.keyboard = Keyboard(locked(self._press), locked(lambda: self.tour.start()), locked(self._copied))
+        self.take_along = TakeAlong(state, self.keyboard.copy_link)
+        self.gallery = Gallery(locked(self._show_preset))
+        self.tour: Tour = Tour()
+        actions = EnergyActions(
+            look=lambda energy: self.controller.request_preview(energy),
+            settle=lambda: self.controller.request_map(),
+            play=locked(self._play),
+        )
+        self.controls = Controls(state, actions)
+
+    def _connect(self) -> None:
+        watch, state = self.state.param.watch, self.state
+        watch(lambda *events: self.zoom_buttons.follow(self.navigation.history), ["window", "case", "plane"])
+        watch(lambda event: self.desk.follow_plane(event.new), "plane")
+        watch(lambda event: self._show_orbits(self._known), "chosen")
+        watch(lambda event: self.maps.show_characters(event.new), "judge")
+        watch(lambda event: self._set_palette(), "palette")
+        watch(lambda *events: self._count_in(None), ["case", "plane", "window"])
+        watch(lambda *events: self._write_link(), list(LINKED))
+        self.desk.follow_plane(state.plane)
+        self.maps.show_characters(state.judge)
+        self._set_palette()
+        self.zoom_buttons.follow(self.navigation.history)
+
+    def close(self, *_: Any) -> None:
+        """The session is over."""
+        for requests in (self.controller, self.orbits, self.twin, self.separation):
+            requests.close()
+
+    def set_dark(self, dark: bool) -> None:
+        """Another theme."""
+        self.maps.set_dark(dark)
+        self.panes.outlines.set_dark(dark)
 
     def _begin(self) -> None:
         """The page is there: show what the link, or nobody, asked for."""
         self.controller.request_map()
-        if self.state.start is not None:
-            self._mark_start(self.state.start)
-            self.controller.request_orbit()
+        self.orbits.follow()
         if self._problems:
             self.progress.warn(" ".join(self._problems))
 
@@ -99,20 +134,75 @@ class Explorer:
         if pn.state.location is not None:
             pn.state.location.search = write_link(self.state)
 
-    def _choose_start(self, x: float, ordinate: float) -> None:
-        self.state.start = (x, ordinate)
+    def _set_palette(self) -> None:
+        palette = self.state.colours
+        with pn.io.hold():
+            for view in (self.maps, self.panes, self.desk, self.numbers, self.separation_pane):
+                view.set_palette(palette)
+            self._show_orbits(self._known)
 
-    def _zoom(self, window: Window | None) -> None:
-        """The ranges have come to rest somewhere else."""
-        self.history.visit(window)
-        self._go_to(window)
+    # What visitors do.
 
-    def _go_to(self, window: Window | None) -> None:
-        self.state.window = window
+    def _add_start(self, x: float, ordinate: float) -> None:
+        self.state.add_start((x, ordinate))
+
+    def _count_in(self, box: Window | None) -> None:
+        self.maps.marks.show_box(box)
+        self.numbers.show_box(box)
+
+    def _open_plane(self) -> None:
+        """From (x, h) to the (x, px) plane of the chosen orbit's energy, with that orbit."""
+        start = self.state.chosen_start
+        if start is not None and self.state.plane is Plane.X_H:
+            self.state.param.update(plane=Plane.X_PX, energy=start[1], window=None, starts=((start[0], 0.0),), chosen=0)
+
+    def _show_preset(self, preset: Preset) -> None:
+        self.sweep.stop()
+        self.state.param.update(**{"palette": self.state.palette, "chosen": 0, **preset.values()})
+
+    def _copied(self, success: bool) -> None:
+        said = "The link is in the clipboard." if success else "The browser refused: copy the page's address instead."
+        pn.state.notifications.info(said, duration=4000)
+
+    def _press(self, key: str) -> None:
+        """A key of `KEYS`."""
+        moves = {**self.navigation.moves(), "p": self._play, "Escape": self._escape, "?": self.tour.start}
+        try:
+            moves[key]()
+        except ValueError as error:
+            self.progress.warn(str(error))
+
+    def _escape(self) -> None:
+        self.sweep.stop()
+        self.controller.stop_map()
+
+    def _play(self) -> None:
+        if self.sweep.playing:
+            self.sweep.stop()
+        elif self.state.plane is not Plane.X_H:
+            energies = ENERGIES[self.state.case]
+            self.sweep.start(self.state.energy, energies.low, energies.high)
+            self.controls.show_playing(True)
+
+    def _pass_by(self, energy: float) -> None:
+        self.controls.show_passing(energy)
+        self.controller.request_preview(energy)
+
+    def _end_sweep(self, energy: float) -> None:
+        self.controls.show_playing(False)
+        self.state.energy = round(energy, 3)
+
+    # What the engine answers.
 
     def map_requested(self) -> None:
         """Show that work has begun."""
         self.progress.start()
+
+    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """Paint a quick look."""
+        with pn.io.hold():
+            self.maps.show(frame, columns)
+            self.progress.look(frame)
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame."""
@@ -121,11 +211,17 @@ class Explorer:
             if self.state.window is None:
                 self.maps.set_home(frame.spec.window)
             self.progress.show(frame)
+            if frame.stride == 1:
+                self.numbers.show(frame)
+            self.take_along.show_map(frame)
+            if frame.complete:
+                self.words.show_map(frame)
 
     def regularity_arrived(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         """Paint what is judged."""
         with pn.io.hold():
             self.maps.show_regularity(frame, regularity)
+            self.take_along.show_regularity(regularity)
 
     def map_stopped(self) -> None:
         """Show that the map has been cancelled."""
@@ -135,16 +231,25 @@ class Explorer:
         """Say why there is no map; the last picture stays."""
         self.progress.fail(sentence)
 
-    def orbit_requested(self, start: tuple[float, float]) -> None:
-        """Show which orbit is on its way."""
-        self.verdict.expect(start)
-
-    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
-        """Draw an orbit and its verdict."""
+    def _show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """Draw what is known of the chosen orbits."""
+        self._known, chosen = tuple(orbits), self.state.chosen
+        if chosen >= len(orbits) and orbits:
+            return
+        there = [one.drawing for one in orbits]
         with pn.io.hold():
-            self.verdict.show(orbit)
-            self.panes.show(potential, orbit)
+            self.maps.marks.show_starts([one.start for one in orbits])
+            on_section = self.state.plane is Plane.X_PX
+            self.maps.marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in there])
+            self.desk.show(orbits, chosen)
+            self.panes.show(self.state.potential, there, chosen)
+            looked_at = there[chosen] if orbits else None
+            self.time_bar.follow(float(looked_at.orbit.t[-1]) if looked_at is not None else None)
+            self.separation.follow(orbits)
+            self.take_along.show_orbits(orbits)
+            self.words.show_orbits(orbits)
 
-    def orbit_refused(self, sentence: str) -> None:
-        """Say why there is no orbit."""
-        self.verdict.say(sentence)
+
+def _parameters() -> dict[str, str]:
+    """The parameters in the page's address."""
+    return {name: texts[0].decode(errors="replace") for name, texts in dict(pn.state.session_args or {}).items()}

@@ -9,14 +9,16 @@ from urllib.parse import urlencode
 
 import numpy as np
 
+from app.palette import MOST_ORBITS, PALETTES
 from app.paper_energies import ENERGIES
 from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from engine import CASES, Plane, Window
 
-LONGEST_VALUE = 200
+LONGEST_VALUE = 300
 """Most characters that a value in a link may have."""
 
 _SHOWN = 40
+PAPER_SET = "paper"
 
 
 def write_link(state: ViewState) -> str:
@@ -30,11 +32,14 @@ def write_link(state: ViewState) -> str:
     }
     if state.window is not None:
         chosen["window"] = _joined(astuple(state.window))
-    if state.start is not None:
-        chosen["start"] = _joined(state.start)
     if state.judge:
         chosen["judge"] = "yes"
-    return "?" + urlencode(chosen, safe=",")
+    if state.palette != PAPER_SET:
+        chosen["palette"] = state.palette
+    if state.starts:
+        chosen["orbits"] = ";".join(map(_joined, state.starts))
+        chosen["look"] = state.chosen + 1
+    return "?" + urlencode(chosen, safe=",;")
 
 
 def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
@@ -56,6 +61,8 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
             problems.append(f"In the link, {name}={_shown(text)} is of no use: it must be {legal}.")
     if "case" in values and "energy" not in values:
         values["energy"] = ENERGIES[values["case"]].first
+    if values.get("chosen", 0) >= len(values.get("starts", (0,))):
+        values["chosen"] = 0
     return values, problems
 
 
@@ -83,6 +90,13 @@ def _read_numbers(text: str, count: int) -> tuple[float, ...]:
     return numbers
 
 
+def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
+    starts = tuple(_read_numbers(pair, 2) for pair in text.split(";"))
+    if len(starts) > MOST_ORBITS:
+        raise ValueError
+    return starts
+
+
 def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
     return lambda text: choices[text]
 
@@ -92,6 +106,8 @@ _PLANES = {plane.name.lower(): plane for plane in Plane}
 _TIMES = {f"{t_max:g}": t_max for t_max in T_MAX_CHOICES.values()}
 _RESOLUTIONS = {str(side): side for side in RESOLUTION_CHOICES.values()}
 _SWITCH = {"yes": True, "no": False}
+_PALETTES = {name: name for name in PALETTES}
+_PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
 # For each parameter: what it sets, how it is read, and what is legal.
 _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
@@ -101,8 +117,10 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "t_max": ("t_max", _one_of(_TIMES), f"one of {', '.join(_TIMES)}"),
     "resolution": ("resolution", _one_of(_RESOLUTIONS), f"one of {', '.join(_RESOLUTIONS)}"),
     "window": ("window", lambda text: Window(*_read_numbers(text, 4)), "x_low,x_high,ordinate_low,ordinate_high"),
-    "start": ("start", lambda text: _read_numbers(text, 2), "two numbers, x and the ordinate"),
     "judge": ("judge", _one_of(_SWITCH), "yes or no"),
+    "palette": ("palette", _one_of(_PALETTES), f"one of {', '.join(_PALETTES)}"),
+    "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate with semicolons between"),
+    "look": ("chosen", _one_of(_PLACES), f"one of {', '.join(_PLACES)}"),
 }
 
 LINKED = tuple(attribute for attribute, _, _ in _READERS.values())

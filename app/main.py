@@ -3,6 +3,7 @@
 import panel as pn
 
 from app.explorer import Explorer
+from app.page import explorer_page
 
 pn.extension(notifications=True)
-Explorer().layout().servable()
+explorer_page(Explorer()).servable()

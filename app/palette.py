@@ -1,40 +1,13 @@
-"""Every colour of the page and what it stands for, once. Maps use the paper's colours."""
+"""Every colour of the page and what it stands for, once: the paper's set, and one that the colour-blind can read."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
-from bokeh.palettes import interp_palette
+from bokeh.palettes import Cividis256, interp_palette
 
 from engine import Certificate, Fate, Regularity
-
-CHANNELS = ("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf")
-"""Channels 1, 2, 3, 4 as in the paper: green, red, blue, orange; four more for potentials with more exits."""
-
-BOUNDED = "#8f8f8f"
-FORBIDDEN = "#ffffff"
-OUTSIDE = "#ece4d2"
-NOT_COMPUTED = "#d4deed"
-FAILED = "#000000"
-INTERIOR = "#f7fafc"
-
-ESCAPE_TIME = interp_palette(["#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"], 256)
-"""Light red for fast, dark blue and purple for slow escapes."""
-
-LIMITING_CURVE = "#1b1b1b"
-EQUIPOTENTIAL = "#b9c3cf"
-CRITICAL_EQUIPOTENTIAL = "#d62728"
-START = "#111111"
-HALO = "#ffffff"
-"""Under the crosses and the exits, so that they stand out from any basin."""
-
-PATCH_EDGE = "#999999"
-QUIET_TEXT = "#555555"
-ORBIT = "#1d4e89"
-ORBIT_DENSITY = ["#a9c6e8", "#1d4e89", "#081c3a"]
-"""Seldom to often visited, for orbits drawn by datashader."""
-
-THRESHOLD = "#d62728"
 
 
 @dataclass(frozen=True)
@@ -45,48 +18,165 @@ class Entry:
     colour: str
 
 
-# The pixel codes of all images: these outcomes first, in this order, then channels or crossing classes.
-OUTCOMES: dict[Fate, Entry] = {
-    Fate.NOT_COMPUTED: Entry("not decided yet", NOT_COMPUTED),
-    Fate.FAILED: Entry("failed", FAILED),
-    Fate.OUTSIDE: Entry("outside: starts beyond an exit", OUTSIDE),
-    Fate.FORBIDDEN: Entry("forbidden: no such orbit", FORBIDDEN),
-    Fate.BOUNDED: Entry("bounded", BOUNDED),
+OUTCOMES: dict[Fate, str] = {
+    Fate.NOT_COMPUTED: "not decided yet",
+    Fate.FAILED: "failed",
+    Fate.OUTSIDE: "outside: starts beyond an exit",
+    Fate.FORBIDDEN: "forbidden: no such orbit",
+    Fate.BOUNDED: "bounded",
 }
+"""The pixel codes of all images: these outcomes first, in this order, then channels or classes."""
 
-CROSSING_CLASSES: tuple[tuple[int, Entry], ...] = (
-    (0, Entry("0 (direct)", "#e3342f")),
-    (1, Entry("1", "#1f4fd8")),
-    (2, Entry("2", "#e83ec9")),
-    (3, Entry("3–10", "#ff9d1c")),
-    (11, Entry("> 10", "#2ca02c")),
-)
-"""(fewest crossings, entry) of each class, in the paper's colours."""
+CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (11, "> 10"))
+"""(fewest crossings, label) of each class."""
 
-CHARACTERS: dict[Regularity, Entry] = {
-    Regularity.NO_QUESTION: Entry("escapes", "#f4ead2"),
-    Regularity.REGULAR: Entry("bounded and regular", "#2b6cb0"),
-    Regularity.CHAOTIC: Entry("bounded and chaotic", "#d9480f"),
-    Regularity.NOT_JUDGED: Entry("bounded, not judged yet", BOUNDED),
+CHARACTERS: dict[Regularity, str] = {
+    Regularity.NO_QUESTION: "escapes",
+    Regularity.REGULAR: "bounded and regular",
+    Regularity.CHAOTIC: "bounded and chaotic",
+    Regularity.NOT_JUDGED: "bounded, not judged yet",
 }
 """What the pixels of the picture of regular and chaotic orbits stand for, after the outcomes."""
 
-CHARACTER_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *(entry.colour for entry in CHARACTERS.values())]
-FATE_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *CHANNELS]
-CROSSING_COLOURS = [
-    *(entry.colour for entry in OUTCOMES.values()),
-    *(entry.colour for _, entry in CROSSING_CLASSES),
-    # Bounded pixels, by their certificates.
-    *(BOUNDED for _ in Certificate),
-]
-# Under the escape times, which cover the escaped pixels.
-BACKGROUND_COLOURS = [*(entry.colour for entry in OUTCOMES.values()), *["#ffffff"] * len(CHANNELS)]
-# The plain interior of the first map.
-REGION_COLOURS = [OUTCOMES[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else INTERIOR for fate in OUTCOMES] + [
-    INTERIOR
-] * len(CHANNELS)
+MOST_ORBITS = 5
+"""As many orbits have a colour of their own."""
+
+# Translucent, so that they go with a light page and with a dark one.
+_FORBIDDEN = "#ffffff00"
+_OUTSIDE = "#b0904a48"
+_NOT_COMPUTED = "#7f9cc855"
+_INTERIOR = "#7aa7d618"
+_FAILED = "#000000"
 
 
-def channel_entries(channels: int) -> list[Entry]:
-    """Legend of a potential's channels."""
-    return [Entry(f"channel {k + 1}", CHANNELS[k]) for k in range(channels)]
+@dataclass(frozen=True)
+class Palette:
+    """A set of colours.
+
+    Attributes
+    ----------
+    name
+        What a visitor reads.
+    channels
+        Of the exit channels 1 to 8.
+    bounded
+        Of orbits that stay.
+    classes
+        Of each of `CROSSING_CLASSES`.
+    escape_time
+        From fast to slow, 256 of them.
+    characters
+        Of orbits that escape, are regular, are chaotic; the rest have the colour of bounded ones.
+    orbits
+        Of the orbits that a visitor has chosen, in turn.
+    """
+
+    name: str
+    channels: tuple[str, ...]
+    bounded: str
+    classes: tuple[str, ...]
+    escape_time: tuple[str, ...]
+    characters: tuple[str, str, str]
+    orbits: tuple[str, ...]
+
+    @cached_property
+    def outcomes(self) -> dict[Fate, Entry]:
+        """Legend of what is no escape, in the order of the pixel codes."""
+        colours = (_NOT_COMPUTED, _FAILED, _OUTSIDE, _FORBIDDEN, self.bounded)
+        return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
+
+    @cached_property
+    def crossing_entries(self) -> list[Entry]:
+        """Legend of the crossing classes."""
+        return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
+
+    @cached_property
+    def character_entries(self) -> list[Entry]:
+        """Legend of regular and chaotic orbits."""
+        return [Entry(label, colour) for label, colour in zip(CHARACTERS.values(), (*self.characters, self.bounded), strict=True)]
+
+    def channel_entries(self, channels: int) -> list[Entry]:
+        """Legend of a potential's channels."""
+        return [Entry(f"channel {k + 1}", self.channels[k]) for k in range(channels)]
+
+    @cached_property
+    def fate_colours(self) -> list[str]:
+        """For each pixel code of the basins its colour."""
+        return [*self._outcome_colours, *self.channels]
+
+    @cached_property
+    def crossing_colours(self) -> list[str]:
+        """For each pixel code of the crossings; bounded pixels have a code for each certificate."""
+        return [*self._outcome_colours, *self.classes, *(self.bounded for _ in Certificate)]
+
+    @cached_property
+    def character_colours(self) -> list[str]:
+        """For each pixel code of regular and chaotic orbits."""
+        return [*self._outcome_colours, *(entry.colour for entry in self.character_entries)]
+
+    @cached_property
+    def background_colours(self) -> list[str]:
+        """Under the escape times, which cover the escaped pixels."""
+        return [*self._outcome_colours, *([_FORBIDDEN] * len(self.channels))]
+
+    @cached_property
+    def region_colours(self) -> list[str]:
+        """The plain interior of the first picture."""
+        plain = [self.outcomes[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else _INTERIOR for fate in OUTCOMES]
+        return [*plain, *([_INTERIOR] * len(self.channels))]
+
+    @property
+    def _outcome_colours(self) -> list[str]:
+        return [entry.colour for entry in self.outcomes.values()]
+
+
+PAPER = Palette(
+    name="as in the paper",
+    channels=("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf"),
+    bounded="#8f8f8f",
+    classes=("#e3342f", "#1f4fd8", "#e83ec9", "#ff9d1c", "#2ca02c"),
+    escape_time=tuple(interp_palette(["#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"], 256)),
+    characters=("#f4ead2", "#1fb6d1", "#d81fa4"),
+    orbits=("#0b84f3", "#e6007e", "#00a88f", "#f2a900", "#7b4fe0"),
+)
+"""Channels 1 to 4 green, red, blue, orange; fast escapes light red, slow ones dark; regular cyan, chaotic magenta."""
+
+COLOUR_BLIND_SAFE = Palette(
+    name="colour-blind safe",
+    channels=("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
+    bounded="#a6a6a6",
+    classes=("#fde725", "#5dc863", "#21908c", "#3b528b", "#440154"),
+    escape_time=tuple(reversed(Cividis256)),
+    characters=("#f3efe2", "#0072b2", "#e69f00"),
+    orbits=("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9"),
+)
+"""After Okabe and Ito; classes along viridis, times along cividis."""
+
+PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
+"""By the name that a link has for them."""
+
+
+@dataclass(frozen=True)
+class Inks:
+    """Colours of lines on a page, light or dark."""
+
+    limiting_curve: str
+    equipotential: str
+    critical_equipotential: str
+    halo: str
+    quiet: str
+    text: str
+
+
+LIGHT = Inks(
+    limiting_curve="#1b1b1b", equipotential="#b9c3cf", critical_equipotential="#d62728", halo="#ffffff", quiet="#555555",
+    text="#1b1b1b",
+)  # fmt: skip
+DARK = Inks(
+    limiting_curve="#e6e6e6", equipotential="#566170", critical_equipotential="#ff6b6b", halo="#ffffff", quiet="#b0b0b0",
+    text="#f0f0f0",
+)  # fmt: skip
+
+PATCH_EDGE = "#999999"
+MARK_EDGE = "#111111"
+THRESHOLD = "#d62728"

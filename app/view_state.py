@@ -5,15 +5,19 @@ from __future__ import annotations
 import numpy as np
 import param
 
+from app.palette import MOST_ORBITS, PALETTES, Palette
 from app.paper_energies import ENERGIES
-from engine import CASES, MapSpec, Plane, Potential, Window, start_states
+from engine import CASES, MapSpec, OrbitSpec, Plane, Potential, Window, start_states
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
 RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
 
+Start = tuple[float, float]
+"""x and ordinate of a start on the plane."""
+
 
 class ViewState(param.Parameterized):
-    """The view: which map, and the start of the orbit beside it (x and ordinate; None before the first click)."""
+    """The view: which map, in which colours, and the starts of the orbits beside it."""
 
     case = param.Selector(default="I", objects=list(CASES))
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
@@ -24,21 +28,53 @@ class ViewState(param.Parameterized):
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
     judge = param.Boolean(default=False, doc="whether bounded orbits are judged regular or chaotic")
-    start = param.NumericTuple(default=None, length=2, allow_None=True)
+    palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the set of colours")
+    starts = param.ClassSelector(class_=tuple, default=(), doc="of the orbits, up to MOST_ORBITS; each has its place and colour")
+    chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="place of the orbit that is looked at")
 
     @property
     def potential(self) -> Potential:
         """The potential of the chosen case."""
         return CASES[self.case]
 
+    @property
+    def colours(self) -> Palette:
+        """The chosen set of colours."""
+        return PALETTES[self.palette]
+
+    @property
+    def chosen_start(self) -> Start | None:
+        """The start that is looked at; None where there is none."""
+        return self.starts[self.chosen] if self.chosen < len(self.starts) else None
+
     def map_spec(self) -> MapSpec:
         """The request for the map in view; ValueError names what is wrong with the choice."""
-        energy: float | tuple[float, float] = self.energy
+        return self.map_spec_at(self.energy)
+
+    def map_spec_at(self, h: float) -> MapSpec:
+        """The same at another energy."""
+        energy: float | tuple[float, float] = h
         if self.plane is Plane.X_H:
             energy = (self.potential.escape_energy, ENERGIES[self.case].high)
         return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
-    def start_state(self) -> tuple[float, float, float, float]:
-        """x, y, px, py of the chosen start; py is NaN where it is forbidden."""
-        x, ordinate = (np.array([value]) for value in self.start)
-        return tuple(float(value) for value in start_states(self.potential, self.plane, self.energy, x, ordinate)[0])  # type: ignore[return-value]
+    def orbit_spec(self, start: Start) -> OrbitSpec | None:
+        """The request for the orbit of a start; None where no orbit of this energy can start."""
+        x, ordinate = (np.array([value]) for value in start)
+        x0, y, px, py = (float(value) for value in start_states(self.potential, self.plane, self.energy, x, ordinate)[0])
+        return OrbitSpec(self.potential, (x0, y, px, py), self.t_max) if np.isfinite(py) else None
+
+    def add_start(self, start: Start) -> None:
+        """One more orbit, which is then looked at; with all places taken it takes the one after the last chosen."""
+        if start in self.starts:
+            self.chosen = self.starts.index(start)
+            return
+        place = len(self.starts) if len(self.starts) < MOST_ORBITS else (self.chosen + 1) % MOST_ORBITS
+        starts = list(self.starts)
+        starts[place : place + 1] = [start]
+        self.param.update(starts=tuple(starts), chosen=place)
+
+    def remove_start(self, place: int) -> None:
+        """Forget an orbit; those after it move up."""
+        starts = self.starts[:place] + self.starts[place + 1 :]
+        self.param.update(starts=starts, chosen=max(min(self.chosen, len(starts) - 1), 0))

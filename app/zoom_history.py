@@ -13,6 +13,11 @@ class ZoomHistory:
         self._at = 0
 
     @property
+    def window(self) -> Window | None:
+        """Where the visitor is."""
+        return self._windows[self._at]
+
+    @property
     def can_go_back(self) -> bool:
         """Whether there is an earlier window."""
         return self._at > 0

@@ -16,8 +16,12 @@ from engine.map_specs import MapSpec
 from engine.maps import compute_map
 from engine.orbit_batches import default_executor
 from engine.orbits import Orbit, integrate_orbit
+from engine.planes import Plane
 from engine.potentials import Potential
+from engine.previews import compute_preview, preview_spec
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
+from engine.separations import Separation, compute_separation
+from engine.twins import Twin, find_twin
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
 # Threads that only wait for the pool and hand frames on; more jobs than this wait for their turn.
@@ -44,10 +48,60 @@ class OrbitSpec:
 
 
 @dataclass(frozen=True)
+class TwinSpec:
+    """The request for the twin of a start: `find_twin`'s arguments, hashable."""
+
+    potential: Potential
+    plane: Plane
+    energy: float | tuple[float, float]
+    x: float
+    ordinate: float
+    t_max: float
+
+
+@dataclass(frozen=True)
+class _TwinAnswer:
+    """A twin, or the knowledge that there is none."""
+
+    twin: Twin | None
+    nbytes: int = 1024
+    """About what it takes together with its request."""
+
+
+@dataclass(frozen=True)
+class SeparationSpec:
+    """The request to compare two orbits: `compute_separation`'s arguments, hashable."""
+
+    potential: Potential
+    first: tuple[float, float, float, float]
+    second: tuple[float, float, float, float]
+    t_end: float
+
+
+@dataclass(frozen=True)
+class _PreviewSpec:
+    """The request for a quick look at a map."""
+
+    map_spec: MapSpec
+
+
+@dataclass(frozen=True)
 class _RegularitySpec:
     """The request to judge the bounded orbits of a map."""
 
     map_spec: MapSpec
+
+
+@dataclass(frozen=True, eq=False)
+class _Preview:
+    """A preview as it is kept: whole, for what it is."""
+
+    frame: EscapeMap
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes held."""
+        return self.frame.nbytes
 
 
 class Ticket:
@@ -150,9 +204,27 @@ class Jobs:
         """
         return self._request(spec, on_frame, on_error, self._run_map)
 
+    def request_preview(
+        self, spec: MapSpec, on_preview: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
+    ) -> Ticket:
+        """Ask for a quick look at a map (`compute_preview`); it comes to `on_preview` from another thread, once."""
+        return self._request(_PreviewSpec(preview_spec(spec)), lambda kept: on_preview(kept.frame), on_error, self._run_preview)
+
     def request_orbit(self, spec: OrbitSpec, on_orbit: Callable[[Orbit], None], on_error: Callable[[Exception], None]) -> Ticket:
         """Ask for an orbit; it comes to `on_orbit` from another thread."""
         return self._request(spec, on_orbit, on_error, self._run_orbit)
+
+    def request_twin(
+        self, spec: TwinSpec, on_twin: Callable[[Twin | None], None], on_error: Callable[[Exception], None]
+    ) -> Ticket:
+        """Ask for the nearest start that leaves elsewhere; it comes to `on_twin` from another thread, None if there is none."""
+        return self._request(spec, lambda answer: on_twin(answer.twin), on_error, self._run_twin)
+
+    def request_separation(
+        self, spec: SeparationSpec, on_separation: Callable[[Separation], None], on_error: Callable[[Exception], None]
+    ) -> Ticket:
+        """Ask how two orbits part; it comes to `on_separation` from another thread."""
+        return self._request(spec, on_separation, on_error, self._run_separation)
 
     def request_regularity(
         self, spec: MapSpec, on_frame: Callable[[RegularityMap], None], on_error: Callable[[Exception], None]
@@ -228,6 +300,21 @@ class Jobs:
         publish = partial(self._publish, job)
         return compute_map(spec, publish, job.cancel, self._executor, resume=self._find_resumable(spec))
 
+    def _run_separation(self, job: _Job) -> Separation:
+        spec = job.key
+        assert isinstance(spec, SeparationSpec)
+        executor = self._executor or default_executor()
+        return executor.submit(
+            compute_separation, spec.potential, spec.first, spec.second, spec.t_end, cancel=job.cancel
+        ).result()
+
+    def _run_preview(self, job: _Job) -> _Preview:
+        assert isinstance(job.key, _PreviewSpec)
+        frame = compute_preview(job.key.map_spec, self._executor, job.cancel)
+        if job.cancel.is_set():
+            raise CancelledError
+        return _Preview(frame)
+
     def _run_regularity(self, job: _Job) -> RegularityMap:
         assert isinstance(job.key, _RegularitySpec)
         spec = job.key.map_spec
@@ -253,6 +340,12 @@ class Jobs:
         assert isinstance(spec, OrbitSpec)
         executor = self._executor or default_executor()
         return executor.submit(integrate_orbit, spec.potential, spec.state, spec.t_max, cancel=job.cancel).result()
+
+    def _run_twin(self, job: _Job) -> _TwinAnswer:
+        spec = job.key
+        assert isinstance(spec, TwinSpec)
+        start = (spec.x, spec.ordinate, spec.t_max)
+        return _TwinAnswer(find_twin(spec.potential, spec.plane, spec.energy, *start, executor=self._executor, cancel=job.cancel))
 
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
         """The kept map of the same picture that has been followed longest, though not beyond t_max."""

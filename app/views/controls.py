@@ -1,14 +1,18 @@
-"""The controls of the map: case, energy, plane; and, second to them, t_max and resolution."""
+"""The controls of the map: case, energy, plane; and, second to them, t_max, resolution and colours."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 
+from app.palette import PALETTES
 from app.paper_energies import ENERGIES
 from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
+from app.views.wrapping import wrapping_row
 from engine import CASES, Plane
 
 _FORMULAS = {
@@ -16,21 +20,35 @@ _FORMULAS = {
     "II": "V = ½(x² + y²) − x(x²/3 − y²)",
     "III": "V = ½(x² + y²) − x² y²",
 }
+PLAY, STOP = "▶ Play", "■ Stop"
 _ENERGY_STEP = 0.001
 _PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
 _ONE_LINE = {"& .MuiFormControlLabel-label": {"whiteSpace": "nowrap"}}
 
 
+@dataclass(frozen=True)
+class EnergyActions:
+    """What the energy slider does besides setting h: quick looks on its way, the map again where it ends, and play."""
+
+    look: Callable[[float], None]
+    settle: Callable[[], None]
+    play: Callable[[], None]
+
+
 class Controls:
     """Widgets that write into the view state and follow it."""
 
-    def __init__(self, state: ViewState) -> None:
+    def __init__(self, state: ViewState, energy_actions: EnergyActions) -> None:
         self.state = state
+        self._energy_actions = energy_actions
+        self._looked = False
+        self._passing: float | None = None
         self.case = pmui.RadioButtonGroup(label="Case", options=list(CASES), value=state.case, size="small", sx=_PLAIN)
         self.plane = pmui.RadioButtonGroup(
             label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, size="small", sx=_PLAIN
         )
         self.energy = pmui.FloatSlider(label="Energy h", step=_ENERGY_STEP, format="0.000", sizing_mode="stretch_width")
+        self.play = pmui.Button(label=PLAY, variant="outlined", size="small", width=76, sx=_PLAIN)
         self.exact_energy = pmui.FloatInput(
             label="h exactly", value=state.energy, step=_ENERGY_STEP, format="0.[0000000000000000]", width=130, size="small"
         )
@@ -39,44 +57,77 @@ class Controls:
             label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small"
         )
         self.judge = pmui.Switch(label="Regular or chaotic", value=state.judge, width=190, sx=_ONE_LINE)
+        self.palette = pmui.Select(
+            label="Colours",
+            options={palette.name: key for key, palette in PALETTES.items()},
+            value=state.palette,
+            width=170,
+            size="small",
+        )
         self.facts = pn.pane.HTML(margin=(0, 10))
         self._follow_case()
         self._connect()
 
     def layout(self) -> pn.viewable.Viewable:
-        """A strip that wraps on narrow screens."""
-        energy = pn.Column(self.energy, min_width=300, max_width=430, sizing_mode="stretch_width", margin=(0, 20))
-        choices = pn.Column(self.case, min_width=150), pn.Column(self.plane, min_width=230)
-        strip = pn.FlexBox(
-            *choices,
-            energy,
-            self.exact_energy,
-            self.t_max,
-            self.resolution,
-            self.judge,
-            align_items="center",
-            gap="6px",
-            sizing_mode="stretch_width",
-        )
-        return pn.Column(strip, self.facts, sizing_mode="stretch_width")
+        """Two strips that wrap on narrow screens: what is looked at, and how."""
+        energy = pn.Column(self.energy, min_width=300, max_width=620, sizing_mode="stretch_width", margin=(0, 20))
+        what = (pn.Column(self.case, min_width=150), pn.Column(self.plane, min_width=230), energy, self.play, self.exact_energy)
+        how = (self.t_max, self.resolution, self.palette, self.judge, self.facts)
+        return pn.Column(_strip(*what), _strip(*how), sizing_mode="stretch_width")
 
     def _connect(self) -> None:
         state = self.state
-        self.case.param.watch(
-            lambda event: state.param.update(case=event.new, energy=ENERGIES[event.new].first, window=None, start=None), "value"
-        )
-        self.plane.param.watch(lambda event: state.param.update(plane=event.new, window=None, start=None), "value")
+        self.case.param.watch(lambda event: self._take_case(event.new), "value")
+        self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
+        self.palette.param.watch(lambda event: state.param.update(palette=event.new), "value")
+        self.play.on_click(lambda event: self._energy_actions.play())
+        self.energy.param.watch(self._look, "value")
         self.energy.param.watch(self._take_slid_energy, "value_throttled")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
         self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
         self.judge.param.watch(lambda event: state.param.update(judge=event.new), "value")
         state.param.watch(lambda event: self._follow_case(), "case")
-        state.param.watch(lambda event: self._follow_energy(), ["energy", "plane"])
+        state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
+        for name in ("case", "plane", "t_max", "resolution", "palette", "judge"):
+            state.param.watch(lambda event: getattr(self, event.name).param.update(value=event.new), name)
+
+    def show_playing(self, playing: bool) -> None:
+        """Name the button after what it does next."""
+        self.play.label = STOP if playing else PLAY
+
+    def show_passing(self, energy: float) -> None:
+        """Put the slider where a sweep is."""
+        self._passing = energy
+        self.energy.value = energy
+
+    def _look(self, event: Any) -> None:
+        """The slider is on its way: unless it follows the state or a sweep, somebody drags it."""
+        if event.new == self._on_slider():
+            self._settle()
+        elif event.new != self._passing:
+            self._looked = True
+            self._energy_actions.look(event.new)
+
+    def _settle(self) -> None:
+        """Back where it was before the quick looks: their picture makes room for the map."""
+        if self._looked:
+            self._looked = False
+            self._energy_actions.settle()
+
+    def _take_case(self, case: str) -> None:
+        # The buttons follow the state, too; then there is nothing to take.
+        if case != self.state.case:
+            self.state.param.update(case=case, energy=ENERGIES[case].first, window=None, starts=(), chosen=0)
+
+    def _take_plane(self, plane: Plane) -> None:
+        if plane != self.state.plane:
+            self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
 
     def _take_slid_energy(self, event: Any) -> None:
         # The slider stands at its end for an energy typed beyond it; that is no wish to go there.
         if event.new != self._on_slider():
+            self._looked = False
             self.state.energy = event.new
 
     def _on_slider(self) -> float:
@@ -107,3 +158,7 @@ class Controls:
         self.energy.param.update(value=self._on_slider(), disabled=on_h)
         self.energy.label = "Energy h: the ordinate of this plane" if on_h else "Energy h"
         self.exact_energy.param.update(value=state.energy, disabled=on_h)
+
+
+def _strip(*widgets: pn.viewable.Viewable) -> pn.FlexBox:
+    return wrapping_row(*widgets, align_items="center", gap="6px", sizing_mode="stretch_width")

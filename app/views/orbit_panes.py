@@ -1,114 +1,142 @@
-"""One orbit in three panes: its path over the zero-velocity curve, SALI(t), and R²(t)."""
+"""The chosen orbits in three panes, each in its colour: paths over the zero-velocity curve, SALI(t), and R²(t)."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
-import holoviews as hv
 import numpy as np
 import panel as pn
-from holoviews.operation.datashader import datashade, dynspread
+from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d, Span
+from bokeh.plotting import figure
 
-from app import palette
-from engine import (
-    CASES,
-    CHAOS_THRESHOLD,
-    Orbit,
-    Plane,
-    Potential,
-    default_window,
-    find_lyapunov_orbits,
-    integrate_orbit,
-    start_states,
-    trace_zero_velocity_curve,
-)
+from app.help_texts import help_details
+from app.orbit_drawing import LEAST_SALI, OrbitDrawing, draw_orbit, moment
+from app.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
+from app.views.figures import FRAME, square_figure
+from app.views.outlines import Outlines
+from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
 
-hv.extension("bokeh")
-
-FRAME = 280
-# Longer paths than this are drawn by datashader.
-MOST_LINE_POINTS = 20_000
-# Each of this many bins of a history shows its least and greatest value.
-_BINS = 1000
-_LEAST_SALI = 1e-17
+TITLES = {"path": "The orbits", "sali": f"SALI (chaotic at or below {CHAOS_THRESHOLD:g})", "r2": "R² = x² + y²"}
+_OTHERS_ALPHA = 0.35
+_NO_LINE = np.zeros(0), np.zeros(0)
 
 
 class OrbitPanes:
-    """The three panes; empty frames until an orbit is shown."""
+    """The three figures; empty until an orbit is shown."""
 
     def __init__(self) -> None:
-        self.path = pn.pane.HoloViews(linked_axes=False, margin=(0, 6))
-        self.sali = pn.pane.HoloViews(linked_axes=False, margin=(0, 6))
-        self.r2 = pn.pane.HoloViews(linked_axes=False, margin=(0, 6))
+        ranges = {"x_range": Range1d(-1.0, 1.0), "y_range": Range1d(-1.0, 1.0)}
+        logarithmic = {"x_axis_type": "log", "y_axis_type": "log"}
+        axes = {"x_range": Range1d(0.1, 10.0), "y_range": Range1d(LEAST_SALI, 10.0)}
+        self.path = square_figure("path", TITLES["path"], x_axis_label="x", y_axis_label="y", **ranges)
+        self.sali = square_figure("sali", TITLES["sali"], x_axis_label="t", y_axis_label="SALI", **logarithmic, **axes)
+        self.r2 = square_figure(
+            "r2", TITLES["r2"], x_axis_label="t", y_axis_label="R²", x_range=Range1d(0.0, 10.0), y_range=Range1d(0.0, 1.0)
+        )
+        self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._paths, self._histories = _lines("paths"), {name: _lines(f"{name}_histories") for name in ("sali", "r2")}
+        self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
+        self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
+        self._trails = _lines("trails")
+        self.outlines = Outlines()
+        self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
+        self._drawings: list[tuple[int, OrbitDrawing]] = []
+        self._palette = PAPER
+        self._draw()
+        self.set_palette(PAPER)
 
-    def show(self, potential: Potential, orbit: Orbit) -> None:
-        """Draw an orbit, its SALI with the threshold, and its R²."""
-        self.path.object = _draw_path(potential, orbit)
-        self.sali.object = _draw_sali(orbit)
-        self.r2.object = _draw_r2(orbit)
+    def layout(self) -> list[pn.viewable.Viewable]:
+        """The figures, each with its explanation."""
+        return [_with_help(plot) for plot in (self.path, self.sali, self.r2)]
+
+    def show(self, potential: Potential, drawings: Sequence[OrbitDrawing | None], chosen: int) -> None:
+        """Draw orbits by their places; None where there is none, or not yet. The chosen one stands out."""
+        self._drawings = [(slot, drawing) for slot, drawing in enumerate(drawings) if drawing is not None]
+        # The chosen one last, over the others.
+        self._drawings.sort(key=lambda item: item[0] == chosen)
+        alphas = [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in self._drawings]
+        for name in ("sali", "r2"):
+            self._histories[name].data = self._columns([getattr(drawing, name) for _, drawing in self._drawings], alphas)
+        self._show_paths(potential, alphas)
+        self._scale_times()
+
+    def set_time(self, t: float | None) -> None:
+        """Put every orbit's point where it is at a time, with its trail; None takes the points away."""
+        moments = [(slot, moment(drawing.orbit, t)) for slot, drawing in self._drawings] if t is not None else []
+        slots = [slot for slot, _ in moments]
+        self._points.data = {"x": [now.x[-1] for _, now in moments], "y": [now.y[-1] for _, now in moments], "slot": slots}
+        trails = {"xs": [now.x for _, now in moments], "ys": [now.y for _, now in moments]}
+        self._trails.data = {**trails, "slot": slots, "alpha": [1.0] * len(slots)}
+        self._now.update(visible=bool(moments), location=t or 0.0)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._mapper.palette = list(palette.orbits)
+        self.outlines.set_palette(palette)
+
+    def _draw(self) -> None:
+        colour = {"field": "slot", "transform": self._mapper}
+        self.outlines.draw(self.path, full=False)
+        self.path.image_rgba("image", "x", "y", "dw", "dh", source=self._shades)
+        style = {"line_color": colour, "line_alpha": "alpha"}
+        self.path.multi_line("xs", "ys", source=self._paths, **style)
+        self.path.multi_line("xs", "ys", source=self._trails, line_color=LIGHT.halo, line_width=5, line_alpha=0.7)
+        self.path.multi_line("xs", "ys", source=self._trails, line_width=2.5, **style)
+        self.path.scatter("x", "y", source=self._points, size=11, fill_color=colour, line_color=MARK_EDGE, line_width=1.5)
+        for name, plot in (("sali", self.sali), ("r2", self.r2)):
+            plot.multi_line("xs", "ys", source=self._histories[name], **style)
+            plot.add_layout(self._now)
+        self.sali.add_layout(
+            Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
+        )
+
+    def _scale_times(self) -> None:
+        """The axes of the histories, after the chosen orbit or the longest."""
+        if not self._drawings:
+            return
+        everything = [drawing for _, drawing in self._drawings]
+        latest = max(float(drawing.orbit.t[-1]) for drawing in everything)
+        earliest = min((float(drawing.sali[0][0]) for drawing in everything if drawing.sali[0].size), default=0.1)
+        widest = max(float(drawing.r2[1].max()) for drawing in everything)
+        if latest > earliest:
+            self.sali.x_range.update(start=earliest, end=latest, reset_start=earliest, reset_end=latest)
+        for edges, end in ((self.r2.x_range, latest or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
+            edges.update(start=0.0, end=end, reset_start=0.0, reset_end=end)
+
+    def _show_paths(self, potential: Potential, alphas: list[float]) -> None:
+        if not self._drawings:
+            self._paths.data, self._shades.data = self._columns([], []), {name: [] for name in self._shades.data}
+            return
+        drawn = self._drawings[-1][1]
+        window, (x, y) = drawn.window, (self.path.x_range, self.path.y_range)
+        self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))
+        for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
+            edges.update(start=low, end=high, reset_start=low, reset_end=high)
+        lines = [_NO_LINE if one.visits is not None else (one.orbit.x, one.orbit.y) for _, one in self._drawings]
+        self._paths.data = self._columns(lines, alphas)
+        images = [one.shaded(self._palette.orbits[slot]) for slot, one in self._drawings if one.visits is not None]
+        place = {"x": window.x_low, "y": window.ordinate_low, "dw": window.x_high - window.x_low}
+        place["dh"] = window.ordinate_high - window.ordinate_low
+        self._shades.data = {"image": images, **{name: [value] * len(images) for name, value in place.items()}}
+
+    def _columns(self, lines: list[tuple[np.ndarray, np.ndarray]], alphas: list[float]) -> dict[str, list[object]]:
+        slots: list[object] = [slot for slot, _ in self._drawings]
+        xs, ys = ([line[axis].astype(np.float32) for line in lines] for axis in (0, 1))
+        return {"xs": [*xs], "ys": [*ys], "slot": slots, "alpha": [*alphas]}
 
 
 def prepare() -> None:
     """Draw a long path once: datashader compiles its own code at first use."""
     potential = CASES["III"]
     state = start_states(potential, Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
-    orbit = integrate_orbit(potential, state, MOST_LINE_POINTS / 4)
-    hv.render(_draw_path(potential, orbit))
+    draw_orbit(potential, integrate_orbit(potential, state, 5000.0))
 
 
-def _plain_toolbar(plot: Any, _element: Any) -> None:
-    """The toolbar of the maps: no logo, out of the way until wanted."""
-    plot.state.toolbar.logo = None
-    plot.state.toolbar.autohide = True
+def _lines(name: str) -> ColumnDataSource:
+    return ColumnDataSource({"xs": [], "ys": [], "slot": [], "alpha": []}, name=name)
 
 
-def _options(title: str, xlabel: str, ylabel: str, **more: Any) -> dict[str, Any]:
-    frame = {"frame_width": FRAME, "frame_height": FRAME, "axiswise": True, "framewise": True}
-    style = {"toolbar": "above", "fontsize": {"title": "14px", "labels": "12px", "ticks": "11px"}, "hooks": [_plain_toolbar]}
-    return {"title": title, "xlabel": xlabel, "ylabel": ylabel, **frame, **style, **more}
-
-
-def _draw_path(potential: Potential, orbit: Orbit) -> hv.Overlay | hv.DynamicMap:
-    window = default_window(potential, Plane.X_Y, orbit.energy)
-    path = hv.Path([np.column_stack([orbit.x, orbit.y])], ["x", "y"])
-    if orbit.t.size > MOST_LINE_POINTS:
-        drawn: Any = dynspread(datashade(path, cmap=palette.ORBIT_DENSITY), max_px=1)
-    else:
-        drawn = path.opts(color=palette.ORBIT, line_width=1)
-    drawn = drawn * hv.Path(trace_zero_velocity_curve(potential, Plane.X_Y, orbit.energy, window), ["x", "y"]).opts(
-        color=palette.LIMITING_CURVE, line_width=2
-    )
-    for exit_orbit in find_lyapunov_orbits(potential, orbit.energy):
-        curve = hv.Path([exit_orbit.half_path], ["x", "y"])
-        drawn = drawn * curve.opts(color=palette.CHANNELS[exit_orbit.channel - 1], line_width=4)
-    start = hv.Scatter([(orbit.x[0], orbit.y[0])], "x", "y").opts(color=palette.START, marker="cross", size=14, line_width=2)
-    sides = {"xlim": (window.x_low, window.x_high), "ylim": (window.ordinate_low, window.ordinate_high)}
-    return (drawn * start).opts(show_legend=False, **_options("The orbit", "x", "y", **sides))
-
-
-def _draw_sali(orbit: Orbit) -> hv.Overlay:
-    t, sali = envelope(orbit.t[1:], np.maximum(orbit.sali[1:], _LEAST_SALI), logarithmic=True)
-    threshold = hv.HLine(CHAOS_THRESHOLD).opts(color=palette.THRESHOLD, line_dash="dashed", line_width=1.5)
-    curve = hv.Curve((t, sali), "t", "SALI").opts(color=palette.ORBIT, line_width=1)
-    limits = {"ylim": (_LEAST_SALI, 10.0), "xlim": (float(t[0]), float(t[-1])) if t.size > 1 else (0.01, 1.0)}
-    options = _options(f"SALI (chaotic at or below {CHAOS_THRESHOLD:g})", "t", "SALI", logx=True, logy=True, **limits)
-    return hv.Overlay([curve, threshold]).opts(show_legend=False, **options)
-
-
-def _draw_r2(orbit: Orbit) -> hv.Curve:
-    t, r2 = envelope(orbit.t, orbit.r2, logarithmic=False)
-    return hv.Curve((t, r2), "t", "R2").opts(color=palette.ORBIT, line_width=1, **_options("R² = x² + y²", "t", "R²"))
-
-
-def envelope(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> tuple[np.ndarray, np.ndarray]:
-    """A history thinned to what can be seen: of each bin of time its least and greatest value, in order of time."""
-    if t.size <= 2 * _BINS:
-        return t, values
-    scale = np.log(t) if logarithmic else t
-    edges = np.searchsorted(scale, np.linspace(scale[0], scale[-1], _BINS + 1)[:-1])
-    keep = {0, t.size - 1}
-    for begin, end in zip(edges, [*edges[1:], t.size], strict=True):
-        if end > begin:
-            keep |= {begin + int(np.argmin(values[begin:end])), begin + int(np.argmax(values[begin:end]))}
-    order = np.array(sorted(keep))
-    return t[order], values[order]
+def _with_help(plot: figure) -> pn.Column:
+    helping = pn.pane.HTML(help_details(plot.name), width=FRAME + 60, margin=(0, 5))
+    return pn.Column(pn.pane.Bokeh(plot, margin=0), helping, margin=(0, 6), width=FRAME + 75)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
-from app import palette
+from app.palette import DARK, LIGHT, PAPER, Entry, Inks, Palette
 from engine import MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials, trace_zero_velocity_curve
 
 # Energies of the faint equipotentials, in units of the escape energy.
@@ -22,20 +24,39 @@ class Outlines:
         self._critical = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exits = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
+        self._palette: Palette = PAPER
+        self._inks: Inks = LIGHT
+        # Glyphs whose ink depends on the page, by the name of that ink.
+        self._inked: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
 
     def draw(self, plot: figure, *, full: bool) -> None:
         """Add the curves to a figure; the equipotentials only when `full`."""
         if full:
-            plot.multi_line("xs", "ys", source=self._levels, line_color=palette.EQUIPOTENTIAL)
-            plot.multi_line("xs", "ys", source=self._critical, line_color=palette.CRITICAL_EQUIPOTENTIAL, line_width=1.5)
-        plot.multi_line("xs", "ys", source=self._limit, line_color=palette.LIMITING_CURVE, line_width=2 if full else 1)
-        plot.multi_line("xs", "ys", source=self._exits, line_color=palette.HALO, line_width=5)
+            self._draw_inked(plot, self._levels, "equipotential", 1.0)
+            self._draw_inked(plot, self._critical, "critical_equipotential", 1.5)
+        self._draw_inked(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
+        plot.multi_line("xs", "ys", source=self._exits, line_color=self._inks.halo, line_width=5)
         plot.multi_line("xs", "ys", source=self._exits, line_color="colour", line_width=3, line_dash="solid")
         if full:
             plot.text(
                 "x", "y", "text", source=self._labels, text_color="colour", text_align="center", text_baseline="middle",
                 text_font_size="16px", text_font_style="bold",
             )  # fmt: skip
+
+    def _draw_inked(self, plot: figure, source: ColumnDataSource, ink: str, width: float) -> None:
+        line = plot.multi_line("xs", "ys", source=source, line_color=getattr(self._inks, ink), line_width=width)
+        self._inked[ink].append(line.glyph)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Colours of the exits, from the next `show` on."""
+        self._palette = palette
+
+    def set_dark(self, dark: bool) -> None:
+        """Inks for a dark page, or for a light one."""
+        self._inks = DARK if dark else LIGHT
+        for ink, glyphs in self._inked.items():
+            for glyph in glyphs:
+                glyph.line_color = getattr(self._inks, ink)
 
     def show(self, spec: MapSpec) -> None:
         """The curves of a map's plane, window and energy."""
@@ -53,7 +74,7 @@ class Outlines:
 
     def _show_exits(self, spec: MapSpec, energy: float) -> None:
         orbits = find_lyapunov_orbits(spec.potential, energy) if spec.plane is Plane.X_Y else ()
-        colours = [palette.CHANNELS[orbit.channel - 1] for orbit in orbits]
+        colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
         self._labels.data = {
@@ -63,16 +84,15 @@ class Outlines:
             "colour": colours,
         }
 
-    @staticmethod
-    def entries(spec: MapSpec) -> list[palette.Entry]:
+    def entries(self, spec: MapSpec) -> list[Entry]:
         """Legend of the curves that this plane shows."""
         limiting = {Plane.X_Y: "V = h", Plane.X_PX: "½px² + V(x, 0) = h", Plane.X_H: "V(x, 0) = h"}[spec.plane]
-        entries = [palette.Entry(f"limiting curve {limiting}", palette.LIMITING_CURVE)]
+        entries = [Entry(f"limiting curve {limiting}", self._inks.limiting_curve)]
         if spec.plane is not Plane.X_H:
-            entries += [palette.Entry("the same at the escape energy", palette.CRITICAL_EQUIPOTENTIAL)]
-            entries += [palette.Entry("at other energies", palette.EQUIPOTENTIAL)]
+            entries += [Entry("the same at the escape energy", self._inks.critical_equipotential)]
+            entries += [Entry("at other energies", self._inks.equipotential)]
         if spec.plane is Plane.X_Y:
-            entries += [palette.Entry(f"Lyapunov orbit {k}", palette.CHANNELS[k - 1]) for k in _open_channels(spec)]
+            entries += [Entry(f"Lyapunov orbit {k}", self._palette.channels[k - 1]) for k in _open_channels(spec)]
         return entries
 
 

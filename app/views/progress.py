@@ -8,7 +8,7 @@ import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 
-from engine import Certificate, EscapeMap, Fate
+from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
 
 
 class ProgressView:
@@ -51,6 +51,12 @@ class ProgressView:
             text = f"{grain}, followed to t = {frame.horizon:g}, {frame.undecided:.1%} still undecided"
         self._set(running=not frame.complete, label="Cancel", text=text)
         self.bar.value = percent
+
+    def look(self, frame: EscapeMap) -> None:
+        """A quick look at an energy in passing."""
+        text = f"A quick look at h = {frame.spec.energy:.4g}, followed to t = {PREVIEW_TIME:g}"
+        self._set(running=False, label="Cancel", text=text)
+        self.bar.value = 0
 
     def stop(self) -> None:
         """The map has been cancelled; it can go on."""

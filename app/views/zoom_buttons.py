@@ -7,36 +7,28 @@ from collections.abc import Callable
 import panel as pn
 import panel_material_ui as pmui
 
-from app.palette import QUIET_TEXT
+from app.views.wrapping import wrapping_row
 from app.zoom_history import ZoomHistory
-from engine import Window
 
-_HINT = "Zoom into any map with the wheel or a box: the region is computed anew."
+_HINT = "Zoom into any map with the wheel or a box: the region is computed anew. Keys: arrows, + −, h, b, f, p, Esc."
 
 
 class ZoomButtons:
-    """Buttons that walk a history; `on_window` is told where to."""
+    """Buttons that walk a history."""
 
-    def __init__(self, history: ZoomHistory, on_window: Callable[[Window | None], None]) -> None:
-        self._history = history
-        self.back = _button("← Back", lambda: on_window(history.back()))
-        self.forward = _button("Forward →", lambda: on_window(history.forward()))
-        self.home = _button("Whole plane", lambda: self._go_home(on_window))
+    def __init__(self, back: Callable[[], None], forward: Callable[[], None], home: Callable[[], None]) -> None:
+        self.back, self.forward, self.home = _button("← Back", back), _button("Forward →", forward), _button("Whole plane", home)
 
     def layout(self) -> pn.viewable.Viewable:
         """The buttons in a row that wraps, with a hint."""
-        hint = pn.pane.HTML(_HINT, styles={"font-size": "13px", "color": QUIET_TEXT}, margin=(8, 10))
-        return pn.FlexBox(self.back, self.forward, self.home, hint, gap="2px")
+        hint = pn.pane.HTML(_HINT, styles={"font-size": "13px", "opacity": "0.75"}, margin=(8, 10))
+        return wrapping_row(self.back, self.forward, self.home, hint, gap="2px")
 
-    def follow(self, window: Window | None) -> None:
-        """Enable what leads somewhere from this window."""
-        self.back.disabled = not self._history.can_go_back
-        self.forward.disabled = not self._history.can_go_forward
-        self.home.disabled = window is None
-
-    def _go_home(self, on_window: Callable[[Window | None], None]) -> None:
-        self._history.visit(None)
-        on_window(None)
+    def follow(self, history: ZoomHistory) -> None:
+        """Enable what leads somewhere from here."""
+        self.back.disabled = not history.can_go_back
+        self.forward.disabled = not history.can_go_forward
+        self.home.disabled = history.window is None
 
 
 def _button(label: str, press: Callable[[], None]) -> pmui.Button:

@@ -90,9 +90,15 @@ def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., Expl
     contexts: list[BrowserContext] = []
     watches: list[Watch] = []
 
-    def open_page(width: int = 1600, height: int = 1400, link: str = "") -> ExplorerPage:
-        context = chromium.new_context(viewport={"width": width, "height": height})
+    def open_page(
+        width: int = 1600, height: int = 1400, link: str = "", *, first_visit: bool = False, touch: bool = False
+    ) -> ExplorerPage:
+        context = chromium.new_context(
+            viewport={"width": width, "height": height}, has_touch=touch, permissions=["clipboard-read", "clipboard-write"]
+        )
         contexts.append(context)
+        if not first_visit:
+            context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
         page = context.new_page()
         page.set_default_timeout(PATIENCE_MS)
         watches.append(Watch(page))

@@ -20,6 +20,12 @@ _COLUMN = """name => {
     return typeof value == 'object' ? {shape: [...value.shape], values: [...value]} : value
 }"""
 
+_DATA = """name => {
+    const plain = value => ArrayBuffer.isView(value) ? [...value] : Array.isArray(value) ? value.map(plain) : value
+    const {data} = Bokeh.documents[0].get_model_by_name(name)
+    return Object.fromEntries(Object.entries(data).map(([key, value]) => [key, plain(value)]))
+}"""
+
 _RANGES = """name => {
     const {x_range, y_range} = Bokeh.documents[0].get_model_by_name(name)
     return [x_range.start, x_range.end, y_range.start, y_range.end]
@@ -41,6 +47,17 @@ class ExplorerPage:
         """A column of the maps' source: an image as an array, or a plain value."""
         value = self.page.evaluate(_COLUMN, name)
         return np.array(value["values"]).reshape(value["shape"]) if isinstance(value, dict) else value
+
+    def model_data(self, name: str) -> dict[str, list[Any]]:
+        """The columns of a source, as lists."""
+        return self.page.evaluate(_DATA, name)
+
+    def wait_for_data(self, name: str, condition: str) -> None:
+        """Until a JavaScript condition on a source's columns `data` holds."""
+        self.page.wait_for_function(
+            f"([name, test]) => new Function('data', 'return ' + test)({_DOCUMENT}.get_model_by_name(name).data)",
+            arg=[name, condition],
+        )
 
     def forget_pixels(self) -> None:
         """Mark the source, so that a later change of it can be seen."""
@@ -80,13 +97,18 @@ class ExplorerPage:
         box.fill(value)
         box.press("Enter")
 
-    def drag_energy_to(self, share: float) -> None:
-        """Drag the energy slider's thumb to a share of its length."""
+    def drag_energy_to(self, share: float, *, steps: int = 5, let_go: bool = True, pause: float = 0.0) -> None:
+        """Drag the energy slider's thumb to a share of its length, with a pause, in ms, after each step."""
         rail = self.page.locator(".MuiSlider-root").first.bounding_box()
         thumb = self.page.locator(".MuiSlider-thumb").first.bounding_box()
         assert rail is not None
         assert thumb is not None
         self.page.mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)
         self.page.mouse.down()
-        self.page.mouse.move(rail["x"] + share * rail["width"], rail["y"] + rail["height"] / 2, steps=5)
-        self.page.mouse.up()
+        begin, end = thumb["x"] + thumb["width"] / 2, rail["x"] + share * rail["width"]
+        for step in range(1, steps + 1):
+            self.page.mouse.move(begin + (end - begin) * step / steps, rail["y"] + rail["height"] / 2)
+            if pause:
+                self.page.wait_for_timeout(pause)
+        if let_go:
+            self.page.mouse.up()

@@ -114,10 +114,8 @@ def test_a_click_integrates_the_orbit_of_that_pixel(explorer: ExplorerPage, pict
 def test_a_click_marks_the_start_on_every_map(explorer: ExplorerPage) -> None:
     explorer.click("times", 0.1, 0.05)
     expect(explorer.text("Escaped through")).to_be_visible()
-    marked = explorer.page.evaluate(
-        "() => { const s = Bokeh.documents[0].get_model_by_name('start').data; return [s.x[0], s.y[0]] }"
-    )
-    assert marked == pytest.approx([0.1, 0.05], abs=0.006)
+    marked = explorer.model_data("starts")
+    assert [marked["x"][0], marked["y"][0]] == pytest.approx([0.1, 0.05], abs=0.006)
 
 
 def test_a_bounded_orbit_is_judged_by_its_sali(explorer: ExplorerPage) -> None:
@@ -231,7 +229,7 @@ def test_the_address_opens_the_same_view_elsewhere(open_explorer: Callable[..., 
     here.wait_for_new_pixels()
     here.wait_until_complete()
     here.click("basins", 0.1, 0.05)
-    here.page.wait_for_url(re.compile("start="))
+    here.page.wait_for_url(re.compile("orbits="))
     expect(here.text(re.compile("Escaped through|Bounded until"))).to_be_visible()
     here.wait_until_complete()
     there = open_explorer(link="?" + here.page.url.split("?")[1])

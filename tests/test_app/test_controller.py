@@ -12,7 +12,7 @@ import pytest
 
 from app.controller import Controller
 from app.view_state import ViewState
-from engine import EscapeMap, Fate, Jobs, Orbit, Plane, Potential, Regularity, RegularityMap
+from engine import EscapeMap, Fate, Jobs, Regularity, RegularityMap
 
 
 class Recorder:
@@ -49,14 +49,8 @@ class Recorder:
     def map_failed(self, sentence: str) -> None:
         self.tell("map failed", sentence)
 
-    def orbit_requested(self, start: tuple[float, float]) -> None:
-        self.tell("orbit requested", start)
-
-    def orbit_arrived(self, potential: Potential, orbit: Orbit) -> None:
-        self.tell("orbit arrived", orbit)
-
-    def orbit_refused(self, sentence: str) -> None:
-        self.tell("orbit refused", sentence)
+    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        self.tell("preview arrived", frame)
 
     def last_frame(self) -> EscapeMap | None:
         frames = [value for what, value in self.told if what == "map arrived"]
@@ -150,31 +144,50 @@ def test_nothing_is_judged_any_more_once_it_is_not_wanted(session: Session) -> N
     assert jobs.in_flight == 0
 
 
-def test_the_orbit_of_a_start_agrees_with_its_pixel(session: Session) -> None:
+def previews(recorder: Recorder) -> list[EscapeMap]:
+    return [value for what, value in recorder.told if what == "preview arrived"]
+
+
+def test_a_quick_look_ends_at_the_energy_looked_at_last(session: Session) -> None:
+    _, controller, recorder, jobs = session
+    for energy in (0.31, 0.32, 0.33, 0.34):
+        controller.request_preview(energy)
+    recorder.wait_for(lambda: bool(previews(recorder)) and previews(recorder)[-1].spec.energy == 0.34)
+    assert jobs.in_flight == 0
+    assert not controller.previews.under_way
+
+
+def test_a_quick_look_stops_the_map_on_its_way(session: Session) -> None:
     state, controller, recorder, _ = session
-    controller.request_map()
+    state.param.update(case="III", energy=0.26, t_max=1e5)
+    recorder.wait_for(lambda: recorder.last_frame() is not None)
+    controller.request_preview(0.5)
+    frames = recorder.names().count("map arrived")
+    recorder.wait_for(lambda: bool(previews(recorder)))
+    time.sleep(0.3)
+    assert recorder.names().count("map arrived") == frames
+
+
+def test_after_a_map_is_asked_for_no_quick_look_is_painted(session: Session) -> None:
+    state, controller, recorder, _ = session
+    for energy in (0.31, 0.32, 0.33):
+        controller.request_preview(energy)
+    state.energy = 0.35
     recorder.wait_for(recorder.complete)
-    frame = recorder.last_frame()
-    assert frame is not None
-    row, column = 40, 70
-    state.start = (float(frame.x[column]), float(frame.ordinate[row]))
-    recorder.wait_for(lambda: "orbit arrived" in recorder.names())
-    orbit = recorder.told[-1][1]
-    assert orbit.fate == frame.fate[row, column]
-    assert orbit.escape_time == frame.escape_time[row, column]
-    assert orbit.crossings == frame.crossings[row, column]
+    names = recorder.names()
+    assert "preview arrived" not in names[names.index("map requested") :]
 
 
-def test_a_forbidden_start_is_refused_in_words(session: Session) -> None:
-    state, _, recorder, _ = session
-    state.param.update(plane=Plane.X_PX, start=(0.0, 5.0))
-    recorder.wait_for(lambda: "orbit refused" in recorder.names())
-    assert "Forbidden" in recorder.told[-1][1]
+def test_a_quick_look_at_nothing_leaves_the_picture(session: Session) -> None:
+    _, controller, recorder, _ = session
+    controller.request_preview(50.0)
+    assert not controller.previews.under_way
+    assert recorder.names() == []
 
 
 def test_a_session_that_ends_leaves_no_job_behind(session: Session) -> None:
     state, controller, recorder, jobs = session
-    state.param.update(case="III", energy=0.26, t_max=1e6, start=(0.0, 0.1))
+    state.param.update(case="III", energy=0.26, t_max=1e6)
     recorder.wait_for(lambda: recorder.last_frame() is not None)
     controller.close()
     assert jobs.in_flight == 0

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.link import LONGEST_VALUE, read_link, write_link
+from app.palette import MOST_ORBITS, PALETTES
 from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from engine import CASES, Plane, Window
 
@@ -29,13 +30,18 @@ def parameters(link: str) -> dict[str, str]:
     st.sampled_from(list(T_MAX_CHOICES.values())),
     st.sampled_from(list(RESOLUTION_CHOICES.values())),
     windows,
-    st.none() | st.tuples(numbers, numbers),
+    st.lists(st.tuples(numbers, numbers), max_size=MOST_ORBITS).map(tuple),
     st.booleans(),
+    st.sampled_from(list(PALETTES)),
+    st.integers(0, MOST_ORBITS - 1),
 )
-def test_a_link_holds_the_view_to_the_last_digit(case, plane, energy, t_max, resolution, window, start, judge) -> None:
+def test_a_link_holds_the_view_to_the_last_digit(
+    case, plane, energy, t_max, resolution, window, starts, judge, palette, look
+) -> None:
     chosen = {
         "case": case, "plane": plane, "energy": energy, "t_max": t_max, "resolution": resolution,
-        "window": window, "start": start, "judge": judge,
+        "window": window, "starts": starts, "judge": judge, "palette": palette,
+        "chosen": look if look < len(starts) else 0,
     }  # fmt: skip
     values, problems = read_link(parameters(write_link(ViewState(**chosen))))
     assert not problems
@@ -58,8 +64,12 @@ def test_a_link_holds_the_view_to_the_last_digit(case, plane, energy, t_max, res
         ("window", "1,2,3"),
         ("window", "1,0,0,1"),
         ("window", "0,inf,0,1"),
-        ("start", "0.1"),
-        ("start", "<script>alert(1)</script>"),
+        ("orbits", "0.1"),
+        ("orbits", "0.1,0.2;0.3"),
+        ("orbits", ";".join(["0.1,0.2"] * (MOST_ORBITS + 1))),
+        ("orbits", "<script>alert(1)</script>"),
+        ("palette", "neon"),
+        ("look", "6"),
         ("judge", "maybe"),
     ],
 )
@@ -74,6 +84,10 @@ def test_a_value_of_no_use_is_named_and_left_out(name: str, text: str) -> None:
 def test_no_markup_of_a_visitor_s_is_shown() -> None:
     _, problems = read_link({"h": "<b>[here](javascript:alert(1))</b>"})
     assert not set("<>[]():") & set(problems[0].replace("h=", "").split(" is of no use:")[0])
+
+
+def test_an_orbit_to_look_at_that_is_not_there_is_the_first() -> None:
+    assert read_link({"orbits": "0.1,0.2", "look": "3"})[0]["chosen"] == 0
 
 
 def test_one_bad_value_does_not_spoil_the_others() -> None:
@@ -91,7 +105,11 @@ def test_what_nobody_knows_is_ignored() -> None:
     assert read_link({"utm_source": "mail"}) == ({}, [])
 
 
-@given(st.dictionaries(st.sampled_from(["case", "plane", "h", "t_max", "resolution", "window", "start", "judge"]), st.text()))
+@given(
+    st.dictionaries(
+        st.sampled_from(["case", "plane", "h", "t_max", "resolution", "window", "orbits", "judge", "palette", "look"]), st.text()
+    )
+)
 def test_any_text_is_read_or_refused(hostile: dict[str, str]) -> None:
     values, _ = read_link(hostile)
     ViewState(**values)

@@ -7,6 +7,7 @@ import pytest
 
 from app import palette
 from app.map_columns import character_column, longest_typical_time, map_columns
+from app.palette import PAPER
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Regularity, compute_map, judge_bounded_orbits
 
 
@@ -17,11 +18,11 @@ def escape_map() -> EscapeMap:
 
 
 def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
-    colours = np.array(palette.FATE_COLOURS)[map_columns(escape_map)["fate"][0]]
+    colours = np.array(PAPER.fate_colours)[map_columns(escape_map)["fate"][0]]
     for channel in (1, 2, 3):
-        assert set(colours[escape_map.fate == channel]) == {palette.CHANNELS[channel - 1]}
+        assert set(colours[escape_map.fate == channel]) == {PAPER.channels[channel - 1]}
     for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE):
-        assert set(colours[escape_map.fate == fate]) == {palette.OUTCOMES[fate].colour}
+        assert set(colours[escape_map.fate == fate]) == {PAPER.outcomes[fate].colour}
 
 
 @pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (10, "3–10"), (11, "> 10")])
@@ -29,7 +30,7 @@ def test_escaped_pixels_are_classed_by_crossings(escape_map: EscapeMap, crossing
     where = (escape_map.fate > 0) & (escape_map.crossings == crossings)
     assert where.any()
     codes = map_columns(escape_map)["crossing_class"][0][where]
-    labels = [entry.label for entry in palette.OUTCOMES.values()] + [entry.label for _, entry in palette.CROSSING_CLASSES]
+    labels = [*palette.OUTCOMES.values(), *(label for _, label in palette.CROSSING_CLASSES)]
     assert {labels[code] for code in codes} == {label}
 
 
@@ -51,7 +52,7 @@ def test_a_bounded_pixel_knows_its_certificate(escape_map: EscapeMap) -> None:
     assert bounded.any()
     first = len(palette.OUTCOMES) + len(palette.CROSSING_CLASSES)
     np.testing.assert_array_equal(codes[bounded] - first, escape_map.certificate[bounded])
-    assert {palette.CROSSING_COLOURS[code] for code in codes[bounded]} == {palette.BOUNDED}
+    assert {PAPER.crossing_colours[code] for code in codes[bounded]} == {PAPER.bounded}
 
 
 def test_a_full_frame_of_225_by_225_is_half_a_megabyte_at_most(escape_map: EscapeMap) -> None:
@@ -59,8 +60,12 @@ def test_a_full_frame_of_225_by_225_is_half_a_megabyte_at_most(escape_map: Escap
     assert sum(image.nbytes for image in images) * 225**2 / escape_map.fate.size < 500_000
 
 
+def character_colour(character: Regularity) -> str:
+    return PAPER.character_entries[list(palette.CHARACTERS).index(character)].colour
+
+
 def character_colours(columns: dict) -> np.ndarray:
-    return np.array(palette.CHARACTER_COLOURS)[columns["character"][0]]
+    return np.array(PAPER.character_colours)[columns["character"][0]]
 
 
 def test_regular_and_chaotic_orbits_have_colours_of_their_own() -> None:
@@ -68,8 +73,8 @@ def test_regular_and_chaotic_orbits_have_colours_of_their_own() -> None:
     regularity = judge_bounded_orbits(whole)
     colours = character_colours(character_column(whole, regularity))
     for character in (Regularity.REGULAR, Regularity.CHAOTIC):
-        assert set(colours[regularity.character == character]) == {palette.CHARACTERS[character].colour}
-    assert set(colours[whole.fate == Fate.FORBIDDEN]) == {palette.FORBIDDEN}
+        assert set(colours[regularity.character == character]) == {character_colour(character)}
+    assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
 
 
 def test_what_is_certified_as_a_torus_is_shown_as_regular_at_once() -> None:
@@ -77,9 +82,9 @@ def test_what_is_certified_as_a_torus_is_shown_as_regular_at_once() -> None:
     colours = character_colours(map_columns(whole))
     certified = whole.certificate == Certificate.QUASI_PERIODIC
     assert certified.any()
-    assert set(colours[certified]) == {palette.CHARACTERS[Regularity.REGULAR].colour}
-    assert set(colours[whole.certificate == Certificate.ENCLOSED]) == {palette.CHARACTERS[Regularity.NOT_JUDGED].colour}
-    assert set(colours[whole.fate >= 1]) == {palette.CHARACTERS[Regularity.NO_QUESTION].colour}
+    assert set(colours[certified]) == {character_colour(Regularity.REGULAR)}
+    assert set(colours[whole.certificate == Certificate.ENCLOSED]) == {character_colour(Regularity.NOT_JUDGED)}
+    assert set(colours[whole.fate >= 1]) == {character_colour(Regularity.NO_QUESTION)}
 
 
 def test_a_coarse_frame_fills_the_picture() -> None:

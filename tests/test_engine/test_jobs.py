@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,13 +19,17 @@ from engine import (
     OrbitSpec,
     Plane,
     RegularityMap,
+    Twin,
+    TwinSpec,
     compute_map,
+    find_twin,
     integrate_orbit,
     judge_bounded_orbits,
 )
 from engine.jobs import ResultCache
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
+TWIN = TwinSpec(CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0)
 LONG = MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=1e6)
 
 
@@ -32,11 +37,11 @@ class Inbox:
     """Collects what a request delivers."""
 
     def __init__(self) -> None:
-        self.results: list[EscapeMap | Orbit | RegularityMap] = []
+        self.results: list[EscapeMap | Orbit | RegularityMap | Twin | None] = []
         self.errors: list[Exception] = []
         self.first, self.done = threading.Event(), threading.Event()
 
-    def result(self, result: EscapeMap | Orbit) -> None:
+    def result(self, result: EscapeMap | Orbit | Twin | None) -> None:
         self.results.append(result)
         self.first.set()
         if getattr(result, "complete", True):
@@ -153,6 +158,33 @@ def test_an_orbit_is_the_one_that_integrate_orbit_gives() -> None:
     jobs.request_orbit(spec, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     np.testing.assert_array_equal(inbox.results[0].sali, integrate_orbit(spec.potential, spec.state, spec.t_max).sali)
+
+
+def test_a_twin_is_the_one_that_find_twin_gives() -> None:
+    # One thread: the search must not wait for the very worker it runs on.
+    with ThreadPoolExecutor(1) as executor:
+        jobs, inbox = Jobs(executor), Inbox()
+        jobs.request_twin(TWIN, inbox.result, inbox.error)
+        assert inbox.done.wait(30)
+    assert inbox.results == [find_twin(TWIN.potential, TWIN.plane, TWIN.energy, TWIN.x, TWIN.ordinate, TWIN.t_max)]
+
+
+def test_that_there_is_no_twin_is_an_answer_and_kept() -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    spec = replace(TWIN, x=0.1, ordinate=0.2)
+    jobs.request_twin(spec, first.result, first.error)
+    assert first.done.wait(30)
+    wait_until_idle(jobs)
+    jobs.request_twin(spec, second.result, second.error)
+    assert first.results == second.results == [None]
+    assert jobs.in_flight == 0
+
+
+def test_a_twin_of_a_forbidden_start_is_answered_with_its_error() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    jobs.request_twin(replace(TWIN, ordinate=2.0), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    assert isinstance(inbox.errors[0], ValueError)
 
 
 def test_a_cancelled_orbit_never_arrives() -> None:

@@ -1,0 +1,49 @@
+"""How far two orbits are apart: the chosen one and the one before it."""
+
+from __future__ import annotations
+
+import numpy as np
+import panel as pn
+from bokeh.models import ColumnDataSource, Range1d
+
+from app.help_texts import help_details
+from app.palette import PAPER, Palette
+from app.views.figures import FRAME, square_figure
+from engine import Separation
+
+TITLE = "Distance of two orbits"
+LEAST = 1e-17
+
+
+class SeparationPane:
+    """log distance in phase space against time; empty while fewer than two orbits are chosen."""
+
+    def __init__(self) -> None:
+        ranges = {"x_range": Range1d(0.0, 10.0), "y_range": Range1d(LEAST, 10.0)}
+        self.figure = square_figure("separation", TITLE, y_axis_type="log", x_axis_label="t", y_axis_label="distance", **ranges)
+        self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
+        self._line = self.figure.line("t", "distance", source=self._source, line_width=1.5, line_color=PAPER.orbits[1])
+        helping = pn.pane.HTML(help_details("distance"), width=FRAME + 60, margin=(0, 5))
+        self._column = pn.Column(pn.pane.Bokeh(self.figure, margin=0), helping, margin=(0, 6), width=FRAME + 75)
+
+    def layout(self) -> pn.viewable.Viewable:
+        """The figure with its explanation."""
+        return self._column
+
+    def show(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
+        """Draw the distance of the orbits in two places; None takes it away."""
+        if pair is None or separation is None:
+            self._source.data = {"t": [], "distance": []}
+            self.figure.title.text = TITLE
+            return
+        distance = np.maximum(separation.distance, LEAST)
+        self._source.data = {"t": separation.t, "distance": distance}
+        x, y = self.figure.x_range, self.figure.y_range
+        end, low = float(separation.t[-1]), 0.5 * float(distance.min())
+        x.update(start=0.0, end=end, reset_start=0.0, reset_end=end)
+        y.update(start=low, end=10.0, reset_start=low, reset_end=10.0)
+        self.figure.title.text = f"Distance of orbits {pair[0] + 1} and {pair[1] + 1}"
+
+    def set_palette(self, palette: Palette) -> None:
+        """The line's colour."""
+        self._line.glyph.line_color = palette.orbits[1]

@@ -1,0 +1,103 @@
+"""What a visitor takes along: the link, a picture, the maps, the orbits, and the lines of Python that make them again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from io import BytesIO
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from app.orbit_requests import ChosenOrbit
+from app.pictures import TITLES
+from app.view_state import ViewState
+from app.views.wrapping import wrapping_row
+from engine import EscapeMap, RegularityMap
+
+SIDES = {"300 pixels": 300, "600 pixels": 600, "1200 pixels": 1200}
+"""Sides of each map in a picture to take along."""
+
+_NOTHING = "The map is not whole yet."
+
+
+class TakeAlong:
+    """Buttons that make their files when they are pressed."""
+
+    def __init__(self, state: ViewState, copy_link: Callable[[], None]) -> None:
+        self._state = state
+        self._frame: EscapeMap | None = None
+        self._regularity: RegularityMap | None = None
+        self._orbits: Sequence[ChosenOrbit] = ()
+        self.link = pmui.Button(label="Copy the link", variant="outlined", size="small", sx={"textTransform": "none"})
+        self.link.on_click(lambda event: copy_link())
+        self.side = pmui.Select(label="Side of each map", options=SIDES, value=600, width=150, size="small")
+        self.picture = _download("Picture (PNG)", self._png)
+        self.maps = _download("Maps (NetCDF)", self._netcdf)
+        self.orbits = _download("Orbits (CSV)", self._csv)
+        self.lines = _download("Python lines", self._python)
+        self._enable()
+
+    def layout(self) -> pn.viewable.Viewable:
+        """The buttons in a row that wraps."""
+        title = pn.pane.HTML("<h2 style='font-size:15px;margin:4px 0'>Take it along</h2>", margin=(0, 10))
+        row = wrapping_row(
+            self.link, self.side, self.picture, self.maps, self.orbits, self.lines, gap="8px", align_items="center"
+        )
+        return pn.Column(title, row, sizing_mode="stretch_width")
+
+    def show_map(self, frame: EscapeMap) -> None:
+        """The map to take along, once it is whole."""
+        self._frame, self._regularity = (frame if frame.complete else None), None
+        self._enable()
+
+    def show_regularity(self, regularity: RegularityMap) -> None:
+        """What is judged of it."""
+        self._regularity = regularity if regularity.complete else None
+
+    def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """The orbits to take along."""
+        self._orbits = orbits
+        self._enable()
+
+    def _enable(self) -> None:
+        for button in (self.picture, self.maps, self.lines):
+            button.disabled = self._frame is None
+        self.orbits.disabled = not any(one.orbit is not None for one in self._orbits)
+
+    def _named(self, ending: str) -> str:
+        return f"{file_stem(self._whole().spec, self._state.case)}{ending}"
+
+    def _whole(self) -> EscapeMap:
+        if self._frame is None:
+            raise ValueError(_NOTHING)
+        return self._frame
+
+    def _png(self) -> BytesIO:
+        self.picture.filename = self._named(".png")
+        pictures = [name for name in TITLES if name != "curves" and (name != "characters" or self._regularity is not None)]
+        starts = tuple(one.start for one in self._orbits)
+        data = png_bytes(
+            self._whole(), pictures, self._state.colours, self.side.value, regularity=self._regularity, starts=starts
+        )
+        return BytesIO(data)
+
+    def _netcdf(self) -> BytesIO:
+        self.maps.filename = self._named(".nc")
+        return BytesIO(netcdf_bytes(self._whole()))
+
+    def _csv(self) -> BytesIO:
+        self.orbits.filename = "orbits.csv" if self._frame is None else self._named("-orbits.csv")
+        return BytesIO(orbits_csv([one.orbit for one in self._orbits if one.orbit is not None]).encode())
+
+    def _python(self) -> BytesIO:
+        self.lines.filename = self._named(".py")
+        specs = [self._state.orbit_spec(one.start) for one in self._orbits]
+        states = [spec.state for spec in specs if spec is not None]
+        return BytesIO(python_lines(self._whole().spec, self._state.case, states).encode())
+
+
+def _download(label: str, make: Callable[[], BytesIO]) -> pmui.FileDownload:
+    return pmui.FileDownload(
+        label=label, callback=make, filename="escapes", auto=True, embed=False, variant="outlined", size="small"
+    )  # fmt: skip

@@ -1,0 +1,60 @@
+"""The picture in numbers: the whole view, and a box of it."""
+
+from __future__ import annotations
+
+from playwright.sync_api import expect
+
+from engine import CASES, MapSpec, Plane, compute_map, compute_statistics
+from tests.browser.explorer_page import ExplorerPage
+
+
+def drag(explorer: ExplorerPage, begin: tuple[float, float], end: tuple[float, float]) -> None:
+    explorer.page.mouse.move(*explorer.point("basins", *begin))
+    explorer.page.mouse.down()
+    explorer.page.mouse.move(*explorer.point("basins", *end), steps=5)
+    explorer.page.mouse.up()
+
+
+def choose_box_tool(explorer: ExplorerPage) -> None:
+    explorer.page.evaluate(
+        """() => {
+            const {toolbar} = Bokeh.documents[0].get_model_by_name('basins')
+            for (const tool of toolbar.tools) if (tool.type == 'BoxSelectTool') tool.active = true
+        }"""
+    )
+
+
+def test_the_numbers_are_those_of_the_map(explorer: ExplorerPage) -> None:
+    statistics = compute_statistics(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19)))
+    table = explorer.page.get_by_text("Shares of the interior starts in the whole view").locator("xpath=ancestor::table")
+    expect(table).to_contain_text(f"{statistics.shares[1]:.2%}")
+    expect(table).to_contain_text(f"{statistics.direct_share:.2%}")
+    expect(table).to_contain_text(f"{statistics.median_escape_time:.4g}")
+
+
+def test_a_box_counts_what_is_in_it_and_the_whole_view_comes_back(explorer: ExplorerPage) -> None:
+    choose_box_tool(explorer)
+    drag(explorer, (-0.1, 0.2), (0.1, 0.4))
+    expect(explorer.text("Shares of the interior starts in the box drawn on the maps")).to_be_visible()
+    box = explorer.model_data("box")
+    assert [box["left"][0], box["right"][0]] == [-0.1, 0.1] or abs(box["left"][0] + 0.1) < 0.01
+    expect(explorer.page.get_by_label("numbers table")).to_contain_text("100.00%")
+    explorer.press("Count the whole view")
+    expect(explorer.text("Shares of the interior starts in the whole view")).to_be_visible()
+    assert explorer.model_data("box")["left"] == []
+
+
+def test_the_charts_hold_every_escape(explorer: ExplorerPage) -> None:
+    statistics = compute_statistics(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19)))
+    tops = explorer.page.evaluate(
+        """() => {
+            const sums = []
+            for (const model of Bokeh.documents[0].all_models) if (model.type == 'Quad') {
+                for (const r of Bokeh.documents[0].all_models)
+                    if (r.type == 'GlyphRenderer' && r.glyph === model && r.data_source.data.top?.length == 40)
+                        sums.push([...r.data_source.data.top].reduce((a, b) => a + b, 0))
+            }
+            return sums
+        }"""
+    )
+    assert statistics.escaped in tops

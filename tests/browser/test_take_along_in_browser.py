@@ -1,0 +1,80 @@
+"""What is taken along can be opened elsewhere: the link, pictures, maps, orbits and lines."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+from playwright.sync_api import expect
+
+from engine import CASES, MapSpec, Plane, compute_map
+from tests.browser.explorer_page import ExplorerPage
+
+SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=113&orbits=0.1,0.2;0.1,-0.3"
+
+
+@pytest.fixture
+def small(open_explorer: Callable[..., ExplorerPage]) -> ExplorerPage:
+    explorer = open_explorer(link=SMALL)
+    explorer.wait_for_data("paths", "data.xs.length == 2")
+    return explorer
+
+
+def take(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
+    with explorer.page.expect_download() as download:
+        explorer.page.get_by_text(label, exact=True).click()
+    return download.value.suggested_filename, Path(download.value.path()).read_bytes()
+
+
+def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
+    name, data = take(small, "Picture (PNG)")
+    assert name == "escapes-III-x_px-h0.45.png"
+    picture = Image.open(io.BytesIO(data))
+    assert picture.width > 3 * 600
+    assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
+
+
+def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
+    name, data = take(small, "Maps (NetCDF)")
+    assert name.endswith(".nc")
+    expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (113, 113), t_max=1e3))
+    with xr.open_dataset(io.BytesIO(data), engine="h5netcdf") as dataset:
+        np.testing.assert_array_equal(dataset["fate"], expected.fate)
+
+
+def test_the_orbits_as_a_table(small: ExplorerPage) -> None:
+    name, data = take(small, "Orbits (CSV)")
+    assert name.endswith("orbits.csv")
+    rows = [line for line in data.decode().splitlines() if not line.startswith("#")]
+    assert rows[0] == "orbit,t,x,y,px,py,sali,r2"
+    assert {row.split(",")[0] for row in rows[1:]} == {"1", "2"}
+
+
+def test_the_lines_that_make_it_again(small: ExplorerPage) -> None:
+    name, data = take(small, "Python lines")
+    assert name.endswith(".py")
+    assert "0.45" in data.decode()
+    compile(data, name, "exec")
+
+
+def test_the_link_is_copied(small: ExplorerPage) -> None:
+    small.press("Copy the link")
+    expect(small.text("The link is in the clipboard.")).to_be_visible()
+    assert small.page.evaluate("() => navigator.clipboard.readText()") == small.page.url
+
+
+def test_a_link_brings_palette_orbits_and_the_one_looked_at(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=SMALL + "&look=1&palette=safe")
+    explorer.wait_for_data("starts", "data.x.length == 2")
+    expect(explorer.page.get_by_role("button", name="1", exact=True)).to_have_attribute("aria-pressed", "true")
+    colours = explorer.page.evaluate(
+        """() => Bokeh.documents[0].get_model_by_name('basins').renderers
+            .find(r => r.data_source.name == 'maps').glyph.color_mapper.palette"""
+    )
+    assert any(re.match("#?009e73", str(colour)) for colour in colours) or len(colours) > 5

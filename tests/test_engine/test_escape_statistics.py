@@ -1,0 +1,211 @@
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engine import CASES, EscapeMap, EscapeStatistics, Fate, MapSpec, Plane, Window, compute_map, compute_statistics
+
+SIDE = 60
+
+
+@pytest.fixture(scope="module")
+def whole() -> EscapeMap:
+    """Some leave at once, some late, some never."""
+    return compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3))
+
+
+@pytest.fixture(scope="module")
+def statistics(whole: EscapeMap) -> EscapeStatistics:
+    return compute_statistics(whole)
+
+
+@pytest.fixture(scope="module")
+def under_way() -> EscapeMap:
+    """The first frame that knows some escapes while other orbits are still followed."""
+    frames: list[EscapeMap] = []
+    cancel = threading.Event()
+
+    def stop(frame: EscapeMap) -> None:
+        frames.append(frame)
+        cancel.set()
+
+    compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.26, (SIDE, SIDE), t_max=1e4), stop, cancel)
+    return frames[0]
+
+
+def empty(frame: EscapeMap) -> EscapeStatistics:
+    return compute_statistics(frame, Window(5.0, 6.0, 5.0, 6.0))
+
+
+def with_times(frame: EscapeMap, times: list[float]) -> EscapeStatistics:
+    """The statistics of a map in which one orbit leaves at each of these times, and no other."""
+    fate, escape_time = np.zeros(frame.fate.size, np.int8), np.full(frame.fate.size, np.nan)
+    fate[: len(times)], escape_time[: len(times)] = 1, times
+    shape = frame.fate.shape
+    return compute_statistics(replace(frame, fate=fate.reshape(shape), escape_time=escape_time.reshape(shape)))
+
+
+# Counts.
+
+
+def test_every_interior_start_is_counted_once(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+    assert statistics.starts == np.count_nonzero(whole.interior)
+    assert statistics.starts == sum(statistics.channel_counts) + statistics.bounded
+
+
+def test_shares_are_the_fractions_of_the_map(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+    assert statistics.shares == whole.fractions()
+
+
+def test_direct_escapes_leave_without_crossing(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+    assert statistics.direct == np.count_nonzero((whole.fate >= 1) & (whole.crossings == 0))
+    assert 0 < statistics.direct < statistics.escaped
+
+
+def test_direct_share_is_out_of_all_starts(statistics: EscapeStatistics) -> None:
+    assert statistics.direct_share == statistics.direct / statistics.starts
+
+
+def test_times_are_those_of_the_orbits_that_left(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+    assert statistics.mean_escape_time == pytest.approx(np.nanmean(whole.escape_time))
+    assert statistics.median_escape_time == np.nanmedian(whole.escape_time)
+
+
+def test_failed_orbits_are_no_outcome(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+    fate = np.where(whole.fate == Fate.BOUNDED, Fate.FAILED, whole.fate).astype(np.int8)
+    broken = compute_statistics(replace(whole, fate=fate))
+    assert (broken.failed, broken.bounded) == (statistics.bounded, 0)
+    assert broken.starts == statistics.starts
+    assert broken.decided == statistics.escaped
+
+
+def test_arrays_cannot_be_written_to(statistics: EscapeStatistics) -> None:
+    arrays = (
+        statistics.crossing_counts,
+        statistics.escape_times,
+        statistics.escape_probabilities,
+        *statistics.time_histogram(4),
+    )
+    assert not any(array.flags.writeable for array in arrays)
+
+
+# Probabilities of leaving with the n-th crossing.
+
+
+def test_crossing_counts_add_up_to_all_that_left(statistics: EscapeStatistics) -> None:
+    assert statistics.crossing_counts.sum() == statistics.escaped
+    assert statistics.crossing_counts[-1] > 0
+
+
+def test_each_probability_is_out_of_those_still_inside(statistics: EscapeStatistics) -> None:
+    inside = statistics.starts
+    for n, left in enumerate(statistics.crossing_counts):
+        assert statistics.escape_probabilities[n] == left / inside
+        inside -= left
+
+
+def test_whoever_never_leaves_is_the_product_of_staying_each_time(statistics: EscapeStatistics) -> None:
+    staying = np.prod(1.0 - statistics.escape_probabilities)
+    assert staying == pytest.approx(statistics.bounded / statistics.starts, rel=1e-12)
+
+
+def test_where_all_leave_the_last_probability_is_one(whole: EscapeMap) -> None:
+    fate = np.where(whole.fate == Fate.BOUNDED, Fate.FORBIDDEN, whole.fate).astype(np.int8)
+    assert compute_statistics(replace(whole, fate=fate)).escape_probabilities[-1] == 1.0
+
+
+# Windows.
+
+
+def test_halves_of_a_symmetric_map_have_equal_statistics(whole: EscapeMap) -> None:
+    left, right = (compute_statistics(whole, Window(*edges, -2.0, 2.0)) for edges in ((-2.0, 0.0), (0.0, 2.0)))
+    assert left.channel_counts == tuple(right.channel_counts[k] for k in (1, 0, 3, 2))
+    assert left.median_escape_time == right.median_escape_time
+    np.testing.assert_array_equal(left.crossing_counts, right.crossing_counts)
+
+
+def test_a_window_holds_the_pixels_whose_centres_lie_in_it(whole: EscapeMap) -> None:
+    x, px = whole.x, whole.ordinate
+    part = compute_statistics(whole, Window(x[10], x[29], px[20], px[24]))
+    fate = whole.fate[20:25, 10:30]
+    assert part.starts == np.count_nonzero((fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE))
+    np.testing.assert_array_equal(part.escape_times, whole.escape_time[20:25, 10:30][fate >= 1])
+
+
+def test_a_window_larger_than_the_map_holds_all_of_it(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+    assert compute_statistics(whole, Window(-9.0, 9.0, -9.0, 9.0)).shares == statistics.shares
+
+
+@pytest.mark.parametrize("between", [True, False])
+def test_a_window_without_pixels_has_no_starts(whole: EscapeMap, between: bool) -> None:
+    edge = whole.x[30] + 1e-6
+    nothing = compute_statistics(whole, Window(edge, edge + 1e-6, -1.0, 1.0)) if between else empty(whole)
+    assert (nothing.starts, nothing.escaped, nothing.direct) == (0, 0, 0)
+    assert set(nothing.shares) == set(whole.fractions())
+    assert not any(nothing.shares.values())
+    assert nothing.direct_share == 0.0
+
+
+def test_where_nothing_left_times_are_nan_and_crossings_empty(whole: EscapeMap) -> None:
+    nothing = empty(whole)
+    assert np.isnan([nothing.mean_escape_time, nothing.median_escape_time]).all()
+    assert nothing.crossing_counts.shape == nothing.escape_probabilities.shape == (0,)
+    assert nothing.crossing_counts.dtype == np.int64
+
+
+# Maps under way.
+
+
+def test_a_map_under_way_counts_what_is_open(under_way: EscapeMap) -> None:
+    statistics = compute_statistics(under_way)
+    assert statistics.shares == under_way.fractions()
+    assert statistics.undecided == np.count_nonzero(under_way.fate == Fate.NOT_COMPUTED) > 0
+    assert statistics.decided == statistics.starts - statistics.undecided
+
+
+def test_probabilities_of_a_map_under_way_are_out_of_the_decided(under_way: EscapeMap) -> None:
+    statistics = compute_statistics(under_way)
+    assert statistics.escape_probabilities[0] == statistics.direct / statistics.decided
+
+
+# Histograms of escape times.
+
+
+@pytest.mark.parametrize("bins", [1, 7, 60])
+def test_every_escape_is_in_one_bin(statistics: EscapeStatistics, bins: int) -> None:
+    edges, counts = statistics.time_histogram(bins)
+    assert (edges.shape, counts.shape) == ((bins + 1,), (bins,))
+    assert counts.sum() == statistics.escaped
+
+
+def test_bins_are_even_on_a_logarithmic_scale(statistics: EscapeStatistics) -> None:
+    edges, _ = statistics.time_histogram(9)
+    np.testing.assert_allclose(edges[1:] / edges[:-1], edges[1] / edges[0])
+    assert (edges[0], edges[-1]) == (statistics.escape_times.min(), statistics.escape_times.max())
+
+
+def test_a_bin_holds_the_times_between_its_edges(statistics: EscapeStatistics) -> None:
+    edges, counts = statistics.time_histogram(9)
+    inside = (statistics.escape_times >= edges[3]) & (statistics.escape_times < edges[4])
+    assert counts[3] == np.count_nonzero(inside)
+
+
+@pytest.mark.parametrize("times", [[3.0], [3.0, 3.0], [3.0, np.nextafter(3.0, 4.0)], [0.0, 3.0], [0.0]])
+def test_equal_and_vanishing_times_have_a_histogram(whole: EscapeMap, times: list[float]) -> None:
+    edges, counts = with_times(whole, times).time_histogram(5)
+    assert np.all(np.diff(edges) > 0.0)
+    assert counts.sum() == len(times)
+
+
+def test_no_escapes_have_an_empty_histogram(whole: EscapeMap) -> None:
+    edges, counts = empty(whole).time_histogram(5)
+    assert np.all(np.diff(edges) > 0.0)
+    assert not counts.any()
+
+
+def test_a_histogram_needs_a_bin(statistics: EscapeStatistics) -> None:
+    with pytest.raises(ValueError, match="bins=0: must be 1 or more"):
+        statistics.time_histogram(0)

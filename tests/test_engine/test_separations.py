@@ -1,0 +1,63 @@
+"""Two orbits part as their potential says: at the rate of a saddle, of chaos, or of two frequencies."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import CancelledError
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from engine import CASES, LONGEST_SEPARATION, Plane, classify_orbits, compute_separation, start_states
+
+
+def state_at(case: str, h: float, x: float, px: float) -> np.ndarray:
+    return start_states(CASES[case], Plane.X_PX, h, np.array([x]), np.array([px]))[0]
+
+
+def test_the_distance_is_that_of_two_orbits_by_another_method() -> None:
+    potential, first, second = CASES["II"], state_at("II", 0.15, 0.1, 0.2), state_at("II", 0.15, 0.1001, 0.2)
+    separation = compute_separation(potential, first, second, 50.0)
+
+    def flow(_t: float, s: np.ndarray) -> list[float]:
+        x, y = s[0], s[1]
+        return [s[2], s[3], -x + x * x - y * y, -y - 2 * x * y]
+
+    paths = [solve_ivp(flow, (0, 50.0), s, "DOP853", t_eval=separation.t, rtol=1e-12, atol=1e-13).y for s in (first, second)]
+    np.testing.assert_allclose(separation.distance, np.linalg.norm(paths[0] - paths[1], axis=0), rtol=1e-5)
+
+
+def test_close_starts_on_a_boundary_part_exponentially() -> None:
+    x = np.linspace(-0.4, 0.4, 200)
+    states = start_states(CASES["I"], Plane.X_PX, 0.19, x, np.full_like(x, 0.1))
+    times = classify_orbits(CASES["I"], 0.19, states, 1e3).escape_time
+    longest = int(np.nanargmax(times))
+    second = state_at("I", 0.19, x[longest] + 1e-13, 0.1)
+    separation = compute_separation(CASES["I"], states[longest], second, float(times[longest]))
+    assert times[longest] > 100.0
+    assert separation.distance[0] < 3e-13
+    assert separation.distance[-1] > 1e4 * separation.distance[0]
+
+
+def test_an_orbit_is_no_distance_from_itself() -> None:
+    state = state_at("III", 0.3, 0.1, 0.1)
+    assert not compute_separation(CASES["III"], state, state, 10.0).distance.any()
+
+
+def test_long_orbits_are_compared_for_as_long_as_it_takes_to_part() -> None:
+    state = state_at("I", 0.1, 0.1, 0.1)
+    assert compute_separation(CASES["I"], state, 1.0000001 * state, 1e6).t[-1] == LONGEST_SEPARATION
+
+
+def test_a_cancelled_comparison_ends_at_once() -> None:
+    cancel, state = threading.Event(), state_at("I", 0.1, 0.1, 0.1)
+    cancel.set()
+    with pytest.raises(CancelledError):
+        compute_separation(CASES["I"], state, state, 1e3, cancel=cancel)
+
+
+@pytest.mark.parametrize(("second", "t_end", "named"), [([0.0, 0.0, np.nan, 1.0], 10.0, "second="), ([0.0] * 4, -1.0, "t_max")])
+def test_nonsense_is_named(second: list[float], t_end: float, named: str) -> None:
+    with pytest.raises(ValueError, match=named):
+        compute_separation(CASES["I"], [0.0, 0.0, 0.0, 0.5], second, t_end)
