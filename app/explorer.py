@@ -158,7 +158,8 @@ class Explorer:
 
     def _show_preset(self, preset: Preset) -> None:
         self.sweep.stop()
-        self.state.param.update(**{"palette": self.state.palette, "chosen": 0, **preset.values()})
+        self.state.param.update(chosen=0, **preset.values())
+        self.navigation.visit(preset.window)
 
     def _copied(self, success: bool) -> None:
         said = "The link is in the clipboard." if success else "The browser refused: copy the page's address instead."

@@ -154,10 +154,10 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="needles", title="Needles of escape", group=_PLACES, picture="basins",
-        case="III", plane=Plane.X_H, energy=0.45, window=Window(-0.6, 0.6, 0.35, 0.6), t_max=1e4,
+        case="III", plane=Plane.X_H, energy=0.45, window=Window(-0.6, 0.6, 0.35, 0.6), t_max=1e3,
         starts=((0.2, 0.4), (0.3, 0.45), (0.38, 0.46), (0.59, 0.47)),
-        caption="Grey are orbits on tori around the straight swing along the y axis. Needles of escape pierce them from either "
-        "side: tori break sooner at energies where their two frequencies come close to a simple ratio.",
+        caption="In the grey nearly all orbits wind on tori around the straight swing along the y axis. Needles of escape pierce "
+        "them from either side: tori break sooner at energies where their two frequencies come close to a simple ratio.",
     ),
     Preset(
         key="last-islands", title="The last islands", group=_PLACES, picture="basins",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import panel as pn
 import panel_material_ui as pmui
+import param
 from panel.util import edit_readonly
 
 from app.equations import equations
@@ -14,6 +15,12 @@ from app.views.wrapping import wrapping_row
 _ON_BLUE = {"textTransform": "none", "color": "#ffffff", "fontSize": "15px"}
 # Maps are read along their axes, so figures keep them.
 _THEME = {"chart_style": "standard"}
+
+
+class _Idle(param.Parameterized):
+    """A state of its own that is never busy."""
+
+    busy = param.Boolean(default=False)
 
 
 def explorer_page(explorer: Explorer) -> pmui.Page:
@@ -40,9 +47,10 @@ def explorer_page(explorer: Explorer) -> pmui.Page:
     page = pmui.Page(
         title="Escape Explorer", main=[main], header=[_header(explorer, gallery)], busy_indicator=None, theme_config=_THEME
     )
-    # A page that shows how busy it is looks through all its models at the begin and end of every callback: 50 ms each.
+    # A page that shows how busy the server is looks through all its models at the begin and end of every callback, which
+    # takes 50 ms each, and the server's state, which outlives every session, would hold on to the page for it.
     with edit_readonly(page):
-        page.busy = False
+        page.busy = _Idle().param.busy
     page.param.watch(lambda event: explorer.set_dark(event.new), "dark_theme")
     return page
 

@@ -28,7 +28,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot = figure(name=name, title=title, toolbar_location="above", frame_width=FRAME, frame_height=FRAME, **options)
     plot.toolbar.autohide = True
     plot.toolbar.logo = None
-    plot.grid.visible = False
+    plot.center = []
     plot.title.text_font_size = "14px"
     plot.axis.axis_label_text_font_style = "normal"
     # The page's theme gives the same to all figures that it knows from the start, and their colours.

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.events import DoubleTap, RangesUpdate, SelectionGeometry, Tap
-from bokeh.models import ColorBar, ColumnDataSource, LinearColorMapper, LogColorMapper, Range1d, Span
+from bokeh.models import ColorBar, ColumnDataSource, Image, LinearColorMapper, LogColorMapper, Range1d, Span
 
 from app.help_texts import help_details
 from app.map_columns import character_column, longest_typical_time
@@ -200,10 +200,10 @@ class MapsView:
 
     def _paint(self, name: str) -> None:
         """The images and lines of a picture, from back to front."""
-        plot, place = self.figures[name], {"x": "x", "y": "y", "dw": "dw", "dh": "dh", "source": self.source}
-        image = plot.image(PAINTED[name][0], **place, color_mapper=self._mappers[name])
+        plot, (column, _) = self.figures[name], PAINTED[name]
+        image = plot.add_glyph(self.source, Image(image=column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if name == "times":
-            image = plot.image("escape_time", **place, color_mapper=self._time_mapper)
+            image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
             plot.add_layout(ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="escape time"), "below")
         plot.add_tools(self._hover.clone(renderers=[image]))
         self.outlines.draw(plot, full=name == "curves")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, LinearColorMapper
+from bokeh.models import ColumnDataSource, LinearColorMapper, Quad, Scatter, Text
 from bokeh.plotting import figure
 
 from app.palette import LIGHT, MARK_EDGE, PAPER, Palette
@@ -32,19 +32,15 @@ class Marks:
         """Add the marks to a figure; the sections only on some, as many points take long to paint."""
         colour = {"field": "slot", "transform": self._mapper}
         if sections:
-            plot.scatter("x", "y", source=self._sections, size=3, fill_color=colour, line_color=None)
-        plot.quad(
-            "left", "right", "top", "bottom", source=self._box,
-            fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed",
-        )  # fmt: skip
+            plot.add_glyph(self._sections, Scatter(size=3, fill_color=colour, line_color=None))
+        plot.add_glyph(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))
         for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour)):
-            plot.scatter("x", "y", source=self._starts, marker="cross", size=size, line_width=width, line_color=ink)
+            plot.add_glyph(self._starts, Scatter(marker="cross", size=size, line_width=width, line_color=ink))
         # An outline covers what it surrounds, so the number stands over its own halo.
         for outline in (LIGHT.halo, None):
-            plot.text(
-                "x", "y", "text", source=self._starts, x_offset=6, y_offset=-4, text_font_size="13px",
-                text_font_style="bold", text_color=MARK_EDGE, text_outline_color=outline,
-            )  # fmt: skip
+            number = Text(x_offset=6, y_offset=-4, text_font_size="13px", text_font_style="bold", text_color=MARK_EDGE)
+            number.text_outline_color = outline
+            plot.add_glyph(self._starts, number)
 
     def show_starts(self, starts: Sequence[tuple[float, float]]) -> None:
         """Put a numbered cross on each start."""

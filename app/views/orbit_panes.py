@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d, Span
+from bokeh.models import ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
 from bokeh.plotting import figure
 
 from app.help_texts import help_details
@@ -77,15 +77,16 @@ class OrbitPanes:
 
     def _draw(self) -> None:
         colour = {"field": "slot", "transform": self._mapper}
-        self.outlines.draw(self.path, full=False)
-        self.path.image_rgba("image", "x", "y", "dw", "dh", source=self._shades)
         style = {"line_color": colour, "line_alpha": "alpha"}
-        self.path.multi_line("xs", "ys", source=self._paths, **style)
-        self.path.multi_line("xs", "ys", source=self._trails, line_color=LIGHT.halo, line_width=5, line_alpha=0.7)
-        self.path.multi_line("xs", "ys", source=self._trails, line_width=2.5, **style)
-        self.path.scatter("x", "y", source=self._points, size=11, fill_color=colour, line_color=MARK_EDGE, line_width=1.5)
+        path = self.path
+        self.outlines.draw(path, full=False)
+        path.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh"))
+        path.add_glyph(self._paths, MultiLine(**style))
+        path.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
+        path.add_glyph(self._trails, MultiLine(line_width=2.5, **style))
+        path.add_glyph(self._points, Scatter(size=11, fill_color=colour, line_color=MARK_EDGE, line_width=1.5))
         for name, plot in (("sali", self.sali), ("r2", self.r2)):
-            plot.multi_line("xs", "ys", source=self._histories[name], **style)
+            plot.add_glyph(self._histories[name], MultiLine(**style))
             plot.add_layout(self._now)
         self.sali.add_layout(
             Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bokeh.models import ColumnDataSource
+from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.palette import DARK, LIGHT, PAPER, Entry, Inks, Palette
@@ -35,17 +35,17 @@ class Outlines:
             self._draw_inked(plot, self._levels, "equipotential", 1.0)
             self._draw_inked(plot, self._critical, "critical_equipotential", 1.5)
         self._draw_inked(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
-        plot.multi_line("xs", "ys", source=self._exits, line_color=self._inks.halo, line_width=5)
-        plot.multi_line("xs", "ys", source=self._exits, line_color="colour", line_width=3, line_dash="solid")
+        plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
+        plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
         if full:
-            plot.text(
-                "x", "y", "text", source=self._labels, text_color="colour", text_align="center", text_baseline="middle",
-                text_font_size="16px", text_font_style="bold",
-            )  # fmt: skip
+            number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
+            number.text_font_style = "bold"
+            plot.add_glyph(self._labels, number)
 
     def _draw_inked(self, plot: figure, source: ColumnDataSource, ink: str, width: float) -> None:
-        line = plot.multi_line("xs", "ys", source=source, line_color=getattr(self._inks, ink), line_width=width)
-        self._inked[ink].append(line.glyph)
+        line = MultiLine(line_color=getattr(self._inks, ink), line_width=width)
+        plot.add_glyph(source, line)
+        self._inked[ink].append(line)
 
     def set_palette(self, palette: Palette) -> None:
         """Colours of the exits, from the next `show` on."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, Range1d
+from bokeh.models import ColumnDataSource, Line, Range1d
 
 from app.help_texts import help_details
 from app.palette import PAPER, Palette
@@ -22,7 +22,8 @@ class SeparationPane:
         ranges = {"x_range": Range1d(0.0, 10.0), "y_range": Range1d(LEAST, 10.0)}
         self.figure = square_figure("separation", TITLE, y_axis_type="log", x_axis_label="t", y_axis_label="distance", **ranges)
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
-        self._line = self.figure.line("t", "distance", source=self._source, line_width=1.5, line_color=PAPER.orbits[1])
+        self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
+        self.figure.add_glyph(self._source, self._line)
         helping = pn.pane.HTML(help_details("distance"), width=FRAME + 60, margin=(0, 5))
         self._column = pn.Column(pn.pane.Bokeh(self.figure, margin=0), helping, margin=(0, 6), width=FRAME + 75)
 
@@ -46,4 +47,4 @@ class SeparationPane:
 
     def set_palette(self, palette: Palette) -> None:
         """The line's colour."""
-        self._line.glyph.line_color = palette.orbits[1]
+        self._line.line_color = palette.orbits[1]

@@ -1,0 +1,46 @@
+"""The gallery opens, shows its cards, and each leads to its view."""
+
+from __future__ import annotations
+
+import re
+
+from playwright.sync_api import expect
+
+from app.gallery import PRESETS
+from tests.browser.explorer_page import ExplorerPage
+
+
+def test_every_preset_has_a_card_with_its_picture(explorer: ExplorerPage) -> None:
+    explorer.press("Gallery")
+    for preset in PRESETS:
+        card = explorer.page.get_by_role("button", name=re.compile(re.escape(preset.title)))
+        expect(card.first).to_be_attached()
+    explorer.page.wait_for_function(
+        """() => {
+            const pictures = []
+            const look = root => { for (const node of root.querySelectorAll('*')) {
+                if (node.tagName == 'IMG' && node.src.includes('/static/gallery/')) pictures.push(node)
+                if (node.shadowRoot) look(node.shadowRoot)
+            } }
+            look(document)
+            return pictures.length > 5 && pictures.some(picture => picture.complete && picture.naturalWidth == 160)
+        }"""
+    )
+
+
+def test_a_card_leads_to_its_view(explorer: ExplorerPage) -> None:
+    preset = next(preset for preset in PRESETS if preset.window is not None and preset.case == "III")
+    explorer.press("Gallery")
+    explorer.page.get_by_role("button", name=re.compile(re.escape(preset.title))).first.click()
+    explorer.page.wait_for_url(re.compile(f"case=III&plane={preset.plane.name.lower()}&h={re.escape(repr(preset.energy))}.*window="))
+    explorer.wait_until_complete()
+    assert explorer.ranges("basins")[0] == preset.window.x_low
+    expect(explorer.page.get_by_role("button", name="III", exact=True)).to_have_attribute("aria-pressed", "true")
+
+
+def test_the_gallery_can_be_closed_again(explorer: ExplorerPage) -> None:
+    explorer.press("Gallery")
+    card = explorer.page.get_by_role("button", name=re.compile(re.escape(PRESETS[0].title))).first
+    expect(card).to_be_visible()
+    explorer.press("Gallery")
+    expect(card).not_to_be_visible()
