@@ -202,8 +202,8 @@ class Explorer:
     def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a quick look."""
         with pn.io.hold():
-            self.maps.show(frame, columns)
-            self.progress.look(frame)
+            self.maps.show(frame, columns, quickly=True)
+            self.progress.look()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame."""

@@ -65,6 +65,9 @@ def compute_map(
     if resume is not None:
         _check_resumable(spec, resume)
     run = MapRun(spec, resume)
+    if on_frame is None:
+        # Nobody looks at coarse stages.
+        run.stride = 1
     begun = time.monotonic()
     due: float | None = None
 

@@ -23,8 +23,8 @@ from app.views.outlines import Outlines
 from app.views.wrapping import wrapping_row
 from engine import EscapeMap, Fate, MapSpec, Regularity, RegularityMap, Window
 
-REST_MS = 200
-"""Ranges that have not moved for this long are computed anew."""
+REST_MS = 90
+"""Ranges that have not moved for this long are computed anew: longer than from one turn of a wheel to the next."""
 
 
 class MapsView:
@@ -55,6 +55,7 @@ class MapsView:
         self._spec: MapSpec | None = None
         self._home: Window | None = None
         self._rest: Any = None
+        self._following = False
         self._on_zoom = on_zoom
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         spans = Span(dimension="width", line_alpha=0.35), Span(dimension="height", line_alpha=0.35)
@@ -63,8 +64,11 @@ class MapsView:
         for name in TITLES:
             self._paint(name)
         self.set_palette(PAPER)
-        # All pictures report every zoom, as their ranges are the same; one is enough.
-        self.figures["curves"].on_event(RangesUpdate, self._zooming)
+        for edges in self._ranges:
+            edges.on_change("start", self._moved)
+            edges.on_change("end", self._moved)
+        # The end of a drag; after a turn of the wheel it comes half a second late. All pictures report it, one is enough.
+        self.figures["curves"].on_event(RangesUpdate, lambda event: self._rested())
         for plot in self.figures.values():
             # Two quick clicks, at two places too, are one tap and one double tap.
             for tap in (Tap, DoubleTap):
@@ -86,13 +90,16 @@ class MapsView:
         # A picture that is only hidden would be painted with every frame all the same.
         self._row.objects = [column for name, column in self._columns.items() if visible or name != "characters"]
 
-    def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """Paint a frame; the ranges follow a new window."""
+    def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, quickly: bool = False) -> None:
+        """Paint a frame; the ranges follow a new window. `quickly` changes no more than it must, for a frame in passing."""
         if frame.spec != self._spec:
             self._follow(frame.spec)
             self._spec = frame.spec
-            self._describe()
-        if frame.stride == 1:
+            if quickly:
+                self.outlines.show(frame.spec, quickly=True)
+            else:
+                self._describe()
+        if frame.stride == 1 and not quickly:
             self._time_mapper.high = longest_typical_time(frame)
         self.source.data = columns
 
@@ -153,19 +160,28 @@ class MapsView:
         if self._rest is None:
             self._go_to(spec.window)
 
-    def _zooming(self, event: RangesUpdate) -> None:
-        """Wait until the ranges rest, then say where."""
+    def _moved(self, _name: str, _old: float, _new: float) -> None:
+        """The visitor moves the ranges: wait until they rest."""
         document = self.source.document
-        if document is None:
-            return
-        if self._rest is not None:
-            document.remove_timeout_callback(self._rest)
-        edges = (event.x0, event.x1, event.y0, event.y1)
-        self._rest = document.add_timeout_callback(lambda: self._rested(edges), REST_MS)
+        if not self._following and document is not None:
+            self._stop_waiting()
+            self._rest = document.add_timeout_callback(self._waited, REST_MS)
 
-    def _rested(self, edges: tuple[float, float, float, float]) -> None:
+    def _stop_waiting(self) -> None:
+        if self._rest is not None:
+            self.source.document.remove_timeout_callback(self._rest)
+            self._rest = None
+
+    def _waited(self) -> None:
+        # A callback that runs is removed already.
         self._rest = None
-        window = Window(*edges)
+        self._rested()
+
+    def _rested(self) -> None:
+        """The ranges are where the visitor wants them: say where."""
+        self._stop_waiting()
+        x, y = self._ranges
+        window = Window(x.start, x.end, y.start, y.end)
         if self._spec is None or _is_near(window, self._spec.window):
             return
         self._on_zoom(None if self._home is not None and _is_near(window, self._home) else window)
@@ -177,8 +193,10 @@ class MapsView:
 
     def _go_to(self, window: Window) -> None:
         x, y = self._ranges
+        self._following = True
         x.update(start=window.x_low, end=window.x_high)
         y.update(start=window.ordinate_low, end=window.ordinate_high)
+        self._following = False
 
     def _describe(self) -> None:
         """Axis names, outlines and legends of the map in view."""

@@ -50,6 +50,8 @@ class NumbersView:
 
     def show_box(self, box: Window | None) -> None:
         """Count in a box, or with None in the whole view."""
+        if box == self._box:
+            return
         self._box = box
         self.whole.disabled = box is None
         self._count()
@@ -64,8 +66,10 @@ class NumbersView:
             return
         statistics = compute_statistics(self._frame, self._box)
         self.table.object = self._table(statistics)
-        self._times.send(statistics)
-        self._chances.send(statistics)
+        # The charts take longer to draw than a frame of the map.
+        if self._frame.complete:
+            self._times.send(statistics)
+            self._chances.send(statistics)
 
     def _table(self, statistics: EscapeStatistics) -> str:
         shares = statistics.shares

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.palette import DARK, LIGHT, PAPER, Entry, Inks, Palette
-from engine import MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials, trace_zero_velocity_curve
+from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials, trace_zero_velocity_curve
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
@@ -58,22 +59,26 @@ class Outlines:
             for glyph in glyphs:
                 glyph.line_color = getattr(self._inks, ink)
 
-    def show(self, spec: MapSpec) -> None:
-        """The curves of a map's plane, window and energy."""
+    def show(self, spec: MapSpec, *, quickly: bool = False) -> None:
+        """The curves of a map's plane, window and energy; `quickly` leaves the equipotentials as they are."""
         energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
-        if spec.plane is Plane.X_H:
-            limit, critical, levels = trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window), [], []
-        else:
-            escape = spec.potential.escape_energy
-            energies = (energy, escape, *(level * escape for level in _LEVELS))
-            limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.window)
-        self._limit.data = _lines(limit)
-        self._critical.data = _lines(critical)
-        self._levels.data = _lines([line for lines in levels for line in lines])
-        self._show_exits(spec, energy)
-
-    def _show_exits(self, spec: MapSpec, energy: float) -> None:
+        self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window))
         orbits = find_lyapunov_orbits(spec.potential, energy) if spec.plane is Plane.X_Y else ()
+        # Every message takes its time, those that say nothing too.
+        if orbits or self._exits.data["xs"]:
+            self._show_exits(orbits)
+        if not quickly:
+            self._show_levels(spec)
+
+    def _show_levels(self, spec: MapSpec) -> None:
+        levels: list[list[np.ndarray]] = [[]]
+        if spec.plane is not Plane.X_H:
+            energies = tuple(level * spec.potential.escape_energy for level in (1.0, *_LEVELS))
+            levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.window)
+        self._critical.data = _lines(levels[0])
+        self._levels.data = _lines([line for lines in levels[1:] for line in lines])
+
+    def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]

@@ -52,10 +52,9 @@ class ProgressView:
         self._set(running=not frame.complete, label="Cancel", text=text)
         self.bar.value = percent
 
-    def look(self, frame: EscapeMap) -> None:
-        """A quick look at an energy in passing."""
-        text = f"A quick look at h = {frame.spec.energy:.4g}, followed to t = {PREVIEW_TIME:g}"
-        self._set(running=False, label="Cancel", text=text)
+    def look(self) -> None:
+        """A quick look at an energy in passing; the same words for all of them, as each message takes its time."""
+        self._set(running=False, label="Cancel", text=f"Quick looks, followed to t = {PREVIEW_TIME:g} only")
         self.bar.value = 0
 
     def stop(self) -> None:

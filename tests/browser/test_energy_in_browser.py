@@ -23,7 +23,8 @@ def test_while_the_slider_is_dragged_quick_looks_follow_it(explorer: ExplorerPag
     explorer.page.evaluate(WATCH)
     explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=100)
     explorer.page.wait_for_function("() => window.looks >= 3")
-    expect(explorer.text("A quick look at h = 0.46")).to_be_visible()
+    expect(explorer.text("Quick looks, followed to t = 100 only")).to_be_visible()
+    explorer.page.wait_for_timeout(1000)
     shown = explorer.column("fate")
     expected = compute_preview(preview_spec(MapSpec(CASES["I"], Plane.X_PX, 0.46)))
     assert shown.shape == expected.fate.shape

@@ -32,7 +32,9 @@ def test_a_card_leads_to_its_view(explorer: ExplorerPage) -> None:
     preset = next(preset for preset in PRESETS if preset.window is not None and preset.case == "III")
     explorer.press("Gallery")
     explorer.page.get_by_role("button", name=re.compile(re.escape(preset.title))).first.click()
-    explorer.page.wait_for_url(re.compile(f"case=III&plane={preset.plane.name.lower()}&h={re.escape(repr(preset.energy))}.*window="))
+    explorer.page.wait_for_url(
+        re.compile(f"case=III&plane={preset.plane.name.lower()}&h={re.escape(repr(preset.energy))}.*window=")
+    )
     explorer.wait_until_complete()
     assert explorer.ranges("basins")[0] == preset.window.x_low
     expect(explorer.page.get_by_role("button", name="III", exact=True)).to_have_attribute("aria-pressed", "true")
