@@ -1,40 +1,85 @@
-"""Takes the README's picture from the real page. Run with the app served: python docs/make_picture.py http://127.0.0.1:5006/app"""
+"""Takes the README's picture and its short animation from the real page. Run: python docs/make_picture.py"""
 
 from __future__ import annotations
 
+import io
 import shutil
 import sys
+import tempfile
 from pathlib import Path
 
-from playwright.sync_api import expect, sync_playwright
+from PIL import Image
+from playwright.sync_api import Browser, expect, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.browser.explorer_page import ExplorerPage
+from tests.browser.served_app import served_app
+
+HERE = Path(__file__).parent
+STILL = "?case=III&plane=x_y&h=0.45&orbits=0.35,0.12;0.3,0.12;-0.1,0.4"
+SWEPT = "?case=III&plane=x_y&h=0.28&t_max=1000"
+FRAMES, FRAME_MS, WIDTH = 36, 250, 1000
 
 
-def main(address: str) -> None:
-    """Save the picture of case III at h = 0.45, with an orbit that wanders before it leaves."""
-    with sync_playwright() as playwright:
+def opened(browser: Browser, link: str, height: int) -> ExplorerPage:
+    """The page on a wide screen, for somebody who has been here before."""
+    context = browser.new_context(viewport={"width": 1600, "height": height})
+    context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
+    explorer = ExplorerPage(context.new_page())
+    explorer.page.goto(link)
+    explorer.wait_until_complete()
+    return explorer
+
+
+def take_picture(browser: Browser, address: str) -> None:
+    """Case III at h = 0.45: an orbit, its neighbour, and one that stays; a little way along them."""
+    explorer = opened(browser, address + STILL, 1500)
+    page = explorer.page
+    expect(explorer.text("upward crossings of y = 0")).to_be_visible()
+    for _ in range(40):
+        page.get_by_role("button", name="Next frame").click()
+    page.mouse.move(5, 1100)
+    page.wait_for_timeout(3000)
+    page.screenshot(path=str(HERE / "explorer.png"))
+
+
+def take_animation(browser: Browser, address: str) -> None:
+    """The energy of case III, played upward from just above the escape energy."""
+    explorer = opened(browser, address + SWEPT, 800)
+    page = explorer.page
+    explorer.press("▶ Play")
+    box = page.evaluate(
+        """() => {
+            const names = ['curves', 'basins', 'times', 'crossings']
+            const views = [...Bokeh.index.all_views()].filter(v => names.includes(v.model.name))
+            const boxes = views.map(v => v.el.getBoundingClientRect())
+            const top = Math.min(...boxes.map(b => b.top)), bottom = Math.max(...boxes.map(b => b.bottom))
+            return {x: 0, y: 50, width: 1600, height: bottom - 50}
+        }"""
+    )
+    frames = []
+    for _ in range(FRAMES):
+        page.wait_for_timeout(FRAME_MS)
+        frame = Image.open(io.BytesIO(page.screenshot(clip=box))).convert("RGB")
+        frames.append(frame.resize((WIDTH, round(WIDTH * frame.height / frame.width)), Image.Resampling.LANCZOS))
+    frames[0].save(
+        HERE / "explorer.webp", save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0, quality=55, method=6
+    )
+
+
+def main() -> None:
+    """Serve the app, and take both."""
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        served_app(Path(folder) / "log") as address,
+        sync_playwright() as playwright,
+    ):
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1600, "height": 1150})
-        page.goto(address)
-        explorer = ExplorerPage(page)
-        explorer.wait_until_complete()
-        for label in ("III", "(x, y)"):
-            explorer.forget_pixels()
-            explorer.press(label)
-            explorer.wait_for_new_pixels()
-        explorer.type_number("h exactly", "0.45")
-        explorer.page.wait_for_timeout(1000)
-        explorer.wait_until_complete()
-        explorer.click("basins", 0.35, 0.12)
-        expect(explorer.text("upward crossings of y = 0")).to_be_visible()
-        page.mouse.move(5, 1100)
-        page.wait_for_timeout(3000)
-        page.screenshot(path=str(Path(__file__).with_name("explorer.png")))
+        take_picture(browser, address)
+        take_animation(browser, address)
         browser.close()
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main()

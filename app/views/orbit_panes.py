@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
+from bokeh.models import BasicTickFormatter, ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
 from bokeh.plotting import figure
 
 from app.help_texts import help_details
@@ -33,6 +33,7 @@ class OrbitPanes:
         self.r2 = square_figure(
             "r2", TITLES["r2"], x_axis_label="t", y_axis_label="R²", x_range=Range1d(0.0, 10.0), y_range=Range1d(0.0, 1.0)
         )
+        self.r2.xaxis.formatter = BasicTickFormatter(use_scientific=False)
         self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
         self._paths, self._histories = _lines("paths"), {name: _lines(f"{name}_histories") for name in ("sali", "r2")}
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
@@ -93,7 +94,7 @@ class OrbitPanes:
         )
 
     def _scale_times(self) -> None:
-        """The axes of the histories, after the chosen orbit or the longest."""
+        """The axes of the histories: of SALI after the longest orbit, of R² after the one that is looked at."""
         if not self._drawings:
             return
         everything = [drawing for _, drawing in self._drawings]
@@ -102,7 +103,8 @@ class OrbitPanes:
         widest = max(float(drawing.r2[1].max()) for drawing in everything)
         if latest > earliest:
             self.sali.x_range.update(start=earliest, end=latest, reset_start=earliest, reset_end=latest)
-        for edges, end in ((self.r2.x_range, latest or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
+        end_of_chosen = float(everything[-1].orbit.t[-1])
+        for edges, end in ((self.r2.x_range, end_of_chosen or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
             edges.update(start=0.0, end=end, reset_start=0.0, reset_end=end)
 
     def _show_paths(self, potential: Potential, alphas: list[float]) -> None:

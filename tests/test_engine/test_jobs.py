@@ -171,7 +171,7 @@ def test_a_twin_is_the_one_that_find_twin_gives() -> None:
 
 def test_that_there_is_no_twin_is_an_answer_and_kept() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
-    spec = replace(TWIN, x=0.1, ordinate=0.2)
+    spec = replace(TWIN, energy=0.1)
     jobs.request_twin(spec, first.result, first.error)
     assert first.done.wait(30)
     wait_until_idle(jobs)

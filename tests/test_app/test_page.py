@@ -1,0 +1,36 @@
+"""A page is built for a visitor, and nothing holds on to it when they have gone."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+from bokeh.document import Document
+from panel.io.state import set_curdoc
+
+from app.explorer import Explorer
+from app.page import explorer_page
+
+
+class Sessionless(Document):
+    """A document that nobody looks at: its callbacks need no lock."""
+
+    def locked_callback(self, callback: Callable[..., None], *, policy: str = "every") -> Any:
+        return callback
+
+
+def build() -> weakref.ref[Explorer]:
+    with set_curdoc(Sessionless()):
+        explorer = Explorer()
+        page = explorer_page(explorer)
+        assert page.title == "Escape Explorer"
+        explorer.close()
+    return weakref.ref(explorer)
+
+
+def test_a_closed_page_is_let_go_of() -> None:
+    built = [build() for _ in range(2)]
+    gc.collect()
+    assert [reference() for reference in built] == [None, None]
