@@ -21,7 +21,8 @@ _FORMULAS = {
     "III": "V = ½(x² + y²) − x² y²",
 }
 PLAY, STOP = "▶ Play", "■ Stop"
-_ENERGY_STEP = 0.001
+_ENERGY_DECIMALS = 3
+_ENERGY_STEP = 10.0**-_ENERGY_DECIMALS
 _PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
 _ONE_LINE = {"& .MuiFormControlLabel-label": {"whiteSpace": "nowrap"}}
 
@@ -35,6 +36,12 @@ class EnergyActions:
     play: Callable[[], None]
 
 
+class PromptSlider(pmui.FloatSlider):
+    """A slider whose moves are heard sooner than Panel's 50 ms after the first of them."""
+
+    _debounce = 5
+
+
 class Controls:
     """Widgets that write into the view state and follow it."""
 
@@ -42,12 +49,13 @@ class Controls:
         self.state = state
         self._energy_actions = energy_actions
         self._looked = False
-        self._passing: float | None = None
+        # What a sweep put the slider on: the browser tells it again, sometimes late.
+        self._passed: set[float] = set()
         self.case = pmui.RadioButtonGroup(label="Case", options=list(CASES), value=state.case, size="small", sx=_PLAIN)
         self.plane = pmui.RadioButtonGroup(
             label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, size="small", sx=_PLAIN
         )
-        self.energy = pmui.FloatSlider(label="Energy h", step=_ENERGY_STEP, format="0.000", sizing_mode="stretch_width")
+        self.energy = PromptSlider(label="Energy h", step=_ENERGY_STEP, format="0.000", sizing_mode="stretch_width")
         self.play = pmui.Button(label=PLAY, variant="outlined", size="small", width=76, sx=_PLAIN)
         self.exact_energy = pmui.FloatInput(
             label="h exactly", value=state.energy, step=_ENERGY_STEP, format="0.[0000000000000000]", width=130, size="small"
@@ -81,7 +89,8 @@ class Controls:
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
         self.palette.param.watch(lambda event: state.param.update(palette=event.new), "value")
         self.play.on_click(lambda event: self._energy_actions.play())
-        self.energy.param.watch(self._look, "value")
+        # Of a move and a release that come together, the release counts.
+        self.energy.param.watch(self._look, "value", precedence=1)
         self.energy.param.watch(self._take_slid_energy, "value_throttled")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
@@ -95,17 +104,19 @@ class Controls:
     def show_playing(self, playing: bool) -> None:
         """Name the button after what it does next."""
         self.play.label = STOP if playing else PLAY
+        # Somebody who drags stops at a step.
+        self._passed = {energy for energy in self._passed if energy != round(energy, _ENERGY_DECIMALS)}
 
     def show_passing(self, energy: float) -> None:
         """Put the slider where a sweep is."""
-        self._passing = energy
+        self._passed.add(energy)
         self.energy.value = energy
 
     def _look(self, event: Any) -> None:
         """The slider is on its way: unless it follows the state or a sweep, somebody drags it."""
         if event.new == self._on_slider():
             self._settle()
-        elif event.new != self._passing:
+        elif event.new not in self._passed:
             self._looked = True
             self._energy_actions.look(event.new)
 
@@ -125,8 +136,8 @@ class Controls:
             self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
 
     def _take_slid_energy(self, event: Any) -> None:
-        # The slider stands at its end for an energy typed beyond it; that is no wish to go there.
-        if event.new != self._on_slider():
+        # The slider stands at its end for an energy typed beyond it, and passes others in a sweep: no wish to go there.
+        if event.new != self._on_slider() and event.new not in self._passed:
             self._looked = False
             self.state.energy = event.new
 
