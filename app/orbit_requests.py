@@ -35,6 +35,7 @@ class OrbitRequests:
         self._state, self._jobs, self._show = state, jobs, show
         self._tickets: dict[OrbitSpec, Ticket | None] = {}
         self._answers: dict[OrbitSpec, OrbitDrawing | str] = {}
+        self._told: tuple[ChosenOrbit, ...] = ()
         self._answer = locked(self._answered)
         state.param.watch(lambda *events: self.follow(), ["starts", "case", "plane", "energy", "t_max"])
 
@@ -74,7 +75,11 @@ class OrbitRequests:
             self._tell()
 
     def _tell(self) -> None:
-        self._show(tuple(self._known(start) for start in self._state.starts))
+        known = tuple(self._known(start) for start in self._state.starts)
+        # Drawing nothing anew would delay the map that is wanted at the same time.
+        if known != self._told:
+            self._told = known
+            self._show(known)
 
     def _known(self, start: Start) -> ChosenOrbit:
         spec = self._state.orbit_spec(start)
