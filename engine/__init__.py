@@ -4,7 +4,8 @@ from engine.certificates import Certificate, describe_certificate
 from engine.escape_maps import EscapeMap
 from engine.escape_statistics import EscapeStatistics, compute_statistics
 from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
-from engine.jobs import Jobs, OrbitSpec, SeparationSpec, Ticket, TwinSpec
+from engine.job_specs import OrbitSpec, SeparationSpec, TwinSpec
+from engine.jobs import Jobs, Ticket
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
 from engine.maps import compute_map

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections import OrderedDict
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 from engine.escape_maps import EscapeMap
+from engine.job_specs import OrbitSpec, Preview, PreviewSpec, RegularitySpec, SeparationSpec, TwinAnswer, TwinSpec
 from engine.map_specs import MapSpec
 from engine.maps import compute_map
 from engine.orbit_batches import default_executor
 from engine.orbits import Orbit, integrate_orbit
-from engine.planes import Plane
-from engine.potentials import Potential
 from engine.previews import compute_preview, preview_spec
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
+from engine.result_cache import ResultCache, Sized
 from engine.separations import Separation, compute_separation
 from engine.twins import Twin, find_twin
 
@@ -28,80 +27,6 @@ DEFAULT_CACHE_BYTES = 512 * 2**20
 _COORDINATORS = 32
 
 log = logging.getLogger(__name__)
-
-
-class Sized(Protocol):
-    """A result that knows its size in memory."""
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held."""
-
-
-@dataclass(frozen=True)
-class OrbitSpec:
-    """The request for one orbit: `integrate_orbit`'s arguments, hashable."""
-
-    potential: Potential
-    state: tuple[float, float, float, float]
-    t_max: float
-
-
-@dataclass(frozen=True)
-class TwinSpec:
-    """The request for the twin of a start: `find_twin`'s arguments, hashable."""
-
-    potential: Potential
-    plane: Plane
-    energy: float | tuple[float, float]
-    x: float
-    ordinate: float
-    t_max: float
-
-
-@dataclass(frozen=True)
-class _TwinAnswer:
-    """A twin, or the knowledge that there is none."""
-
-    twin: Twin | None
-    nbytes: int = 1024
-    """About what it takes together with its request."""
-
-
-@dataclass(frozen=True)
-class SeparationSpec:
-    """The request to compare two orbits: `compute_separation`'s arguments, hashable."""
-
-    potential: Potential
-    first: tuple[float, float, float, float]
-    second: tuple[float, float, float, float]
-    t_end: float
-
-
-@dataclass(frozen=True)
-class _PreviewSpec:
-    """The request for a quick look at a map."""
-
-    map_spec: MapSpec
-
-
-@dataclass(frozen=True)
-class _RegularitySpec:
-    """The request to judge the bounded orbits of a map."""
-
-    map_spec: MapSpec
-
-
-@dataclass(frozen=True, eq=False)
-class _Preview:
-    """A preview as it is kept: whole, for what it is."""
-
-    frame: EscapeMap
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held."""
-        return self.frame.nbytes
 
 
 class Ticket:
@@ -146,38 +71,6 @@ class _Job:
     latest: Any = None
 
 
-class ResultCache:
-    """Least recently used results, together at most `limit` bytes."""
-
-    def __init__(self, limit: int) -> None:
-        self.limit = limit
-        self.nbytes = 0
-        self._results: OrderedDict[Hashable, Any] = OrderedDict()
-
-    def get(self, key: Hashable) -> Any:
-        """The result, None when it is not kept."""
-        if key in self._results:
-            self._results.move_to_end(key)
-        return self._results.get(key)
-
-    def put(self, key: Hashable, result: Sized) -> None:
-        """Keep a result, at the cost of the ones not used for longest; one larger than the limit is not kept."""
-        self._drop(key)
-        if result.nbytes > self.limit:
-            return
-        self._results[key] = result
-        self.nbytes += result.nbytes
-        while self.nbytes > self.limit:
-            self._drop(next(iter(self._results)))
-
-    def __iter__(self) -> Iterator[Hashable]:
-        return iter(list(self._results))
-
-    def _drop(self, key: Hashable) -> None:
-        if key in self._results:
-            self.nbytes -= self._results.pop(key).nbytes
-
-
 class Jobs:
     """The background work of a process.
 
@@ -208,7 +101,7 @@ class Jobs:
         self, spec: MapSpec, on_preview: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
     ) -> Ticket:
         """Ask for a quick look at a map (`compute_preview`); it comes to `on_preview` from another thread, once."""
-        return self._request(_PreviewSpec(preview_spec(spec)), lambda kept: on_preview(kept.frame), on_error, self._run_preview)
+        return self._request(PreviewSpec(preview_spec(spec)), lambda kept: on_preview(kept.frame), on_error, self._run_preview)
 
     def request_orbit(self, spec: OrbitSpec, on_orbit: Callable[[Orbit], None], on_error: Callable[[Exception], None]) -> Ticket:
         """Ask for an orbit; it comes to `on_orbit` from another thread."""
@@ -230,7 +123,7 @@ class Jobs:
         self, spec: MapSpec, on_frame: Callable[[RegularityMap], None], on_error: Callable[[Exception], None]
     ) -> Ticket:
         """Ask which bounded orbits of a map are chaotic; the map itself is computed first where it is not kept."""
-        return self._request(_RegularitySpec(spec), on_frame, on_error, self._run_regularity)
+        return self._request(RegularitySpec(spec), on_frame, on_error, self._run_regularity)
 
     @property
     def in_flight(self) -> int:
@@ -308,15 +201,15 @@ class Jobs:
             compute_separation, spec.potential, spec.first, spec.second, spec.t_end, cancel=job.cancel
         ).result()
 
-    def _run_preview(self, job: _Job) -> _Preview:
-        assert isinstance(job.key, _PreviewSpec)
+    def _run_preview(self, job: _Job) -> Preview:
+        assert isinstance(job.key, PreviewSpec)
         frame = compute_preview(job.key.map_spec, self._executor, job.cancel)
         if job.cancel.is_set():
             raise CancelledError
-        return _Preview(frame)
+        return Preview(frame)
 
     def _run_regularity(self, job: _Job) -> RegularityMap:
-        assert isinstance(job.key, _RegularitySpec)
+        assert isinstance(job.key, RegularitySpec)
         spec = job.key.map_spec
         whole = self.cache.get(spec)
         if whole is None or not whole.complete:
@@ -341,11 +234,11 @@ class Jobs:
         executor = self._executor or default_executor()
         return executor.submit(integrate_orbit, spec.potential, spec.state, spec.t_max, cancel=job.cancel).result()
 
-    def _run_twin(self, job: _Job) -> _TwinAnswer:
+    def _run_twin(self, job: _Job) -> TwinAnswer:
         spec = job.key
         assert isinstance(spec, TwinSpec)
         start = (spec.x, spec.ordinate, spec.t_max)
-        return _TwinAnswer(find_twin(spec.potential, spec.plane, spec.energy, *start, executor=self._executor, cancel=job.cancel))
+        return TwinAnswer(find_twin(spec.potential, spec.plane, spec.energy, *start, executor=self._executor, cancel=job.cancel))
 
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
         """The kept map of the same picture that has been followed longest, though not beyond t_max."""

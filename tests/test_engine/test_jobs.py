@@ -6,6 +6,7 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,18 +16,17 @@ from engine import (
     EscapeMap,
     Jobs,
     MapSpec,
-    Orbit,
     OrbitSpec,
     Plane,
-    RegularityMap,
-    Twin,
+    SeparationSpec,
     TwinSpec,
     compute_map,
+    compute_separation,
     find_twin,
     integrate_orbit,
     judge_bounded_orbits,
+    preview_spec,
 )
-from engine.jobs import ResultCache
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
 TWIN = TwinSpec(CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0)
@@ -37,11 +37,11 @@ class Inbox:
     """Collects what a request delivers."""
 
     def __init__(self) -> None:
-        self.results: list[EscapeMap | Orbit | RegularityMap | Twin | None] = []
+        self.results: list[Any] = []
         self.errors: list[Exception] = []
         self.first, self.done = threading.Event(), threading.Event()
 
-    def result(self, result: EscapeMap | Orbit | Twin | None) -> None:
+    def result(self, result: Any) -> None:
         self.results.append(result)
         self.first.set()
         if getattr(result, "complete", True):
@@ -223,24 +223,21 @@ def test_any_executor_serves() -> None:
     np.testing.assert_array_equal(inbox.results[-1].fate, compute_map(QUICK).fate)
 
 
-class Weight:
-    """A result of a given size."""
-
-    def __init__(self, nbytes: int) -> None:
-        self.nbytes = nbytes
-
-
-def test_the_cache_stays_below_its_limit_and_drops_what_was_not_used() -> None:
-    cache = ResultCache(100)
-    for key in ("a", "b", "c"):
-        cache.put(key, Weight(40))
-        cache.get("a")
-    assert cache.nbytes == 80
-    assert set(cache) == {"a", "c"}
+def test_a_quick_look_comes_once_and_is_kept() -> None:
+    jobs, first, second = Jobs(), Inbox(), Inbox()
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.3)
+    jobs.request_preview(spec, first.result, first.error)
+    assert first.first.wait(30)
+    wait_until_idle(jobs)
+    jobs.request_preview(spec, second.result, second.error)
+    assert second.results == first.results
+    assert first.results[0].spec == preview_spec(spec)
 
 
-def test_a_result_larger_than_the_cache_is_not_kept() -> None:
-    cache = ResultCache(100)
-    cache.put("a", Weight(40))
-    cache.put("b", Weight(101))
-    assert list(cache) == ["a"]
+def test_two_orbits_are_compared() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    first, second = (0.1, 0.0, 0.05, 0.6), (0.1001, 0.0, 0.05, 0.6)
+    jobs.request_separation(SeparationSpec(CASES["I"], first, second, 3.0), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    expected = compute_separation(CASES["I"], first, second, 3.0)
+    np.testing.assert_array_equal(inbox.results[0].distance, expected.distance)
