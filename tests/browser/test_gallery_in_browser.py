@@ -35,7 +35,8 @@ def test_a_card_leads_to_its_view(explorer: ExplorerPage) -> None:
     explorer.page.wait_for_url(
         re.compile(f"case=III&plane={preset.plane.name.lower()}&h={re.escape(repr(preset.energy))}.*window=")
     )
-    explorer.wait_until_complete()
+    # The picture before is complete, too.
+    explorer.wait_for_data("maps", f"data.complete[0] && data.x[0] == {preset.window.x_low!r}")
     assert explorer.ranges("basins")[0] == preset.window.x_low
     expect(explorer.page.get_by_role("button", name="III", exact=True)).to_have_attribute("aria-pressed", "true")
 
