@@ -58,6 +58,21 @@ def zoom(explorer: ExplorerPage, share: float) -> None:
     explorer.page.mouse.wheel(0, -100)
 
 
+def zoom_box(explorer: ExplorerPage, share: float) -> None:
+    """A box drawn around the middle and let go of; then back to the whole plane, which is kept."""
+    explorer.page.evaluate(
+        """() => {
+            for (const tool of Bokeh.documents[0].get_model_by_name('basins').toolbar.tools)
+                if (tool.type == 'BoxZoomTool') tool.active = true
+        }"""
+    )
+    side = 0.2 + 0.3 * share
+    explorer.page.mouse.move(*explorer.point("basins", -side, 0.4 + side / 2))
+    explorer.page.mouse.down()
+    explorer.page.mouse.move(*explorer.point("basins", 0.0, 0.4 - side / 2), steps=3)
+    explorer.page.mouse.up()
+
+
 def opened(browser: Browser, address: str, link: str = "") -> ExplorerPage:
     context = browser.new_context(viewport={"width": 1600, "height": 1200})
     context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
@@ -71,7 +86,7 @@ def report_latency(browser: Browser, address: str) -> None:
     print("| case | after | first pixels, ms: median, worst | whole map to t = 1000, ms: median, worst |")
     print("|---|---|---|---|")
     for case, h in (("I", 0.25), ("III", 0.45)):
-        for name, act in (("release of the slider", release), ("a turn of the wheel", zoom)):
+        for name, act in (("release of the slider", release), ("release of a box", zoom_box), ("a turn of the wheel", zoom)):
             explorer = opened(browser, address, f"?case={case}&h={h}&t_max=1000")
             explorer.page.evaluate(WATCH)
             stages = zip(*(measure(explorer, act, share) for share in SHARES), strict=True)
@@ -82,7 +97,11 @@ def report_latency(browser: Browser, address: str) -> None:
 
 def measure(explorer: ExplorerPage, act: Callable[[ExplorerPage, float], None], share: float) -> tuple[float, float]:
     act(explorer, share)
-    return waited(explorer)
+    times = waited(explorer)
+    if act is zoom_box:
+        explorer.press("Whole plane")
+        time.sleep(1.0)
+    return times
 
 
 def report_looks(browser: Browser, address: str) -> None:
