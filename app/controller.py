@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
+from app.locking import Locked
 from app.map_columns import map_columns
 from app.preview_requests import PreviewRequests
 from app.sentences import sentence
 from app.view_state import ViewState
 from engine import EscapeMap, Jobs, RegularityMap, Ticket
-
-Locked = Callable[[Callable[..., None]], Callable[..., None]]
 
 
 class MapListener(Protocol):
@@ -103,7 +101,9 @@ class Controller:
         self._map_ticket = self._regularity_ticket = None
 
     def stop_map(self) -> None:
-        """The user's cancel: stop, and paint no late frame."""
+        """The user's cancel: stop, and paint no late frame; nothing, when the map is whole."""
+        if self._whole_map is not None:
+            return
         self.cancel_map()
         self._generation += 1
         self._listener.map_stopped()

@@ -18,7 +18,7 @@ from app.paper_energies import ENERGIES
 from app.separation_request import SeparationRequest
 from app.twin_request import TwinRequest
 from app.view_state import ViewState
-from app.views.controls import Controls, EnergyActions
+from app.views.controls import ENERGY_DECIMALS, Controls, EnergyActions
 from app.views.gallery import Gallery
 from app.views.keyboard import Keyboard
 from app.views.maps import MapsView
@@ -174,8 +174,11 @@ class Explorer:
             self.progress.warn(str(error))
 
     def _escape(self) -> None:
-        self.sweep.stop()
-        self.controller.stop_map()
+        """What moves stops first: the map where a sweep ends is wanted."""
+        if self.sweep.playing:
+            self.sweep.stop()
+        else:
+            self.controller.stop_map()
 
     def _play(self) -> None:
         if self.sweep.playing:
@@ -191,7 +194,7 @@ class Explorer:
 
     def _end_sweep(self, energy: float) -> None:
         self.controls.show_playing(False)
-        self.state.energy = round(energy, 3)
+        self.state.energy = round(energy, ENERGY_DECIMALS)
 
     # What the engine answers.
 

@@ -18,7 +18,6 @@ LONGEST_VALUE = 300
 """Most characters that a value in a link may have."""
 
 _SHOWN = 40
-PAPER_SET = "paper"
 
 
 def write_link(state: ViewState) -> str:
@@ -34,7 +33,7 @@ def write_link(state: ViewState) -> str:
         chosen["window"] = _joined(astuple(state.window))
     if state.judge:
         chosen["judge"] = "yes"
-    if state.palette != PAPER_SET:
+    if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette
     if state.starts:
         chosen["orbits"] = ";".join(map(_joined, state.starts))

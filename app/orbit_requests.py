@@ -6,12 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from app.locking import Locked
 from app.orbit_drawing import OrbitDrawing, draw_orbit
 from app.sentences import sentence
 from app.view_state import Start, ViewState
 from engine import Fate, Jobs, Orbit, OrbitSpec, Ticket, describe_fate
-
-Locked = Callable[[Callable[..., None]], Callable[..., None]]
 
 
 @dataclass(frozen=True)

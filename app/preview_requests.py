@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from app.locking import Locked
 from app.map_columns import map_columns
 from app.view_state import ViewState
 from engine import EscapeMap, Jobs, Ticket
-
-Locked = Callable[[Callable[..., None]], Callable[..., None]]
 
 
 class PreviewRequests:

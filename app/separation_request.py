@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from app.locking import Locked
 from app.orbit_requests import ChosenOrbit
 from app.sentences import sentence
 from app.view_state import ViewState
 from engine import Jobs, Orbit, Separation, SeparationSpec, Ticket
 
-Locked = Callable[[Callable[..., None]], Callable[..., None]]
 Pair = tuple[int, int]
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from app.locking import Locked
 from app.sentences import sentence
 from app.view_state import ViewState
 from engine import Jobs, Ticket, Twin, TwinSpec, describe_fate
-
-Locked = Callable[[Callable[..., None]], Callable[..., None]]
 
 
 class TwinRequest:

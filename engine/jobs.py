@@ -196,10 +196,7 @@ class Jobs:
     def _run_separation(self, job: _Job) -> Separation:
         spec = job.key
         assert isinstance(spec, SeparationSpec)
-        executor = self._executor or default_executor()
-        return executor.submit(
-            compute_separation, spec.potential, spec.first, spec.second, spec.t_end, cancel=job.cancel
-        ).result()
+        return self._on_pool(job, compute_separation, spec.potential, spec.first, spec.second, spec.t_end)
 
     def _run_preview(self, job: _Job) -> Preview:
         assert isinstance(job.key, PreviewSpec)
@@ -231,8 +228,12 @@ class Jobs:
     def _run_orbit(self, job: _Job) -> Orbit:
         spec = job.key
         assert isinstance(spec, OrbitSpec)
+        return self._on_pool(job, integrate_orbit, spec.potential, spec.state, spec.t_max)
+
+    def _on_pool[Result](self, job: _Job, compute: Callable[..., Result], *arguments: Any) -> Result:
+        """What one call comes to, made by a thread that is there for computing."""
         executor = self._executor or default_executor()
-        return executor.submit(integrate_orbit, spec.potential, spec.state, spec.t_max, cancel=job.cancel).result()
+        return executor.submit(compute, *arguments, cancel=job.cancel).result()
 
     def _run_twin(self, job: _Job) -> TwinAnswer:
         spec = job.key

@@ -112,9 +112,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     ValueError
         When `state` is not four finite numbers, or `t_max` is out of its range.
     """
-    start = np.asarray(state, dtype=float)
-    if start.shape != (4,) or not np.isfinite(start).all():
-        raise ValueError(f"state={state!r}: must be four finite numbers x, y, px, py")
+    start = checked_state("state", state)
     t_max = checked_t_max(t_max)
     energy = float(potential.energy(start))
     outcome = classify_orbits(potential, energy, start[None], t_max, executor=SerialExecutor(), cancel=cancel)
@@ -128,6 +126,14 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     return Orbit(
         *arrays, fate, float(outcome.escape_time[0]), int(outcome.crossings[0]), float(outcome.energy_error[0]), energy
     )  # fmt: skip
+
+
+def checked_state(name: str, state: Any) -> np.ndarray:
+    """The state as four floats; ValueError, with this name, unless it is four finite numbers."""
+    start = np.asarray(state, dtype=float)
+    if start.shape != (4,) or not np.isfinite(start).all():
+        raise ValueError(f"{name}={state!r}: must be four finite numbers x, y, px, py")
+    return start
 
 
 def _follow(

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from engine.map_specs import checked_t_max
+from engine.orbits import checked_state
 from engine.potentials import Potential
 from engine.taylor.build import load_kernels
 from engine.taylor.dense import sample_path, trace_steps
@@ -70,9 +71,7 @@ def compute_separation(
     kernels = load_kernels(potential.terms, potential.channels)
     paths = []
     for name, state in (("first", first), ("second", second)):
-        start = np.asarray(state, dtype=float)
-        if start.shape != (4,) or not np.isfinite(start).all():
-            raise ValueError(f"{name}={state!r}: must be four finite numbers x, y, px, py")
+        start = checked_state(name, state)
         steps = trace_steps(kernels, start, float(times[-1]), potential.channels, cancel)
         paths.append(sample_path(kernels, steps, times, cancel))
     distance = np.linalg.norm(paths[1] - paths[0], axis=0)

@@ -21,8 +21,10 @@ _FORMULAS = {
     "III": "V = ½(x² + y²) − x² y²",
 }
 PLAY, STOP = "▶ Play", "■ Stop"
-_ENERGY_DECIMALS = 3
-_ENERGY_STEP = 10.0**-_ENERGY_DECIMALS
+ENERGY_DECIMALS = 3
+"""Of the energies that the slider stops at."""
+
+_ENERGY_STEP = 10.0**-ENERGY_DECIMALS
 _PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
 _ONE_LINE = {"& .MuiFormControlLabel-label": {"whiteSpace": "nowrap"}}
 
@@ -105,7 +107,7 @@ class Controls:
         """Name the button after what it does next."""
         self.play.label = STOP if playing else PLAY
         # Somebody who drags stops at a step.
-        self._passed = {energy for energy in self._passed if energy != round(energy, _ENERGY_DECIMALS)}
+        self._passed = {energy for energy in self._passed if energy != round(energy, ENERGY_DECIMALS)}
 
     def show_passing(self, energy: float) -> None:
         """Put the slider where a sweep is."""

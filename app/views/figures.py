@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import panel as pn
 from bokeh.models import BoxSelectTool, BoxZoomTool, CrosshairTool, PanTool, Range1d, ResetTool, Span, WheelZoomTool
 from bokeh.plotting import figure
 
+from app.help_texts import help_details
 from app.palette import DARK, LIGHT
 
 FRAME = 300
@@ -34,6 +36,17 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     # The page's theme gives the same to all figures that it knows from the start, and their colours.
     plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     return plot
+
+
+def with_help(picture: pn.viewable.Viewable, name: str, *below: pn.viewable.Viewable) -> pn.Column:
+    """A picture over what belongs to it and its explanation."""
+    helping = pn.pane.HTML(help_details(name), width=FRAME + 60, margin=(0, 5))
+    return pn.Column(picture, *below, helping, margin=(0, 6), width=FRAME + 75)
+
+
+def set_range(edges: Range1d, low: float, high: float) -> None:
+    """Show this part of an axis, and come back to it on reset."""
+    edges.update(start=low, end=high, reset_start=low, reset_end=high)
 
 
 def dress(plot: figure, *, dark: bool) -> None:

@@ -11,11 +11,10 @@ import panel as pn
 from bokeh.events import DoubleTap, RangesUpdate, SelectionGeometry, Tap
 from bokeh.models import ColorBar, ColumnDataSource, Image, LinearColorMapper, LogColorMapper, Range1d, Span
 
-from app.help_texts import help_details
 from app.map_columns import character_column, longest_typical_time
 from app.palette import PAPER, Palette
 from app.pictures import PAINTED, SHORTEST_TIME, TITLES
-from app.views.figures import FRAME, dress, map_figure
+from app.views.figures import FRAME, dress, map_figure, with_help
 from app.views.hover import pixel_hover
 from app.views.legends import legend
 from app.views.marks import Marks
@@ -75,7 +74,9 @@ class MapsView:
                 plot.on_event(tap, lambda event: on_tap(*self.snapped(event.x, event.y)))
             plot.on_event(SelectionGeometry, lambda event: self._boxed(event, on_box))
         self._legends = {name: pn.pane.HTML(width=FRAME + 60, margin=(0, 5)) for name in TITLES}
-        self._columns = {name: self._column(name) for name in TITLES}
+        self._columns = {
+            name: with_help(pn.pane.Bokeh(self.figures[name], margin=0), name, self._legends[name]) for name in TITLES
+        }
         self._row = wrapping_row(justify_content="center", gap="4px")
         self.show_characters(False)
 
@@ -145,12 +146,6 @@ class MapsView:
             return x, ordinate
         columns, rows = self._spec.pixel_centres()
         return float(columns[pixel[1]]), float(rows[pixel[0]])
-
-    def _column(self, name: str) -> pn.Column:
-        helping = pn.pane.HTML(help_details(name), width=FRAME + 60, margin=(0, 5))
-        return pn.Column(
-            pn.pane.Bokeh(self.figures[name], margin=0), self._legends[name], helping, margin=(0, 6), width=FRAME + 75
-        )
 
     def _character_legend(self, sentence: str) -> str:
         return legend(self._palette.character_entries) + f'<div style="font-size:12px">{sentence}</div>'

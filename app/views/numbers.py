@@ -9,9 +9,9 @@ import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 
-from app.help_texts import help_details
-from app.palette import PAPER, PATCH_EDGE, Palette
-from app.views.figures import FRAME
+from app.palette import PAPER, Palette
+from app.views.figures import FRAME, with_help
+from app.views.legends import patch
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
 
 hv.extension("bokeh")
@@ -41,7 +41,7 @@ class NumbersView:
         """The table, and the charts with their explanations."""
         title = pn.pane.HTML("<h2 style='font-size:15px;margin:4px 0'>The picture in numbers</h2>")
         left = pn.Column(title, self.whole, self.table, width=370, margin=(0, 6))
-        return [left, _with_help(self.histogram, "histogram"), _with_help(self.probabilities, "probabilities")]
+        return [left, with_help(self.histogram, "histogram"), with_help(self.probabilities, "probabilities")]
 
     def show(self, frame: EscapeMap) -> None:
         """Count a frame."""
@@ -77,7 +77,7 @@ class NumbersView:
         rows += [("bounded", self._palette.bounded, shares[Fate.BOUNDED])]
         if shares[Fate.NOT_COMPUTED]:
             rows += [("not decided yet", self._palette.outcomes[Fate.NOT_COMPUTED].colour, shares[Fate.NOT_COMPUTED])]
-        body = "".join(f"<tr><td>{_patch(colour)}{name}</td><td>{share:.2%}</td></tr>" for name, colour, share in rows)
+        body = "".join(f"<tr><td>{patch(colour)}{name}</td><td>{share:.2%}</td></tr>" for name, colour, share in rows)
         facts = {
             "interior starts": f"{statistics.starts:,}".replace(",", " "),
             "direct escapes": f"{statistics.direct_share:.2%}",
@@ -117,16 +117,6 @@ def _see_through(plot: Any, _element: Any) -> None:
 
 def _pane(drawn: hv.DynamicMap) -> pn.pane.HoloViews:
     return pn.pane.HoloViews(drawn, linked_axes=False, margin=0)
-
-
-def _with_help(pane: pn.viewable.Viewable, name: str) -> pn.Column:
-    helping = pn.pane.HTML(help_details(name), width=FRAME + 60, margin=(0, 5))
-    return pn.Column(pane, helping, margin=(0, 6), width=FRAME + 75)
-
-
-def _patch(colour: str) -> str:
-    style = f"display:inline-block;width:11px;height:11px;margin-right:6px;border:1px solid {PATCH_EDGE};background:{colour}"
-    return f"<span style='{style}'></span>"
 
 
 def _number(value: float) -> str:

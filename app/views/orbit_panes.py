@@ -7,12 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import panel as pn
 from bokeh.models import BasicTickFormatter, ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
-from bokeh.plotting import figure
 
-from app.help_texts import help_details
 from app.orbit_drawing import LEAST_SALI, OrbitDrawing, draw_orbit, moment
 from app.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
-from app.views.figures import FRAME, square_figure
+from app.views.figures import set_range, square_figure, with_help
 from app.views.outlines import Outlines
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
 
@@ -48,7 +46,7 @@ class OrbitPanes:
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """The figures, each with its explanation."""
-        return [_with_help(plot) for plot in (self.path, self.sali, self.r2)]
+        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in (self.path, self.sali, self.r2)]
 
     def show(self, potential: Potential, drawings: Sequence[OrbitDrawing | None], chosen: int) -> None:
         """Draw orbits by their places; None where there is none, or not yet. The chosen one stands out."""
@@ -102,10 +100,10 @@ class OrbitPanes:
         earliest = min((float(drawing.sali[0][0]) for drawing in everything if drawing.sali[0].size), default=0.1)
         widest = max(float(drawing.r2[1].max()) for drawing in everything)
         if latest > earliest:
-            self.sali.x_range.update(start=earliest, end=latest, reset_start=earliest, reset_end=latest)
+            set_range(self.sali.x_range, earliest, latest)
         end_of_chosen = float(everything[-1].orbit.t[-1])
         for edges, end in ((self.r2.x_range, end_of_chosen or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
-            edges.update(start=0.0, end=end, reset_start=0.0, reset_end=end)
+            set_range(edges, 0.0, end)
 
     def _show_paths(self, potential: Potential, alphas: list[float]) -> None:
         if not self._drawings:
@@ -115,7 +113,7 @@ class OrbitPanes:
         window, (x, y) = drawn.window, (self.path.x_range, self.path.y_range)
         self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))
         for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
-            edges.update(start=low, end=high, reset_start=low, reset_end=high)
+            set_range(edges, low, high)
         lines = [_NO_LINE if one.visits is not None else (one.orbit.x, one.orbit.y) for _, one in self._drawings]
         self._paths.data = self._columns(lines, alphas)
         images = [one.shaded(self._palette.orbits[slot]) for slot, one in self._drawings if one.visits is not None]
@@ -138,8 +136,3 @@ def prepare() -> None:
 
 def _lines(name: str) -> ColumnDataSource:
     return ColumnDataSource({"xs": [], "ys": [], "slot": [], "alpha": []}, name=name)
-
-
-def _with_help(plot: figure) -> pn.Column:
-    helping = pn.pane.HTML(help_details(plot.name), width=FRAME + 60, margin=(0, 5))
-    return pn.Column(pn.pane.Bokeh(plot, margin=0), helping, margin=(0, 6), width=FRAME + 75)

@@ -6,9 +6,8 @@ import numpy as np
 import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d
 
-from app.help_texts import help_details
 from app.palette import PAPER, Palette
-from app.views.figures import FRAME, square_figure
+from app.views.figures import set_range, square_figure, with_help
 from engine import Separation
 
 TITLE = "Distance of two orbits"
@@ -24,8 +23,7 @@ class SeparationPane:
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
         self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
         self.figure.add_glyph(self._source, self._line)
-        helping = pn.pane.HTML(help_details("distance"), width=FRAME + 60, margin=(0, 5))
-        self._column = pn.Column(pn.pane.Bokeh(self.figure, margin=0), helping, margin=(0, 6), width=FRAME + 75)
+        self._column = with_help(pn.pane.Bokeh(self.figure, margin=0), "distance")
 
     def layout(self) -> pn.viewable.Viewable:
         """The figure with its explanation."""
@@ -39,10 +37,8 @@ class SeparationPane:
             return
         distance = np.maximum(separation.distance, LEAST)
         self._source.data = {"t": separation.t, "distance": distance}
-        x, y = self.figure.x_range, self.figure.y_range
-        end, low = float(separation.t[-1]), 0.5 * float(distance.min())
-        x.update(start=0.0, end=end, reset_start=0.0, reset_end=end)
-        y.update(start=low, end=10.0, reset_start=low, reset_end=10.0)
+        set_range(self.figure.x_range, 0.0, float(separation.t[-1]))
+        set_range(self.figure.y_range, 0.5 * float(distance.min()), 10.0)
         self.figure.title.text = f"Distance of orbits {pair[0] + 1} and {pair[1] + 1}"
 
     def set_palette(self, palette: Palette) -> None:

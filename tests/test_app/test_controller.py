@@ -102,6 +102,14 @@ def test_cancelling_stops_the_job_and_going_on_finishes_it(session: Session) -> 
     assert recorder.names()[-1] == "map stopped"
 
 
+def test_a_map_that_is_whole_is_not_stopped(session: Session) -> None:
+    _, controller, recorder, _ = session
+    controller.request_map()
+    recorder.wait_for(recorder.complete)
+    controller.stop_map()
+    assert "map stopped" not in recorder.names()
+
+
 def test_an_energy_without_exits_is_refused_in_words(session: Session) -> None:
     state, _, recorder, _ = session
     state.energy = 50.0
