@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 from app.locking import Locked
 from app.map_columns import map_columns
 from app.preview_requests import PreviewRequests
+from app.second_looks import SecondLook, SecondLooks
 from app.sentences import sentence
 from app.view_state import ViewState
-from engine import EscapeMap, Jobs, RegularityMap, Ticket
+from engine import EscapeMap, Jobs, Ticket
 
 
 class MapListener(Protocol):
@@ -20,9 +22,6 @@ class MapListener(Protocol):
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """A frame of it is here; the last one is complete."""
-
-    def regularity_arrived(self, frame: EscapeMap, regularity: RegularityMap) -> None:
-        """More of the map's bounded orbits are judged, in the end all."""
 
     def map_stopped(self) -> None:
         """The user has cancelled it."""
@@ -41,18 +40,18 @@ class Controller:
     (Bokeh's ``Document.locked_callback``).
     """
 
-    def __init__(self, state: ViewState, jobs: Jobs, listener: MapListener, locked: Locked) -> None:
+    def __init__(
+        self, state: ViewState, jobs: Jobs, listener: MapListener, locked: Locked, looks: Sequence[SecondLook] = ()
+    ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None
-        self._regularity_ticket: Ticket | None = None
         self._whole_map: EscapeMap | None = None
         self._generation = 0
         self._show_map = locked(self._map_arrived)
-        self._show_regularity = locked(self._regularity_arrived)
         self._show_map_problem = locked(self._map_failed)
         self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked)
+        self._second_looks = SecondLooks(state, jobs, looks, listener.map_failed, locked)
         state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution", "window"])
-        state.param.watch(lambda event: self.request_regularity(), "judge")
 
     def request_map(self) -> None:
         """Ask for the map in view; whatever was on its way for this session is cancelled."""
@@ -78,27 +77,13 @@ class Controller:
         self._generation += 1
         self.previews.request(energy)
 
-    def request_regularity(self) -> None:
-        """Have the bounded orbits of the map in view judged, if that is wanted and the map is whole."""
-        if self._regularity_ticket is not None:
-            self._regularity_ticket.cancel()
-            self._regularity_ticket = None
-        frame, generation = self._whole_map, self._generation
-        if frame is None or not self._state.judge:
-            return
-        self._regularity_ticket = self._jobs.request_regularity(
-            frame.spec,
-            lambda regularity: self._show_regularity(generation, frame, regularity),
-            lambda error: self._show_map_problem(generation, error),
-        )
-
     def cancel_map(self) -> None:
-        """Stop the map on its way, if any, and the judging of its orbits."""
+        """Stop the map on its way, if any, and all second looks."""
         self._whole_map = None
-        for ticket in (self._map_ticket, self._regularity_ticket):
-            if ticket is not None:
-                ticket.cancel()
-        self._map_ticket = self._regularity_ticket = None
+        self._second_looks.follow(None)
+        if self._map_ticket is not None:
+            self._map_ticket.cancel()
+            self._map_ticket = None
 
     def stop_map(self) -> None:
         """The user's cancel: stop, and paint no late frame; nothing, when the map is whole."""
@@ -119,11 +104,7 @@ class Controller:
             self._listener.map_arrived(frame, columns)
             if frame.complete:
                 self._whole_map = frame
-                self.request_regularity()
-
-    def _regularity_arrived(self, generation: int, frame: EscapeMap, regularity: RegularityMap) -> None:
-        if generation == self._generation and self._state.judge:
-            self._listener.regularity_arrived(frame, regularity)
+                self._second_looks.follow(frame)
 
     def _map_failed(self, generation: int, error: Exception) -> None:
         if generation == self._generation:

@@ -11,6 +11,7 @@ import panel as pn
 from app.controller import Controller
 from app.energy_sweep import EnergySweep
 from app.gallery import Preset
+from app.indicators_request import IndicatorsRequest
 from app.link import LINKED, read_link, write_link
 from app.navigation import Navigation
 from app.orbit_requests import ChosenOrbit, OrbitRequests
@@ -33,7 +34,8 @@ from app.views.time_bar import TimeBar
 from app.views.tour import Tour
 from app.views.words import WordsView
 from app.views.zoom_buttons import ZoomButtons
-from engine import EscapeMap, Jobs, Plane, RegularityMap, Window
+from app.why import Why
+from engine import EscapeMap, Jobs, Plane, Window
 
 
 @cache
@@ -55,10 +57,12 @@ class Explorer:
         self._locked: Callable[..., Any] = document.locked_callback
         self._make_views()
         jobs = shared_jobs()
-        self.controller = Controller(self.state, jobs, self, self._latest)
+        self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
+        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks())
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.twin = TwinRequest(self.state, jobs, self.desk.say, self._locked)
         self.separation = SeparationRequest(self.state, jobs, self.separation_pane.show, self.desk.say, self._locked)
+        self.indicators = IndicatorsRequest(self.state, jobs, self.desk.show_indicators, self.desk.say, self._locked)
         self.progress = ProgressView(self._locked(self.controller.stop_map), self._locked(self.controller.request_map))
         self.sweep = EnergySweep(document, lambda: self.controller.previews.under_way, self._pass_by, self._end_sweep)
         self._known: tuple[ChosenOrbit, ...] = ()
@@ -89,7 +93,7 @@ class Explorer:
         self.numbers = NumbersView(locked(lambda: self._count_in(None)))
         self.words = WordsView(state)
         self.keyboard = Keyboard(locked(self._press), locked(lambda: self.tour.start()), locked(self._copied))
-        self.take_along = TakeAlong(state, self.keyboard.copy_link)
+        self.take_along: TakeAlong = TakeAlong(state, self.keyboard.copy_link)
         self.gallery = Gallery(locked(self._show_preset))
         self.tour: Tour = Tour()
         actions = EnergyActions(
@@ -104,24 +108,24 @@ class Explorer:
         watch(lambda *events: self.zoom_buttons.follow(self.navigation.history), ["window", "case", "plane"])
         watch(lambda event: self.desk.follow_plane(event.new), "plane")
         watch(lambda event: self._show_orbits(self._known), "chosen")
-        watch(lambda event: self.maps.show_characters(event.new), "judge")
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda *events: self._count_in(None), ["case", "plane", "window"])
+        watch(lambda event: self._show_box(event.new), "box")
         watch(lambda *events: self._write_link(), list(LINKED))
         self.desk.follow_plane(state.plane)
-        self.maps.show_characters(state.judge)
         self._set_palette()
         self.zoom_buttons.follow(self.navigation.history)
 
     def close(self, *_: Any) -> None:
         """The session is over."""
-        for requests in (self.controller, self.orbits, self.twin, self.separation):
+        for requests in (self.controller, self.orbits, self.twin, self.separation, self.indicators, self.why):
             requests.close()
 
     def set_dark(self, dark: bool) -> None:
         """Another theme."""
         self.maps.set_dark(dark)
         self.panes.outlines.set_dark(dark)
+        self.why.set_dark(dark)
 
     def _begin(self) -> None:
         """The page is there: show what the link, or nobody, asked for."""
@@ -137,7 +141,7 @@ class Explorer:
     def _set_palette(self) -> None:
         palette = self.state.colours
         with pn.io.hold():
-            for view in (self.maps, self.panes, self.desk, self.numbers, self.separation_pane):
+            for view in (self.maps, self.panes, self.desk, self.numbers, self.separation_pane, self.why):
                 view.set_palette(palette)
             self._show_orbits(self._known)
 
@@ -147,6 +151,9 @@ class Explorer:
         self.state.add_start((x, ordinate))
 
     def _count_in(self, box: Window | None) -> None:
+        self.state.box = box
+
+    def _show_box(self, box: Window | None) -> None:
         self.maps.marks.show_box(box)
         self.numbers.show_box(box)
 
@@ -205,12 +212,14 @@ class Explorer:
     def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a quick look."""
         with pn.io.hold():
+            self.why.begin(frame.spec)
             self.maps.show(frame, columns, quickly=True)
             self.progress.look()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame."""
         with pn.io.hold():
+            self.why.begin(frame.spec)
             self.maps.show(frame, columns)
             if self.state.window is None:
                 self.maps.set_home(frame.spec.window)
@@ -220,12 +229,6 @@ class Explorer:
             self.take_along.show_map(frame)
             if frame.complete:
                 self.words.show_map(frame)
-
-    def regularity_arrived(self, frame: EscapeMap, regularity: RegularityMap) -> None:
-        """Paint what is judged."""
-        with pn.io.hold():
-            self.maps.show_regularity(frame, regularity)
-            self.take_along.show_regularity(regularity)
 
     def map_stopped(self) -> None:
         """Show that the map has been cancelled."""
@@ -250,6 +253,7 @@ class Explorer:
             looked_at = there[chosen] if orbits else None
             self.time_bar.follow(float(looked_at.orbit.t[-1]) if looked_at is not None else None)
             self.separation.follow(orbits)
+            self.indicators.follow(orbits)
             self.take_along.show_orbits(orbits)
             self.words.show_orbits(orbits)
 

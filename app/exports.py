@@ -11,15 +11,16 @@ from io import BytesIO
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from app.findings import NOTHING_FOUND, Findings
 from app.palette import Palette
 from app.pictures import TITLES
 from app.printed_pictures import draw_picture
-from engine import EscapeMap, MapSpec, Orbit, RegularityMap
+from engine import EscapeMap, MapSpec, Orbit
 
 MOST_ROWS = 100_000
 """As many rows of numbers a table of orbits has, unless somebody asks for more."""
 
-_COLUMNS = ("t", "x", "y", "px", "py", "sali", "r2")
+_COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 
 def png_bytes(
@@ -28,7 +29,7 @@ def png_bytes(
     palette: Palette,
     side: int,
     *,
-    regularity: RegularityMap | None = None,
+    findings: Findings = NOTHING_FOUND,
     starts: Sequence[tuple[float, float]] = (),
 ) -> bytes:
     """A PNG file of some pictures side by side, with the map's provenance in its text fields.
@@ -42,7 +43,7 @@ def png_bytes(
     """
     if not pictures:
         raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
-    drawn = [draw_picture(frame, name, palette, side, regularity=regularity, starts=starts) for name in pictures]
+    drawn = [draw_picture(frame, name, palette, side, findings=findings, starts=starts) for name in pictures]
     page = Image.new("RGB", (sum(image.width for image in drawn), max(image.height for image in drawn)), "white")
     for k, image in enumerate(drawn):
         page.paste(image, (sum(before.width for before in drawn[:k]), 0))
@@ -55,16 +56,19 @@ def png_bytes(
     return file.getvalue()
 
 
-def netcdf_bytes(frame: EscapeMap) -> bytes:
-    """A NetCDF-4 file of `EscapeMap.to_xarray`, for `xarray.open_dataset` and any reader of HDF5."""
-    dataset = frame.to_xarray()
+def netcdf_bytes(frame: EscapeMap, findings: Findings = NOTHING_FOUND) -> bytes:
+    """A NetCDF-4 file of `EscapeMap.to_xarray`, for `xarray.open_dataset` and any reader of HDF5.
+
+    What second looks have found goes with it: ``character``, ``trust`` and ``origin``.
+    """
+    dataset = findings.add_to(frame.to_xarray())
     # Shuffled and squeezed, a map takes a quarter of the room, in less time than it takes to write it plain.
     squeezed = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars}
     return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=squeezed))
 
 
 def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS) -> str:
-    """A table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, r2, at full precision.
+    """A table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
 
     Lines before it that begin with # hold each orbit's start, energy and verdict, and which of its samples follow.
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.palette import MOST_ORBITS, PALETTES
 from app.paper_energies import ENERGIES
-from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
+from app.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, ViewState
 from engine import CASES, Plane, Window
 
 LONGEST_VALUE = 300
@@ -31,8 +31,7 @@ def write_link(state: ViewState) -> str:
     }
     if state.window is not None:
         chosen["window"] = _joined(astuple(state.window))
-    if state.judge:
-        chosen["judge"] = "yes"
+    chosen |= {name: "yes" for name in SWITCHES if getattr(state, name)}
     if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette
     if state.starts:
@@ -116,7 +115,7 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "t_max": ("t_max", _one_of(_TIMES), f"one of {', '.join(_TIMES)}"),
     "resolution": ("resolution", _one_of(_RESOLUTIONS), f"one of {', '.join(_RESOLUTIONS)}"),
     "window": ("window", lambda text: Window(*_read_numbers(text, 4)), "x_low,x_high,ordinate_low,ordinate_high"),
-    "judge": ("judge", _one_of(_SWITCH), "yes or no"),
+    **{name: (name, _one_of(_SWITCH), "yes or no") for name in SWITCHES},
     "palette": ("palette", _one_of(_PALETTES), f"one of {', '.join(_PALETTES)}"),
     "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate with semicolons between"),
     "look": ("chosen", _one_of(_PLACES), f"one of {', '.join(_PLACES)}"),

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from app.palette import CROSSING_CLASSES, OUTCOMES
-from engine import Certificate, EscapeMap, Fate, Regularity, RegularityMap
+from app.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
+from engine import Certificate, EscapeMap, Fate, OriginFateMap, Regularity, RegularityMap
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 _FIRST_CLASS = len(OUTCOMES)
@@ -17,7 +17,8 @@ _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[Any]]:
     """One image a column, in the smallest types that hold it, and the place of the images in the plane.
 
-    A coarse frame has coarse images. Without `characters` that column is a single pixel: nobody looks at it.
+    A coarse frame has coarse images. Without `characters` that column is a single pixel: nobody looks at it. So is the column of
+    passages, which a map does not know by itself.
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
@@ -31,6 +32,7 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
         "crossings": [crossings.astype(np.min_scalar_type(crossings.max(initial=0)))],
         "escape_time": [images["escape_time"].astype(np.float32)],
         "character": [character],
+        "passage": [np.zeros((1, 1), np.uint8)],
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
@@ -42,6 +44,14 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
 def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, list[Any]]:
     """The one column that the judging of bounded orbits changes."""
     return {"character": [_codes(frame.fate, regularity.character, bounded_too=True)]}
+
+
+def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
+    """The one column that tells both where orbits come from and where they go."""
+    passage = origins.origin.astype(np.int64) * (MOST_CHANNELS + 1) + origins.fate
+    # Where one of both is no end but an outcome, so is the pixel.
+    outcome = np.minimum(origins.origin, origins.fate)
+    return {"passage": [_codes(outcome, passage, bounded_too=True)]}
 
 
 def _known_from_certificates(images: dict[str, np.ndarray]) -> np.ndarray:

@@ -17,6 +17,9 @@ History = tuple[np.ndarray, np.ndarray]
 LEAST_SALI = 1e-17
 """Where the axis of SALI ends; a logarithm knows no zero."""
 
+LEAST_EXPONENT = 1e-7
+"""Where the axis of the Lyapunov exponent ends."""
+
 MOST_LINE_POINTS = 20_000
 """Longer paths than this are shaded by how often they come by."""
 
@@ -40,7 +43,7 @@ class OrbitDrawing:
         The orbit itself.
     window
         The part of (x, y) that the interior of its energy fills.
-    sali, r2
+    sali, exponent, r2
         (t, value) envelopes of its histories.
     section
         (n, 2) x and px of its upward crossings of y = 0.
@@ -51,6 +54,7 @@ class OrbitDrawing:
     orbit: Orbit
     window: Window
     sali: History
+    exponent: History
     r2: History
     section: np.ndarray
     visits: np.ndarray | None
@@ -69,7 +73,8 @@ def draw_orbit(potential: Potential, orbit: Orbit) -> OrbitDrawing:
     sali = envelope(orbit.t[1:], np.maximum(orbit.sali[1:], LEAST_SALI), logarithmic=True)
     visits = _visits(orbit, window) if orbit.t.size > MOST_LINE_POINTS else None
     r2 = envelope(orbit.t, orbit.r2, logarithmic=False)
-    return OrbitDrawing(orbit, window, sali, r2, read_section_points(potential, orbit), visits)
+    exponent = envelope(orbit.t[1:], np.maximum(orbit.lyapunov_exponent[1:], LEAST_EXPONENT), logarithmic=True)
+    return OrbitDrawing(orbit, window, sali, exponent, r2, read_section_points(potential, orbit), visits)
 
 
 def _visits(orbit: Orbit, window: Window) -> np.ndarray:

@@ -59,7 +59,7 @@ class OrbitRequests:
     def _request(self, spec: OrbitSpec) -> None:
         # An orbit that is kept may come before its ticket.
         self._tickets[spec] = None
-        ticket = self._jobs.request_orbit(
+        ticket = self._jobs.request(
             spec,
             lambda orbit: self._answer(spec, draw_orbit(spec.potential, orbit)),
             lambda error: self._answer(spec, sentence(error)),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from bokeh.palettes import Cividis256, interp_palette
+from PIL import ImageColor
 
 from engine import Certificate, Fate, Regularity
 
@@ -38,6 +39,9 @@ CHARACTERS: dict[Regularity, str] = {
 }
 """What the pixels of the picture of regular and chaotic orbits stand for, after the outcomes."""
 
+MOST_CHANNELS = 8
+"""As many exit channels have a colour."""
+
 MOST_ORBITS = 5
 """As many orbits have a colour of their own."""
 
@@ -47,6 +51,11 @@ _OUTSIDE = "#b0904a48"
 _NOT_COMPUTED = "#7f9cc855"
 _INTERIOR = "#7aa7d618"
 _FAILED = "#000000"
+
+# The colour of the exit, towards white (above 0) or black (below), for the origins 1 to 8 in turn.
+_ORIGIN_TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8)
+# An orbit that was inside all the time: towards the colour of bounded orbits.
+_BOUNDED_ORIGIN = 0.65
 
 
 @dataclass(frozen=True)
@@ -95,9 +104,23 @@ class Palette:
         """Legend of regular and chaotic orbits."""
         return [Entry(label, colour) for label, colour in zip(CHARACTERS.values(), (*self.characters, self.bounded), strict=True)]
 
+    def passage_colour(self, origin: int, fate: int) -> str:
+        """Of orbits by where they come from and where they go, 0 for nowhere: the hue tells the exit, the tone the origin."""
+        colour = self.channels[fate - 1] if fate else self.bounded
+        if origin == 0:
+            return _mixed(colour, self.bounded, _BOUNDED_ORIGIN)
+        tone = _ORIGIN_TONES[origin - 1]
+        return _mixed(colour, "#ffffff" if tone > 0 else "#000000", abs(tone))
+
     def channel_entries(self, channels: int) -> list[Entry]:
         """Legend of a potential's channels."""
         return [Entry(f"channel {k + 1}", self.channels[k]) for k in range(channels)]
+
+    def passage_entries(self, channels: int) -> list[Entry]:
+        """Legend of where orbits come from and where they go, for a list; a key in two directions says it with fewer words."""
+        pairs = ((origin, fate) for origin in range(channels + 1) for fate in range(1, channels + 1))
+        names = ["inside", *map(str, range(1, channels + 1))]
+        return [Entry(f"{names[origin]} to {fate}", self.passage_colour(origin, fate)) for origin, fate in pairs]
 
     @cached_property
     def fate_colours(self) -> list[str]:
@@ -115,6 +138,12 @@ class Palette:
         return [*self._outcome_colours, *(entry.colour for entry in self.character_entries)]
 
     @cached_property
+    def passage_colours(self) -> list[str]:
+        """For each pixel code of the picture of origins and exits: origin by origin, bounded first, and in each exit by exit."""
+        ends = range(MOST_CHANNELS + 1)
+        return [*self._outcome_colours, *(self.passage_colour(origin, fate) for origin in ends for fate in ends)]
+
+    @cached_property
     def background_colours(self) -> list[str]:
         """Under the escape times, which cover the escaped pixels."""
         return [*self._outcome_colours, *([_FORBIDDEN] * len(self.channels))]
@@ -128,6 +157,12 @@ class Palette:
     @property
     def _outcome_colours(self) -> list[str]:
         return [entry.colour for entry in self.outcomes.values()]
+
+
+def _mixed(colour: str, other: str, share: float) -> str:
+    """A colour on its way to another."""
+    pairs = zip(ImageColor.getrgb(colour), ImageColor.getrgb(other), strict=True)
+    return "#" + "".join(f"{round(one + share * (two - one)):02x}" for one, two in pairs)
 
 
 PAPER = Palette(
@@ -176,6 +211,18 @@ DARK = Inks(
     limiting_curve="#e6e6e6", equipotential="#566170", critical_equipotential="#ff6b6b", halo="#ffffff", quiet="#b0b0b0",
     text="#f0f0f0",
 )  # fmt: skip
+
+DOUBT = "#000000c0"
+"""Over pixels that are not to be trusted."""
+
+MANIFOLD = "#101010"
+"""Of stable manifolds over the basins they bound; they have a halo."""
+
+MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
+"""Of what was measured, and of that part of it which a fit leaves aside."""
+
+LAW_COLOURS = {"exponential": "#d1495b", "power law": "#edae49"}
+"""Of fitted laws, by their names."""
 
 PATCH_EDGE = "#999999"
 MARK_EDGE = "#111111"

@@ -8,7 +8,7 @@ from typing import Any
 from app.locking import Locked
 from app.map_columns import map_columns
 from app.view_state import ViewState
-from engine import EscapeMap, Jobs, Ticket
+from engine import EscapeMap, Jobs, PreviewSpec, Ticket, preview_spec
 
 
 class PreviewRequests:
@@ -50,9 +50,9 @@ class PreviewRequests:
         except ValueError:
             return
         self._under_way = energy
-        self._ticket = self._jobs.request_preview(
-            spec,
-            lambda frame: self._arrive(energy, frame, map_columns(frame, characters=False)),
+        self._ticket = self._jobs.request(
+            PreviewSpec(preview_spec(spec)),
+            lambda preview: self._arrive(energy, preview.frame, map_columns(preview.frame, characters=False)),
             lambda error: self._arrive(energy, None, {}),
         )
 

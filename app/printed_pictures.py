@@ -9,10 +9,11 @@ import numpy as np
 import shapely
 from PIL import Image, ImageDraw
 
-from app.palette import LIGHT, MARK_EDGE, Entry, Palette
-from app.pictures import TITLES, picture_pixels
+from app.findings import NOTHING_FOUND, Findings
+from app.palette import DOUBT, LIGHT, MANIFOLD, MARK_EDGE, Entry, Palette
+from app.pictures import DOUBTED, TITLES, picture_pixels
 from app.printed_axes import WHITE, draw_colour_bar, draw_flow, draw_panel, font_of
-from engine import CASES, EscapeMap, Fate, Plane, RegularityMap, find_lyapunov_orbits, trace_zero_velocity_curve
+from engine import CASES, EscapeMap, Fate, Plane, StableManifolds, find_lyapunov_orbits, trace_zero_velocity_curve
 
 SMALLEST_SIDE, LARGEST_SIDE = 100, 4000
 """Sides in pixels that the map itself may have."""
@@ -36,7 +37,7 @@ def draw_picture(
     palette: Palette,
     side: int,
     *,
-    regularity: RegularityMap | None = None,
+    findings: Findings = NOTHING_FOUND,
     starts: Sequence[tuple[float, float]] = (),
 ) -> Image.Image:
     """A picture to print or to send: title, map, axes, curves, legend and provenance, in RGB on white.
@@ -51,8 +52,9 @@ def draw_picture(
         One of `TITLES`.
     side
         Of the map itself, 100 to 4000 pixels; everything else grows with it.
-    regularity
-        Which bounded orbits are regular and which chaotic; without it, what the map says by itself.
+    findings
+        What second looks have found: which bounded orbits are chaotic, where orbits come from, which pixels are doubtful, and the
+        stable manifolds; without them, what the map says by itself.
     starts
         (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
 
@@ -63,7 +65,9 @@ def draw_picture(
     """
     if not SMALLEST_SIDE <= side <= LARGEST_SIDE:
         raise ValueError(f"side={side}: must be from {SMALLEST_SIDE} to {LARGEST_SIDE} pixels")
-    pixels, curves = picture_pixels(frame, picture, palette, regularity=regularity), _curves(frame, palette)
+    pixels, curves = picture_pixels(frame, picture, palette, findings), _curves(frame, palette)
+    if picture == "basins" and findings.manifolds is not None:
+        curves += _manifold_curves(frame, findings.manifolds)
     size = max(12, side // 38)
     square = _square(pixels, curves, side, size)
     for number, start in enumerate(starts):
@@ -72,7 +76,7 @@ def draw_picture(
     parts = [panel]
     if picture == "times":
         parts += [draw_colour_bar(frame, palette, side, left, panel.width, size)]
-    classes = _entries(frame, picture, palette, judged=regularity is not None and regularity.complete)
+    classes = _entries(frame, picture, palette, findings)
     parts += [draw_flow([*classes, *(curve.entry for curve in curves)], size, left, panel.width, size)]
     words = [Entry(word, "") for word in provenance_line(frame).split()]
     parts += [draw_flow(words, max(12, size * 3 // 4), left, panel.width, size // 4)]
@@ -101,6 +105,11 @@ def _curves(frame: EscapeMap, palette: Palette) -> list[_Curve]:
         entry = Entry(f"Lyapunov orbit {orbit.channel}", palette.channels[orbit.channel - 1])
         curves.append(_Curve(_clipped(frame, [orbit.half_path]), entry, weight=0.2, halo=True))
     return [curve for curve in curves if curve.pieces]
+
+
+def _manifold_curves(frame: EscapeMap, manifolds: StableManifolds) -> list[_Curve]:
+    pieces = _clipped(frame, [np.column_stack([arc.x, arc.px]) for arc in manifolds.arcs if arc.x.size > 1])
+    return [_Curve(pieces, Entry("stable manifolds", MANIFOLD), weight=0.04, halo=True)] if pieces else []
 
 
 def _clipped(frame: EscapeMap, pieces: list[np.ndarray]) -> list[np.ndarray]:
@@ -150,15 +159,20 @@ def _mark(square: Image.Image, place: np.ndarray, number: str, colour: str, size
     ImageDraw.Draw(square).text(at, number, LIGHT.text, font_of(size), anchor, stroke_width=rim, stroke_fill=LIGHT.halo)
 
 
-def _entries(frame: EscapeMap, picture: str, palette: Palette, *, judged: bool) -> list[Entry]:
+def _entries(frame: EscapeMap, picture: str, palette: Palette, findings: Findings) -> list[Entry]:
     """What the colours mean: all classes of the picture, and the outcomes that occur."""
+    judged = findings.regularity is not None and findings.regularity.complete
     occurring = set(np.unique(frame.fate).tolist())
     outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in occurring]
     if picture == "characters":
         characters = palette.character_entries[:-1] if judged else palette.character_entries
         return [*characters, *(entry for entry in outcomes if entry != palette.outcomes[Fate.BOUNDED])]
-    classes = {"basins": palette.channel_entries(frame.spec.potential.channels), "crossings": palette.crossing_entries}
-    return [*classes.get(picture, []), *outcomes]
+    channels = frame.spec.potential.channels
+    if picture == "origins":
+        return [*palette.passage_entries(channels), *outcomes]
+    classes = {"basins": palette.channel_entries(channels), "crossings": palette.crossing_entries}
+    doubt = [Entry("not to be trusted", DOUBT)] if picture in DOUBTED and findings.trust is not None else []
+    return [*classes.get(picture, []), *outcomes, *doubt]
 
 
 def provenance_line(frame: EscapeMap) -> str:

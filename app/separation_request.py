@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 
 from app.locking import Locked
 from app.orbit_requests import ChosenOrbit
-from app.sentences import sentence
+from app.single_request import SingleRequest
 from app.view_state import ViewState
-from engine import Jobs, Orbit, Separation, SeparationSpec, Ticket
+from engine import Jobs, Orbit, Separation, SeparationSpec
 
 Pair = tuple[int, int]
 
@@ -24,36 +24,23 @@ class SeparationRequest:
         say: Callable[[str], None],
         locked: Locked,
     ) -> None:
-        self._state, self._jobs, self._show, self._say = state, jobs, show, say
-        self._wanted: SeparationSpec | None = None
-        self._ticket: Ticket | None = None
-        self._answer = locked(self._answered)
+        self._state, self._show = state, show
+        self._compared: Pair | None = None
+        self._request = SingleRequest(jobs, lambda separation: show(self._compared, separation), say, locked)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Compare what is there now."""
-        pair = self._pair(orbits)
-        spec = self._spec(*(orbits[place].orbit for place in pair)) if pair is not None else None
-        if spec is not None and spec == self._wanted:
-            return
-        self.close()
-        self._wanted = spec
-        if spec is None:
+        self._compared = self._pair(orbits)
+        spec = self._spec(*(orbits[place].orbit for place in self._compared)) if self._compared is not None else None
+        if spec is not None:
+            self._request.ask(spec)
+        else:
+            self._request.cancel()
             self._show(None, None)
-            return
-        self._ticket = self._jobs.request_separation(
-            spec, lambda separation: self._answer(spec, pair, separation), lambda error: self._say(sentence(error))
-        )
 
     def close(self) -> None:
         """Nobody waits for it any more."""
-        self._wanted = None
-        if self._ticket is not None:
-            self._ticket.cancel()
-            self._ticket = None
-
-    def _answered(self, spec: SeparationSpec, pair: Pair, separation: Separation) -> None:
-        if spec == self._wanted:
-            self._show(pair, separation)
+        self._request.cancel()
 
     def _pair(self, orbits: Sequence[ChosenOrbit]) -> Pair | None:
         """The places of the chosen orbit and of the one before it, the earlier first."""

@@ -12,6 +12,9 @@ from engine import CASES, MapSpec, OrbitSpec, Plane, Potential, Window, start_st
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
 RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
 
+SWITCHES = ("judge", "trust", "manifolds", "origins", "measures", "energies")
+"""What of a view state is shown on demand."""
+
 Start = tuple[float, float]
 """x and ordinate of a start on the plane."""
 
@@ -27,7 +30,15 @@ class ViewState(param.Parameterized):
     window = param.ClassSelector(
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
+    box = param.ClassSelector(
+        class_=Window, default=None, allow_None=True, doc="part of the view to count in; None for all of it"
+    )
     judge = param.Boolean(default=False, doc="whether bounded orbits are judged regular or chaotic")
+    trust = param.Boolean(default=False, doc="whether pixels are marked whose answer hangs on rounding")
+    manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
+    origins = param.Boolean(default=False, doc="whether orbits are followed into the past, too")
+    measures = param.Boolean(default=False, doc="whether the basins are measured")
+    energies = param.Boolean(default=False, doc="whether curves against energy are shown")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the set of colours")
     starts = param.ClassSelector(class_=tuple, default=(), doc="of the orbits, up to MOST_ORBITS; each has its place and colour")
     chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="place of the orbit that is looked at")

@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from app.findings import Findings
 from app.gallery import PRESETS, Preset
 from app.palette import LIGHT, PAPER, PATCH_EDGE
 from app.pictures import picture_pixels
@@ -48,8 +49,8 @@ def main(keys: list[str]) -> None:
 def _thumbnail(preset: Preset) -> Image.Image:
     """RGBA; transparent where nothing can start, so that it goes with a light page and with a dark one."""
     frame = compute_map(replace(ViewState(**preset.values()).map_spec(), resolution=(SIDE, SIDE)))
-    regularity = judge_bounded_orbits(frame) if preset.judge else None
-    picture = Image.fromarray(picture_pixels(frame, preset.picture, PAPER, regularity=regularity))
+    findings = Findings(regularity=judge_bounded_orbits(frame) if preset.judge else None)
+    picture = Image.fromarray(picture_pixels(frame, preset.picture, PAPER, findings))
     return _with_lines(picture, frame, preset) if preset.picture == "curves" else picture
 
 

@@ -1,15 +1,47 @@
 """Escapes in open Hamiltonian systems with polynomial potentials: orbits, exits, maps. Computes, and knows of no screen."""
 
 from engine.certificates import Certificate, describe_certificate
-from engine.escape_maps import EscapeMap
-from engine.escape_statistics import EscapeStatistics, compute_statistics
-from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
-from engine.job_specs import OrbitSpec, SeparationSpec, TwinSpec
-from engine.jobs import Jobs, Ticket
+from engine.energy_curves import (
+    EnergyCurves,
+    EnergyCurvesSpec,
+    EnergyPoint,
+    EnergyPointSpec,
+    compute_energy_curves,
+    measure_energy,
+)
+from engine.escape_law_fits import fit_escape_laws
+from engine.escape_laws import EscapeLaw, EscapeLaws, LawFit
+from engine.escape_maps import EscapeMap, describe_codes
+from engine.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
+from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust, describe_fate, judge_regularity
+from engine.indicators import BirkhoffDigits, IndicatorVerdict, Verdict, compute_birkhoff_digits, judge_indicators
+from engine.job_specs import (
+    BasinMeasures,
+    BasinMeasuresSpec,
+    DigitsSpec,
+    EscapeLawsSpec,
+    ManifoldsSpec,
+    OrbitSpec,
+    OriginSpec,
+    Preview,
+    PreviewSpec,
+    RegularitySpec,
+    SeparationSpec,
+    TrustSpec,
+    TwinAnswer,
+    TwinSpec,
+    UncertaintySpec,
+)
+from engine.jobs import Jobs, JobSpec, Ticket
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
 from engine.maps import compute_map
+from engine.metrics.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.metrics.labels import ENTROPY_COUNTS_BOUNDED, MERGING_COUNTS_BOUNDED, exit_labels
+from engine.metrics.merging import MergingTest, compute_merging
+from engine.metrics.uncertainty import UncertaintyExponent, compute_uncertainty_exponent, fit_uncertainty
 from engine.orbits import Orbit, integrate_orbit
+from engine.origin_fates import OriginFateMap, compute_origin_fates, join_origin_fates
 from engine.outcomes import Outcomes, classify_orbits
 from engine.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.potentials import CASES, Potential
@@ -18,49 +50,100 @@ from engine.previews import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 from engine.sections import read_section_points
 from engine.separations import LONGEST_SEPARATION, Separation, compute_separation
+from engine.stable_manifolds import ManifoldArc, StableManifolds, find_stable_manifolds
+from engine.trust_maps import TrustMap, compute_trust
 from engine.twins import Twin, find_twin
 
 __all__ = [
     "CASES",
     "CHAOS_THRESHOLD",
+    "ENTROPY_COUNTS_BOUNDED",
     "LARGEST_SIDE",
     "LONGEST_SEPARATION",
     "LONGEST_TIME",
+    "MERGING_COUNTS_BOUNDED",
     "PREVIEW_SIDE",
     "PREVIEW_TIME",
+    "BasinEntropy",
+    "BasinMeasures",
+    "BasinMeasuresSpec",
+    "BirkhoffDigits",
     "Certificate",
+    "DigitsSpec",
+    "EnergyCurves",
+    "EnergyCurvesSpec",
+    "EnergyPoint",
+    "EnergyPointSpec",
+    "EscapeLaw",
+    "EscapeLaws",
+    "EscapeLawsSpec",
     "EscapeMap",
     "EscapeStatistics",
     "Fate",
+    "IndicatorVerdict",
+    "JobSpec",
     "Jobs",
+    "LawFit",
     "LyapunovOrbit",
+    "ManifoldArc",
+    "ManifoldsSpec",
     "MapSpec",
+    "MergingTest",
     "Orbit",
     "OrbitSpec",
+    "OriginFateMap",
+    "OriginSpec",
     "Outcomes",
     "Plane",
     "Potential",
+    "Preview",
+    "PreviewSpec",
     "Regularity",
     "RegularityMap",
+    "RegularitySpec",
     "Separation",
     "SeparationSpec",
+    "StableManifolds",
     "Ticket",
+    "Trust",
+    "TrustMap",
+    "TrustSpec",
     "Twin",
+    "TwinAnswer",
     "TwinSpec",
+    "UncertaintyExponent",
+    "UncertaintySpec",
+    "Verdict",
     "Window",
     "classify_orbits",
+    "compute_basin_entropy",
+    "compute_birkhoff_digits",
+    "compute_energy_curves",
     "compute_map",
+    "compute_merging",
+    "compute_origin_fates",
     "compute_preview",
     "compute_separation",
     "compute_statistics",
+    "compute_survival",
+    "compute_trust",
+    "compute_uncertainty_exponent",
     "default_window",
     "describe_certificate",
+    "describe_codes",
     "describe_fate",
+    "exit_labels",
     "find_lyapunov_orbits",
+    "find_stable_manifolds",
     "find_twin",
+    "fit_escape_laws",
+    "fit_uncertainty",
     "integrate_orbit",
+    "join_origin_fates",
     "judge_bounded_orbits",
+    "judge_indicators",
     "judge_regularity",
+    "measure_energy",
     "prepare_kernels",
     "preview_spec",
     "read_section_points",

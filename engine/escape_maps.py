@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from engine.certificates import Certificate
-from engine.fates import Fate
+from engine.fates import Fate, Trust
 from engine.map_specs import MapSpec
 from engine.orbit_batches import OrbitBatch
 from engine.planes import Window
-from engine.taylor.codegen import ORDER, TOLERANCE
 
 IMAGES: dict[str, tuple[type, float]] = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
@@ -58,6 +56,8 @@ class EscapeMap:
         bool, the pixels whose orbits have been started.
     batch
         State to go on from with ``resume``; None in frames.
+    trust
+        (rows, columns) int8, the `Trust` of each pixel where it was asked for; else None.
     """
 
     spec: MapSpec
@@ -75,6 +75,7 @@ class EscapeMap:
     complete: bool
     started: np.ndarray = field(repr=False)
     batch: OrbitBatch | None = field(default=None, repr=False)
+    trust: np.ndarray | None = field(default=None, repr=False)
 
     @property
     def interior(self) -> np.ndarray:
@@ -96,6 +97,7 @@ class EscapeMap:
     def nbytes(self) -> int:
         """Bytes held by the arrays, the state to go on from included."""
         images: list[np.ndarray] = [getattr(self, name) for name in IMAGES]
+        images += [self.trust] if self.trust is not None else []
         return sum(image.nbytes for image in images) + (self.batch.nbytes if self.batch else 0)
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
@@ -134,13 +136,15 @@ class EscapeMap:
         spec = self.spec
         dims = (spec.plane.ordinate, "x")
         variables = {
-            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **_codes(Fate)}),
+            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **describe_codes(Fate)}),
             "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
             "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
             "outside": (dims, self.outside, {"long_name": "channel beyond whose Lyapunov orbit the start lies, 0 inside"}),
-            "certificate": (dims, self.certificate, {"long_name": "what bounded rests on", **_codes(Certificate)}),
+            "certificate": (dims, self.certificate, {"long_name": "what bounded rests on", **describe_codes(Certificate)}),
             "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
         }
+        if self.trust is not None:
+            variables["trust"] = (dims, self.trust, {"long_name": "whether the answer survives", **describe_codes(Trust)})
         coordinates = {
             spec.plane.ordinate: (spec.plane.ordinate, self.ordinate, {"units": "1"}),
             "x": ("x", self.x, {"units": "1"}),
@@ -149,26 +153,17 @@ class EscapeMap:
 
     def provenance(self) -> dict[str, Any]:
         """What made this map, in plain values: the request, the integrator, its version, the worst energy error, the counts."""
-        spec, window = self.spec, self.spec.window
         codes, counts = np.unique(self.fate, return_counts=True)
         return {
-            "potential": spec.potential.name,
-            "terms": "; ".join(f"{c!r} x^{i} y^{j}" for i, j, c in spec.potential.terms),
-            "energy": spec.energy,
-            "plane": spec.plane.value,
-            "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
-            "resolution": spec.resolution,
-            "t_max": spec.t_max,
-            "certify": int(spec.certify),
-            "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
-            "version": metadata.version("escape-explorer"),
+            **self.spec.provenance(),
             "worst_energy_error": self.worst_energy_error,
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
         }
 
 
-def _codes(codes: type[IntEnum]) -> dict[str, str]:
+def describe_codes(codes: type[IntEnum]) -> dict[str, str]:
+    """The attribute of a labelled array that tells what its codes mean."""
     return {"codes": "; ".join(f"{code.value}: {code.name.lower()}" for code in codes)}
 
 

@@ -10,6 +10,9 @@ from engine.escape_maps import EscapeMap
 from engine.fates import Fate
 from engine.planes import Window
 
+SURVIVAL_POINTS = 500
+"""Most points of a survival curve."""
+
 _LOWEST_CODE = int(min(Fate))
 # Times this close, relatively, are one time: no bins fit between them.
 _SAME_TIME = 1e-9
@@ -143,6 +146,31 @@ def compute_statistics(frame: EscapeMap, window: Window | None = None) -> Escape
         crossing_counts=_read_only(np.bincount(frame.crossings[part][left])),
         escape_times=_read_only(times),
     )
+
+
+def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarray]:
+    """S(t): the share of the decided starts that are still inside just after t.
+
+    Parameters
+    ----------
+    statistics
+        The escapes. Starts under way count neither as inside nor as gone, so that S is too low at late times while there
+        are many.
+
+    Returns
+    -------
+    (m,) rising times of escapes, dimensionless, and (m,) S at these, both read-only: all steps, or some `SURVIVAL_POINTS` of
+    them, even in ln t; the first and the last are always there. S is 1 before the first, and stays at the bounded share
+    after the last. Empty when nothing left.
+    """
+    times, counts = np.unique(statistics.escape_times, return_counts=True)
+    survival = 1.0 - np.cumsum(counts) / max(statistics.decided, 1)
+    if times.size > SURVIVAL_POINTS:
+        first = times[times > 0.0][0]
+        grid = np.geomspace(first, times[-1], SURVIVAL_POINTS - 1)[:-1]
+        kept = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])
+        times, survival = times[kept], survival[kept]
+    return _read_only(times), _read_only(survival)
 
 
 def _pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slice]:

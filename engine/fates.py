@@ -32,6 +32,24 @@ class Regularity(IntEnum):
         return self.name.lower().replace("_", " ")
 
 
+class Trust(IntEnum):
+    """Whether the answer of a pixel survives.
+
+    ``NO_QUESTION`` for one that is forbidden, outside or failed. ``LIKE_NEIGHBOURS``: its neighbours say the same, so that it was
+    not tested. ``CONFIRMED``: tested, and nothing changed. ``DOUBTFUL``: its fate, or its crossings before the escape, changed.
+    ``NOT_TESTED`` until it is known.
+    """
+
+    NO_QUESTION = 0
+    LIKE_NEIGHBOURS = 1
+    CONFIRMED = 2
+    DOUBTFUL = 3
+    NOT_TESTED = 4
+
+    def __str__(self) -> str:
+        return self.name.lower().replace("_", " ")
+
+
 _SENTENCES = {
     Fate.BOUNDED: "Bounded: has not left by t_max.",
     Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here, its kinetic energy would be negative.",

@@ -12,6 +12,7 @@ import numpy as np
 
 from engine.orbit_batches import LANES, default_executor
 from engine.potentials import Potential
+from engine.taylor.loop import VECTOR
 
 GLIDE_STEP = 1.0 / 3.0
 """Step of orbits followed side by side: at the order in use their energy is kept as well as with steps of free size."""
@@ -28,9 +29,9 @@ def glide(
 ) -> np.ndarray:
     """(n, *shape): what `work(potential, tile, *arguments)` makes of each tile of the (n, columns) states.
 
-    A tile is a (columns, LANES) array of its own, the last one filled up with copies of its last orbit. `work` is a function of
-    a module, so that processes elsewhere can run it; it returns (LANES, *shape) numbers. When `cancel` is set, orbits not
-    reached are NaN.
+    A tile is a (columns, lanes) array of its own; lanes is LANES, or in the last one as many whole vectors as it needs, filled
+    with copies of its last orbit. `work` is a function of a module, so that processes elsewhere can run it; it returns
+    (lanes, *shape) numbers. When `cancel` is set, orbits not reached are NaN.
     """
     executor = executor or default_executor()
     ahead = 2 * getattr(executor, "_max_workers", 2)
@@ -46,7 +47,8 @@ def glide(
         collect(ahead - 1)
         if cancel is not None and cancel.is_set():
             break
-        tile = states[np.minimum(np.arange(begin, begin + LANES), len(states) - 1)].T.copy()
+        lanes = min(LANES, -(-(len(states) - begin) // VECTOR) * VECTOR)
+        tile = states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()
         running.append((begin, executor.submit(work, potential, tile, *arguments)))
     collect(0)
     return results

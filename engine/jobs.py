@@ -8,25 +8,28 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
+from engine.bench import Bench
 from engine.escape_maps import EscapeMap
-from engine.job_specs import OrbitSpec, Preview, PreviewSpec, RegularitySpec, SeparationSpec, TwinAnswer, TwinSpec
 from engine.map_specs import MapSpec
 from engine.maps import compute_map
-from engine.orbit_batches import default_executor
-from engine.orbits import Orbit, integrate_orbit
-from engine.previews import compute_preview, preview_spec
-from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 from engine.result_cache import ResultCache, Sized
-from engine.separations import Separation, compute_separation
-from engine.twins import Twin, find_twin
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
 # Threads that only wait for the pool and hand frames on; more jobs than this wait for their turn.
 _COORDINATORS = 32
 
 log = logging.getLogger(__name__)
+
+
+class JobSpec[Result: Sized](Protocol):
+    """A request that knows how it is answered."""
+
+    def __hash__(self) -> int: ...
+
+    def run(self, bench: Bench) -> Result:
+        """The answer."""
 
 
 class Ticket:
@@ -95,35 +98,16 @@ class Jobs:
         A map that is kept comes at once; one that somebody already waits for is shared; one that was interrupted, or is kept
         to a shorter t_max, goes on from there.
         """
-        return self._request(spec, on_frame, on_error, self._run_map)
+        return self._request(spec, on_frame, on_error, lambda bench: self._compute_map(spec, bench.publish, bench.cancel))
 
-    def request_preview(
-        self, spec: MapSpec, on_preview: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
+    def request[Result: Sized](
+        self, spec: JobSpec[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Ticket:
-        """Ask for a quick look at a map (`compute_preview`); it comes to `on_preview` from another thread, once."""
-        return self._request(PreviewSpec(preview_spec(spec)), lambda kept: on_preview(kept.frame), on_error, self._run_preview)
+        """Ask for anything else (`engine.job_specs`); it comes to `on_result` from another thread.
 
-    def request_orbit(self, spec: OrbitSpec, on_orbit: Callable[[Orbit], None], on_error: Callable[[Exception], None]) -> Ticket:
-        """Ask for an orbit; it comes to `on_orbit` from another thread."""
-        return self._request(spec, on_orbit, on_error, self._run_orbit)
-
-    def request_twin(
-        self, spec: TwinSpec, on_twin: Callable[[Twin | None], None], on_error: Callable[[Exception], None]
-    ) -> Ticket:
-        """Ask for the nearest start that leaves elsewhere; it comes to `on_twin` from another thread, None if there is none."""
-        return self._request(spec, lambda answer: on_twin(answer.twin), on_error, self._run_twin)
-
-    def request_separation(
-        self, spec: SeparationSpec, on_separation: Callable[[Separation], None], on_error: Callable[[Exception], None]
-    ) -> Ticket:
-        """Ask how two orbits part; it comes to `on_separation` from another thread."""
-        return self._request(spec, on_separation, on_error, self._run_separation)
-
-    def request_regularity(
-        self, spec: MapSpec, on_frame: Callable[[RegularityMap], None], on_error: Callable[[Exception], None]
-    ) -> Ticket:
-        """Ask which bounded orbits of a map are chaotic; the map itself is computed first where it is not kept."""
-        return self._request(RegularitySpec(spec), on_frame, on_error, self._run_regularity)
+        What grows as it is computed comes more than once, the last time with ``complete`` True.
+        """
+        return self._request(spec, on_result, on_error, spec.run)
 
     @property
     def in_flight(self) -> int:
@@ -135,7 +119,7 @@ class Jobs:
         key: Hashable,
         on_result: Callable[[Any], None],
         on_error: Callable[[Exception], None],
-        run: Callable[[_Job], Sized],
+        run: Callable[[Bench], Sized],
     ) -> Ticket:
         ticket = Ticket(lambda ticket: self._leave(key, ticket), on_result, on_error)
         with self._lock:
@@ -163,12 +147,12 @@ class Jobs:
                 job.cancel.set()
                 del self._in_flight[key]
 
-    def _work(self, job: _Job, run: Callable[[_Job], Sized]) -> None:
+    def _work(self, job: _Job, run: Callable[[Bench], Sized]) -> None:
         error: Exception | None = None
         result: Sized | None = None
         try:
             if not job.cancel.is_set():
-                result = run(job)
+                result = run(self._bench(job))
         except CancelledError:
             pass
         except Exception as raised:
@@ -186,36 +170,29 @@ class Jobs:
             elif result is not None:
                 ticket.deliver(result)
 
-    def _run_map(self, job: _Job) -> EscapeMap:
-        spec = job.key
-        assert isinstance(spec, MapSpec)
+    def _bench(self, job: _Job) -> Bench:
+        def answer(spec: JobSpec[Any]) -> Any:
+            kept = self.cache.get(spec)
+            if kept is None or not getattr(kept, "complete", True):
+                kept = spec.run(bench)
+                self.cache.put(spec, kept)
+            return kept
 
-        publish = partial(self._publish, job)
-        return compute_map(spec, publish, job.cancel, self._executor, resume=self._find_resumable(spec))
+        publish, map_at_hand = partial(self._publish, job), partial(self._map_at_hand, cancel=job.cancel)
+        bench = Bench(self._executor, job.cancel, publish, map_at_hand, answer)
+        return bench
 
-    def _run_separation(self, job: _Job) -> Separation:
-        spec = job.key
-        assert isinstance(spec, SeparationSpec)
-        return self._on_pool(job, compute_separation, spec.potential, spec.first, spec.second, spec.t_end)
-
-    def _run_preview(self, job: _Job) -> Preview:
-        assert isinstance(job.key, PreviewSpec)
-        frame = compute_preview(job.key.map_spec, self._executor, job.cancel)
-        if job.cancel.is_set():
-            raise CancelledError
-        return Preview(frame)
-
-    def _run_regularity(self, job: _Job) -> RegularityMap:
-        assert isinstance(job.key, RegularitySpec)
-        spec = job.key.map_spec
-        whole = self.cache.get(spec)
+    def _map_at_hand(self, spec: MapSpec, cancel: threading.Event) -> EscapeMap | None:
+        """The finished map, for a job that needs it; None when cancelled."""
+        whole: EscapeMap | None = self.cache.get(spec)
         if whole is None or not whole.complete:
-            whole = compute_map(spec, None, job.cancel, self._executor, resume=self._find_resumable(spec))
-        if not whole.complete:
-            raise CancelledError
-        return judge_bounded_orbits(whole, partial(self._publish, job), job.cancel, self._executor)
+            whole = self._compute_map(spec, None, cancel)
+        return whole if whole.complete else None
 
-    def _publish(self, job: _Job, frame: EscapeMap | RegularityMap) -> None:
+    def _compute_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None] | None, cancel: threading.Event) -> EscapeMap:
+        return compute_map(spec, on_frame, cancel, self._executor, resume=self._find_resumable(spec))
+
+    def _publish(self, job: _Job, frame: Any) -> None:
         """Hand a frame on; the complete one is the result, which follows at once with all that belongs to it."""
         if frame.complete:
             return
@@ -224,22 +201,6 @@ class Jobs:
             tickets = list(job.tickets)
         for ticket in tickets:
             ticket.deliver(frame)
-
-    def _run_orbit(self, job: _Job) -> Orbit:
-        spec = job.key
-        assert isinstance(spec, OrbitSpec)
-        return self._on_pool(job, integrate_orbit, spec.potential, spec.state, spec.t_max)
-
-    def _on_pool[Result](self, job: _Job, compute: Callable[..., Result], *arguments: Any) -> Result:
-        """What one call comes to, made by a thread that is there for computing."""
-        executor = self._executor or default_executor()
-        return executor.submit(compute, *arguments, cancel=job.cancel).result()
-
-    def _run_twin(self, job: _Job) -> TwinAnswer:
-        spec = job.key
-        assert isinstance(spec, TwinSpec)
-        start = (spec.x, spec.ordinate, spec.t_max)
-        return TwinAnswer(find_twin(spec.potential, spec.plane, spec.energy, *start, executor=self._executor, cancel=job.cancel))
 
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
         """The kept map of the same picture that has been followed longest, though not beyond t_max."""

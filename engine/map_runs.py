@@ -17,7 +17,7 @@ from engine.lyapunov_orbits import closed_curves, exit_curves
 from engine.map_specs import MapSpec
 from engine.orbit_batches import OrbitBatch, carry_on
 from engine.outcomes import Outcomes, read_outcomes
-from engine.planes import Plane, find_mirror_images, start_states
+from engine.planes import Plane, find_mirror_images
 
 # A first frame holds at most this many pixels.
 COARSE_PIXELS = 1200
@@ -70,9 +70,7 @@ class MapRun:
         self.energy = ordinate if isinstance(spec.energy, tuple) else np.full(x.size, spec.energy)
         self.curve_row = rows if spec.plane is Plane.X_H else np.zeros(x.size, np.int64)
         if resume is None:
-            h = 0.0 if isinstance(spec.energy, tuple) else spec.energy
-            states = start_states(spec.potential, spec.plane, h, x, ordinate)
-            self.batch = OrbitBatch.from_starts(states, self.curve_row)
+            self.batch = OrbitBatch.from_starts(spec.start_states(x, ordinate), self.curve_row)
             self.started = np.zeros(x.size, bool)
         else:
             assert resume.batch is not None

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numbers
 import operator
 from dataclasses import dataclass
+from importlib import metadata
 from typing import Any
 
 import numpy as np
 
-from engine.planes import Plane, Window, default_window
+from engine.planes import Plane, Window, default_window, start_states
 from engine.potentials import Potential
+from engine.taylor.codegen import ORDER, TOLERANCE
 
 LARGEST_SIDE = 4096
 """Most columns or rows of a map."""
@@ -43,6 +45,10 @@ class MapSpec:
         How long an orbit is followed, 0 < t_max ≤ 1e8.
     certify
         Whether an orbit may be called bounded before t_max when there is a certificate that it never leaves.
+    backward
+        Whether orbits are followed into the past. Potentials do not depend on velocity, so that this is the way of
+        (x, y, −px, −py) into the future: fates are then channels that orbits came in by, times how long ago, and crossings
+        those that the reversed orbit makes upward.
 
     Raises
     ------
@@ -57,6 +63,7 @@ class MapSpec:
     window: Window = None  # type: ignore[assignment]  # None is replaced below
     t_max: float = 1e5
     certify: bool = True
+    backward: bool = False
 
     def __post_init__(self) -> None:
         plane = Plane(self.plane)
@@ -64,7 +71,8 @@ class MapSpec:
         for name, value in (("plane", plane), ("energy", energy), ("resolution", _checked_resolution(self.resolution))):
             object.__setattr__(self, name, value)
         object.__setattr__(self, "t_max", checked_t_max(self.t_max))
-        object.__setattr__(self, "certify", bool(self.certify))
+        for name in ("certify", "backward"):
+            object.__setattr__(self, name, bool(getattr(self, name)))
         window: Any = self.window
         if window is None:
             window = default_window(self.potential, plane, energy)
@@ -73,6 +81,31 @@ class MapSpec:
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres."""
         return self.window.pixel_centres(*self.resolution)
+
+    def start_states(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
+        """(n, 4) states x, y, px, py from which orbits through points (n,), (n,) of the plane go; py NaN where forbidden."""
+        energy = 0.0 if isinstance(self.energy, tuple) else self.energy
+        states = start_states(self.potential, self.plane, energy, x, ordinate)
+        if self.backward:
+            states[:, 2:] *= -1.0
+        return states
+
+    def provenance(self) -> dict[str, Any]:
+        """The request in plain values, with the integrator that answers it and its version."""
+        window = self.window
+        return {
+            "potential": self.potential.name,
+            "terms": "; ".join(f"{c!r} x^{i} y^{j}" for i, j, c in self.potential.terms),
+            "energy": self.energy,
+            "plane": self.plane.value,
+            "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
+            "resolution": self.resolution,
+            "t_max": self.t_max,
+            "certify": int(self.certify),
+            "backward": int(self.backward),
+            "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
+            "version": metadata.version("escape-explorer"),
+        }
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """(row, column) of the pixel that holds a point of the plane; None outside the window."""

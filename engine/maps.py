@@ -16,6 +16,7 @@ from engine.fates import Fate
 from engine.map_runs import MapRun, carry_through
 from engine.map_specs import MapSpec
 from engine.planes import Plane
+from engine.trust_maps import compute_trust
 
 LARGEST_RUN = 2**20
 """Most pixels whose orbits are held in memory at once; larger maps are computed in bands of rows, which keep results only."""
@@ -32,6 +33,7 @@ def compute_map(
     executor: Executor | None = None,
     *,
     resume: EscapeMap | None = None,
+    with_trust: bool = False,
 ) -> EscapeMap:
     """Compute a map of escapes.
 
@@ -49,6 +51,9 @@ def compute_map(
     resume
         An earlier map, finished or cancelled, whose spec differs at most by a smaller or equal t_max: its orbits go on
         from where they are. Maps computed in bands hold none.
+    with_trust
+        Whether to find out which pixels to trust, too (`compute_trust`), once the map is whole; when cancelled, pixels not tested
+        yet are `Trust.NOT_TESTED`.
 
     Returns
     -------
@@ -60,10 +65,24 @@ def compute_map(
     ValueError
         When `resume` belongs to another map, or no exit is defined at an energy that `spec` asks for.
     """
-    if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
-        return _compute_in_bands(spec, on_frame, cancel, executor)
     if resume is not None:
         _check_resumable(spec, resume)
+    if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
+        result = _compute_in_bands(spec, on_frame, cancel, executor)
+    else:
+        result = _compute_at_once(spec, on_frame, cancel, executor, resume)
+    if not (with_trust and result.complete):
+        return result
+    return replace(result, trust=compute_trust(result, None, cancel, executor).trust)
+
+
+def _compute_at_once(
+    spec: MapSpec,
+    on_frame: Callable[[EscapeMap], None] | None,
+    cancel: threading.Event | None,
+    executor: Executor | None,
+    resume: EscapeMap | None,
+) -> EscapeMap:
     run = MapRun(spec, resume)
     if on_frame is None:
         # Nobody looks at coarse stages.

@@ -156,13 +156,21 @@ class _Tile:
             getattr(batch, field.name)[self.orbits] = getattr(self.batch, field.name)
 
 
-def _advance_tile(potential: Potential, curves: np.ndarray, gates: np.ndarray, tile: _Tile, horizon: float, final: bool) -> _Tile:
+def _advance_tile(
+    potential: Potential,
+    curves: np.ndarray,
+    gates: np.ndarray,
+    tile: _Tile,
+    horizon: float,
+    final: bool,
+    tolerance: float = TOLERANCE,
+) -> _Tile:
     """The work of a worker: one budget's worth of steps."""
     kernels = load_kernels(potential.terms, potential.channels)
     todo = np.flatnonzero(tile.waiting)
     b = tile.batch
     kernels.advance(
-        todo, horizon, final, TOLERANCE, BUDGET, LANES, gates, curves, b.curve_row,
+        todo, horizon, final, tolerance, BUDGET, LANES, gates, curves, b.curve_row,
         b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.waiting,
     )  # fmt: skip
     return tile
@@ -192,12 +200,13 @@ def carry_on(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
     on_progress: Callable[[], None] | None = None,
+    tolerance: float = TOLERANCE,
 ) -> bool:
     """Carry the undecided orbits among `which` on until they leave or reach `horizon`; the batch is changed in place.
 
     With `final` the horizon is t_max, and orbits still inside are bounded. Returns False when cancelled on the way, which leaves
     the batch in a state to go on from. The outcome of each orbit is the same to the bit whatever the executor and the
-    interruptions.
+    interruptions. `tolerance` is that of the steps; another one than the usual gives a second opinion.
     """
     executor = executor or default_executor()
     workers = getattr(executor, "_max_workers", 2)
@@ -207,7 +216,7 @@ def carry_on(
     running: set[Future[_Tile]] = set()
 
     def submit(tile: _Tile) -> None:
-        running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final))
+        running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance))
 
     for tile in tiles:
         submit(tile)

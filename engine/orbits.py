@@ -35,6 +35,9 @@ class Orbit:
         (n,) time and state.
     sali
         (n,) smaller alignment index, 0 to √2: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors.
+    lyapunov_exponent
+        (n,) finite-time maximal Lyapunov exponent (1/t) ln(|w1(t)|/|w1(0)|) of the first deviation vector, per unit of time; NaN
+        at t = 0. It falls like ln t / t along regular motion and levels off at a positive value along chaotic motion.
     r2
         (n,) R² = x² + y².
     fate
@@ -55,6 +58,7 @@ class Orbit:
     px: np.ndarray
     py: np.ndarray
     sali: np.ndarray
+    lyapunov_exponent: np.ndarray
     r2: np.ndarray
     fate: int
     escape_time: float
@@ -65,7 +69,8 @@ class Orbit:
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
-        return sum(array.nbytes for array in (self.t, self.x, self.y, self.px, self.py, self.sali, self.r2))
+        state = (self.x, self.y, self.px, self.py)
+        return sum(array.nbytes for array in (self.t, *state, self.sali, self.lyapunov_exponent, self.r2))
 
     @property
     def regularity(self) -> Regularity | None:
@@ -90,7 +95,9 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     """Integrate one orbit until it escapes or `t_max`.
 
     Fate, escape time and crossings are those that a map gives for the same start. The deviation vectors obey eq. 4 of
-    Zotos (2014), SALI is eq. 9; they follow the orbit's own steps and never change them.
+    Zotos (2014), SALI is eq. 9; the growth of the first one is the finite-time Lyapunov exponent (Benettin, Galgani, Giorgilli &
+    Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). They follow the orbit's own steps and never change
+    them.
 
     Parameters
     ----------
@@ -118,9 +125,9 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     outcome = classify_orbits(potential, energy, start[None], t_max, executor=SerialExecutor(), cancel=cancel)
     fate = int(outcome.fate[0])
     t_end = 0.0 if fate == Fate.OUTSIDE else float(outcome.escape_time[0]) if fate >= 1 else t_max
-    times, path, sali = _follow(potential, start, t_end, cancel)
+    times, path, sali, exponent = _follow(potential, start, t_end, cancel)
     x, y, px, py = path
-    arrays = (times, x, y, px, py, sali, x * x + y * y)
+    arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         array.flags.writeable = False
     return Orbit(
@@ -138,15 +145,18 @@ def checked_state(name: str, state: Any) -> np.ndarray:
 
 def _follow(
     potential: Potential, start: np.ndarray, t_end: float, cancel: threading.Event | None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times, path and SALI from 0 to `t_end`."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Times, path, SALI and Lyapunov exponent from 0 to `t_end`."""
     if t_end == 0.0:
-        return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0))
+        return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = load_kernels(potential.terms, potential.channels)
     steps = trace_steps(kernels, start, t_end, potential.channels, cancel)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     path = sample_path(kernels, steps, times, cancel)
-    return times, path, carry_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
+    sali, growth = carry_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
+    with np.errstate(invalid="ignore"):
+        # 0/0, which is NaN, at the start.
+        return times, path, sali, growth / times
 
 
 def _sample_count(t_end: float, steps: int) -> int:

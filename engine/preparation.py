@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.lyapunov_orbits import find_lyapunov_orbits
 from engine.map_specs import MapSpec
 from engine.maps import compute_map
 from engine.orbits import integrate_orbit
@@ -13,6 +12,7 @@ from engine.potentials import Potential
 from engine.quasi_periodicity import count_agreeing_digits
 from engine.regularity_maps import judge_bounded_orbits
 from engine.sections import find_section_points
+from engine.stable_manifolds import find_stable_manifolds
 
 _SHORT = 10.0
 
@@ -25,7 +25,7 @@ def prepare_kernels(potential: Potential) -> None:
     potential
         Any `Potential` with a saddle; the first time on a machine this takes some 20 s.
     """
-    find_lyapunov_orbits(potential, 1.01 * potential.escape_energy)
+    find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1)
     # Nothing leaves, so that there are bounded orbits to judge.
     energy = 0.5 * potential.escape_energy
     spec = MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_SHORT)

@@ -17,7 +17,7 @@ from engine.fates import CHAOS_THRESHOLD, Fate, Regularity
 from engine.gliding import GLIDE_STEP, glide
 from engine.map_specs import MapSpec
 from engine.orbits import DEVIATION_VECTORS
-from engine.planes import find_mirror_images, start_states
+from engine.planes import find_mirror_images
 from engine.potentials import Potential
 from engine.quasi_periodicity import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.taylor.build import load_kernels
@@ -115,8 +115,7 @@ class _Judgement:
         if self.images is not None:
             self.pixels = self.pixels[self.pixels <= self.images[self.pixels]]
         x, ordinate = (grid.ravel()[self.pixels] for grid in np.meshgrid(escape_map.x, escape_map.ordinate))
-        energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
-        states = start_states(self.potential, spec.plane, energy, x, ordinate)
+        states = spec.start_states(x, ordinate)
         # Rows: x, y, px, py of the orbit and of two deviations, and the smallest SALI so far.
         vectors = np.broadcast_to(DEVIATION_VECTORS.ravel(), (self.pixels.size, 8))
         self.orbits = np.column_stack([states, vectors, np.full(self.pixels.size, np.inf)])

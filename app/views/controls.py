@@ -26,7 +26,6 @@ ENERGY_DECIMALS = 3
 
 _ENERGY_STEP = 10.0**-ENERGY_DECIMALS
 _PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
-_ONE_LINE = {"& .MuiFormControlLabel-label": {"whiteSpace": "nowrap"}}
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,6 @@ class Controls:
         self.resolution = pmui.Select(
             label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small"
         )
-        self.judge = pmui.Switch(label="Regular or chaotic", value=state.judge, width=190, sx=_ONE_LINE)
         self.palette = pmui.Select(
             label="Colours",
             options={palette.name: key for key, palette in PALETTES.items()},
@@ -82,7 +80,7 @@ class Controls:
         """Two strips that wrap on narrow screens: what is looked at, and how."""
         energy = pn.Column(self.energy, min_width=300, max_width=620, sizing_mode="stretch_width", margin=(0, 20))
         what = (pn.Column(self.case, min_width=150), pn.Column(self.plane, min_width=230), energy, self.play, self.exact_energy)
-        how = (self.t_max, self.resolution, self.palette, self.judge, self.facts)
+        how = (self.t_max, self.resolution, self.palette, self.facts)
         return pn.Column(_strip(*what), _strip(*how), sizing_mode="stretch_width")
 
     def _connect(self) -> None:
@@ -97,10 +95,9 @@ class Controls:
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
         self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
-        self.judge.param.watch(lambda event: state.param.update(judge=event.new), "value")
         state.param.watch(lambda event: self._follow_case(), "case")
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
-        for name in ("case", "plane", "t_max", "resolution", "palette", "judge"):
+        for name in ("case", "plane", "t_max", "resolution", "palette"):
             state.param.watch(lambda event: getattr(self, event.name).param.update(value=event.new), name)
 
     def show_playing(self, playing: bool) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.palette import PATCH_EDGE, Entry
+from app.palette import PATCH_EDGE, Entry, Palette
 
 _ITEM = '<span style="display:inline-flex;align-items:center;margin:0 10px 2px 0;white-space:nowrap">{patch}{label}</span>'
 _PATCH = "display:inline-block;width:12px;height:12px;margin-right:5px;border:1px solid {edge};background:{colour}"
@@ -19,3 +19,18 @@ def legend(entries: Iterable[Entry]) -> str:
     """HTML of a legend that wraps."""
     items = (_ITEM.format(patch=patch(entry.colour), label=entry.label) for entry in entries)
     return f'<div style="font-size:12px;line-height:18px">{"".join(items)}</div>'
+
+
+def passage_legend(palette: Palette, channels: int) -> str:
+    """HTML of the key that is read both ways: where orbits come from down the side, where they go along the top."""
+    ends = (*range(1, channels + 1), 0)
+    name = {0: "bounded", **{k: str(k) for k in ends if k}}
+    head = "".join(f"<th scope=col style='font-weight:normal'>{name[fate]}</th>" for fate in ends)
+    rows = "".join(
+        f"<tr><th scope=row style='font-weight:normal;text-align:right'>{name[origin]}</th>"
+        + "".join(f"<td style='text-align:center'>{patch(palette.passage_colour(origin, fate))}</td>" for fate in ends)
+        + "</tr>"
+        for origin in ends
+    )
+    caption = "<caption style='text-align:left'>came in by (down), leaves by (across)</caption>"
+    return f"<table style='font-size:12px;border-spacing:4px 1px'>{caption}<tr><th></th>{head}</tr>{rows}</table>"

@@ -11,16 +11,17 @@ import panel as pn
 from bokeh.events import DoubleTap, RangesUpdate, SelectionGeometry, Tap
 from bokeh.models import ColorBar, ColumnDataSource, Image, LinearColorMapper, LogColorMapper, Range1d, Span
 
-from app.map_columns import character_column, longest_typical_time
+from app.map_columns import character_column, longest_typical_time, passage_column
 from app.palette import PAPER, Palette
-from app.pictures import PAINTED, SHORTEST_TIME, TITLES
+from app.pictures import DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
 from app.views.figures import FRAME, dress, map_figure, with_help
 from app.views.hover import pixel_hover
-from app.views.legends import legend
+from app.views.legends import legend, passage_legend
 from app.views.marks import Marks
 from app.views.outlines import Outlines
+from app.views.overlays import Overlays
 from app.views.wrapping import wrapping_row
-from engine import EscapeMap, Fate, MapSpec, Regularity, RegularityMap, Window
+from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
 
 REST_MS = 90
 """Ranges that have not moved for this long are computed anew: longer than from one turn of a wheel to the next."""
@@ -46,7 +47,7 @@ class MapsView:
         on_box: Callable[[Window], None],
     ) -> None:
         self.source = ColumnDataSource(_blank(), name="maps")
-        self.outlines, self.marks = Outlines(), Marks()
+        self.outlines, self.overlays, self.marks = Outlines(), Overlays(), Marks()
         self._palette = PAPER
         self._dark = False
         self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
@@ -78,18 +79,20 @@ class MapsView:
             name: with_help(pn.pane.Bokeh(self.figures[name], margin=0), name, self._legends[name]) for name in TITLES
         }
         self._row = wrapping_row(justify_content="center", gap="4px")
-        self.show_characters(False)
+        self._on_demand: frozenset[str] = frozenset()
+        self.show_pictures(frozenset())
 
     def layout(self) -> pn.viewable.Viewable:
         """The pictures in a row that wraps."""
         return self._row
 
-    def show_characters(self, visible: bool) -> None:
-        """Show or hide the picture of regular and chaotic orbits."""
-        if visible:
-            dress(self.figures["characters"], dark=self._dark)
+    def show_pictures(self, on_demand: frozenset[str]) -> None:
+        """Show these of the pictures `ON_DEMAND` beside the others."""
+        for name in on_demand - self._on_demand:
+            dress(self.figures[name], dark=self._dark)
+        self._on_demand = on_demand
         # A picture that is only hidden would be painted with every frame all the same.
-        self._row.objects = [column for name, column in self._columns.items() if visible or name != "characters"]
+        self._row.objects = [column for name, column in self._columns.items() if name in on_demand or name not in ON_DEMAND]
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, quickly: bool = False) -> None:
         """Paint a frame; the ranges follow a new window. `quickly` changes no more than it must, for a frame in passing."""
@@ -99,10 +102,14 @@ class MapsView:
             if quickly:
                 self.outlines.show(frame.spec, quickly=True)
             else:
-                self._describe()
+                self.describe()
         if frame.stride == 1 and not quickly:
             self._time_mapper.high = longest_typical_time(frame)
         self.source.data = columns
+
+    def show_origins(self, origins: OriginFateMap) -> None:
+        """Paint where orbits come from and where they go."""
+        self.source.data = {**self.source.data, **passage_column(origins)}
 
     def show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         """Paint which bounded orbits are regular and which chaotic, as far as it is known."""
@@ -122,15 +129,13 @@ class MapsView:
             self._mappers[name].update(palette=codes, low=-0.5, high=len(codes) - 0.5)
         self.marks.set_palette(palette)
         self.outlines.set_palette(palette)
-        if self._spec is not None:
-            self._describe()
+        self.describe()
 
     def set_dark(self, dark: bool) -> None:
         """Draw the lines for a dark page, or for a light one."""
         self._dark = dark
         self.outlines.set_dark(dark)
-        if self._spec is not None:
-            self._describe()
+        self.describe()
 
     def set_home(self, window: Window) -> None:
         """The window of the whole interior, which the reset tool goes back to."""
@@ -193,20 +198,22 @@ class MapsView:
         y.update(start=window.ordinate_low, end=window.ordinate_high)
         self._following = False
 
-    def _describe(self) -> None:
+    def describe(self) -> None:
         """Axis names, outlines and legends of the map in view."""
         spec, palette = self._spec, self._palette
-        assert spec is not None
+        if spec is None:
+            return
         for plot in self.figures.values():
             plot.yaxis.axis_label = spec.plane.ordinate
         self.outlines.show(spec)
         outcomes = [entry for fate, entry in palette.outcomes.items() if fate is not Fate.FAILED]
         texts = {
             "curves": legend([*self.outlines.entries(spec), *outcomes[1:3]]),
-            "basins": legend([*palette.channel_entries(spec.potential.channels), *reversed(outcomes)]),
+            "basins": legend([*palette.channel_entries(spec.potential.channels), *reversed(outcomes), *self.overlays.entries()]),
             "times": legend(list(reversed(outcomes))),
             "crossings": legend([*palette.crossing_entries, *reversed(outcomes)]),
             "characters": self._character_legend(""),
+            "origins": passage_legend(palette, spec.potential.channels),
         }
         for name, text in texts.items():
             self._legends[name].object = text
@@ -220,6 +227,8 @@ class MapsView:
             plot.add_layout(ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="escape time"), "below")
         plot.add_tools(self._hover.clone(renderers=[image]))
         self.outlines.draw(plot, full=name == "curves")
+        if name == "curves" or name in DOUBTED:
+            self.overlays.draw(plot, doubts=name in DOUBTED, coloured=name == "curves")
         self.marks.draw(plot, sections=name in ("curves", "basins"))
 
 
@@ -233,6 +242,6 @@ def _is_near(one: Window, other: Window) -> bool:
 def _blank() -> dict[str, list[Any]]:
     """A picture of one pixel that nobody has decided yet."""
     codes = np.zeros((1, 1), np.uint8)
-    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "crossings", "character")}
+    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "crossings", "character", "passage")}
     columns |= {"escape_time": [np.full((1, 1), np.nan, np.float32)]}
     return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "complete": [False]}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from html import escape
 
 import panel as pn
 import panel_material_ui as pmui
@@ -11,7 +12,7 @@ import panel_material_ui as pmui
 from app.orbit_requests import ChosenOrbit
 from app.palette import PAPER, PATCH_EDGE, Palette
 from app.views.wrapping import wrapping_row
-from engine import Orbit, Plane
+from engine import IndicatorVerdict, Orbit, Plane
 
 HINT = "Click a point of any map, or type a start, to see its orbit, its SALI and its R². Up to five are kept."
 _NUMBER = "0.[0000000000000000]"
@@ -47,6 +48,7 @@ class OrbitDesk:
         self.open_plane = _button("Open (x, px) at this h", actions.open_plane)
         self.note = pn.pane.HTML("", name="note", sizing_mode="stretch_width")
         self.text = pn.pane.HTML(HINT, name="verdict", sizing_mode="stretch_width")
+        self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width")
         self.button.on_click(lambda event: self._submit())
         self.choice.param.watch(lambda event: self._choose(event.new), "value")
         self._enable()
@@ -57,7 +59,8 @@ class OrbitDesk:
         starts = pn.Row(self.x, self.ordinate)
         buttons = wrapping_row(self.twin, self.remove, self.clear, self.open_plane, gap="2px")
         return pn.Column(
-            title, starts, self.button, self.choice, buttons, self.note, time_bar, self.text, width=370, margin=(0, 6)
+            title, starts, self.button, self.choice, buttons, self.note, time_bar, self.text, self.indicators,
+            width=370, margin=(0, 6),
         )  # fmt: skip
 
     def follow_plane(self, plane: Plane) -> None:
@@ -73,6 +76,16 @@ class OrbitDesk:
     def say(self, sentence: str) -> None:
         """A word on what is going on."""
         self.note.object = f"<p style='margin:4px 0'>{sentence}</p>"
+
+    def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
+        """What each indicator of chaos says of the orbit that is looked at."""
+        rows = "".join(
+            f"<tr><th scope=row style='text-align:left;vertical-align:top;font-weight:normal;opacity:0.7'>{one.name}</th>"
+            f"<td><b>{one.conclusion or 'no verdict'}</b><br>{escape(one.sentence)}</td></tr>"
+            for one in verdicts
+        )
+        style = "font-size:13px;border-spacing:8px 3px;margin-left:-8px"
+        self.indicators.object = f"<table aria-label='chaos indicators' style='{style}'>{rows}</table>" if rows else ""
 
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
         """The list, and the verdict on the chosen one with the numbers that it rests on."""

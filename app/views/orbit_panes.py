@@ -14,7 +14,13 @@ from app.views.figures import set_range, square_figure, with_help
 from app.views.outlines import Outlines
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
 
-TITLES = {"path": "The orbits", "sali": f"SALI (chaotic at or below {CHAOS_THRESHOLD:g})", "r2": "R² = x² + y²"}
+TITLES = {
+    "path": "The orbits",
+    "sali": f"SALI (chaotic at or below {CHAOS_THRESHOLD:g})",
+    "r2": "R² = x² + y²",
+    "exponent": "Lyapunov exponent until t",
+}
+_HISTORIES = ("sali", "exponent", "r2")
 _OTHERS_ALPHA = 0.35
 _NO_LINE = np.zeros(0), np.zeros(0)
 
@@ -28,12 +34,16 @@ class OrbitPanes:
         axes = {"x_range": Range1d(0.1, 10.0), "y_range": Range1d(LEAST_SALI, 10.0)}
         self.path = square_figure("path", TITLES["path"], x_axis_label="x", y_axis_label="y", **ranges)
         self.sali = square_figure("sali", TITLES["sali"], x_axis_label="t", y_axis_label="SALI", **logarithmic, **axes)
+        self.exponent = square_figure(
+            "exponent", TITLES["exponent"], x_axis_label="t", y_axis_label="(1/t) ln|w|", **logarithmic,
+            x_range=axes["x_range"], y_range=Range1d(1e-4, 10.0),
+        )  # fmt: skip
         self.r2 = square_figure(
             "r2", TITLES["r2"], x_axis_label="t", y_axis_label="R²", x_range=Range1d(0.0, 10.0), y_range=Range1d(0.0, 1.0)
         )
         self.r2.xaxis.formatter = BasicTickFormatter(use_scientific=False)
         self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
-        self._paths, self._histories = _lines("paths"), {name: _lines(f"{name}_histories") for name in ("sali", "r2")}
+        self._paths, self._histories = _lines("paths"), {name: _lines(f"{name}_histories") for name in _HISTORIES}
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
         self._trails = _lines("trails")
@@ -46,7 +56,7 @@ class OrbitPanes:
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """The figures, each with its explanation."""
-        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in (self.path, self.sali, self.r2)]
+        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in (self.path, self.sali, self.r2, self.exponent)]
 
     def show(self, potential: Potential, drawings: Sequence[OrbitDrawing | None], chosen: int) -> None:
         """Draw orbits by their places; None where there is none, or not yet. The chosen one stands out."""
@@ -54,7 +64,7 @@ class OrbitPanes:
         # The chosen one last, over the others.
         self._drawings.sort(key=lambda item: item[0] == chosen)
         alphas = [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in self._drawings]
-        for name in ("sali", "r2"):
+        for name in _HISTORIES:
             self._histories[name].data = self._columns([getattr(drawing, name) for _, drawing in self._drawings], alphas)
         self._show_paths(potential, alphas)
         self._scale_times()
@@ -84,7 +94,7 @@ class OrbitPanes:
         path.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
         path.add_glyph(self._trails, MultiLine(line_width=2.5, **style))
         path.add_glyph(self._points, Scatter(size=11, fill_color=colour, line_color=MARK_EDGE, line_width=1.5))
-        for name, plot in (("sali", self.sali), ("r2", self.r2)):
+        for name, plot in zip(_HISTORIES, (self.sali, self.exponent, self.r2), strict=True):
             plot.add_glyph(self._histories[name], MultiLine(**style))
             plot.add_layout(self._now)
         self.sali.add_layout(
@@ -101,6 +111,8 @@ class OrbitPanes:
         widest = max(float(drawing.r2[1].max()) for drawing in everything)
         if latest > earliest:
             set_range(self.sali.x_range, earliest, latest)
+            ends = [drawing.exponent[1] for drawing in everything if drawing.exponent[1].size]
+            set_range(self.exponent.y_range, 0.5 * min(float(end[-1]) for end in ends), 10.0)
         end_of_chosen = float(everything[-1].orbit.t[-1])
         for edges, end in ((self.r2.x_range, end_of_chosen or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
             set_range(edges, 0.0, end)

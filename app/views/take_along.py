@@ -9,11 +9,12 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from app.findings import Findings
 from app.orbit_requests import ChosenOrbit
-from app.pictures import TITLES
+from app.pictures import ON_DEMAND, TITLES
 from app.view_state import ViewState
 from app.views.wrapping import wrapping_row
-from engine import EscapeMap, RegularityMap
+from engine import EscapeMap
 
 SIDES = {"300 pixels": 300, "600 pixels": 600, "1200 pixels": 1200}
 """Sides of each map in a picture to take along."""
@@ -27,7 +28,7 @@ class TakeAlong:
     def __init__(self, state: ViewState, copy_link: Callable[[], None]) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
-        self._regularity: RegularityMap | None = None
+        self._findings = Findings()
         self._orbits: Sequence[ChosenOrbit] = ()
         self.link = pmui.Button(label="Copy the link", variant="outlined", size="small", sx={"textTransform": "none"})
         self.link.on_click(lambda event: copy_link())
@@ -48,12 +49,12 @@ class TakeAlong:
 
     def show_map(self, frame: EscapeMap) -> None:
         """The map to take along, once it is whole."""
-        self._frame, self._regularity = (frame if frame.complete else None), None
+        self._frame = frame if frame.complete else None
         self._enable()
 
-    def show_regularity(self, regularity: RegularityMap) -> None:
-        """What is judged of it."""
-        self._regularity = regularity if regularity.complete else None
+    def show_findings(self, findings: Findings) -> None:
+        """What is found out about it."""
+        self._findings = findings
 
     def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
         """The orbits to take along."""
@@ -75,16 +76,15 @@ class TakeAlong:
 
     def _png(self) -> BytesIO:
         self.picture.filename = self._named(".png")
-        pictures = [name for name in TITLES if name != "curves" and (name != "characters" or self._regularity is not None)]
+        there = {"characters": self._findings.regularity, "origins": self._findings.origins}
+        pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or there[name] is not None)]
         starts = tuple(one.start for one in self._orbits)
-        data = png_bytes(
-            self._whole(), pictures, self._state.colours, self.side.value, regularity=self._regularity, starts=starts
-        )
+        data = png_bytes(self._whole(), pictures, self._state.colours, self.side.value, findings=self._findings, starts=starts)
         return BytesIO(data)
 
     def _netcdf(self) -> BytesIO:
         self.maps.filename = self._named(".nc")
-        return BytesIO(netcdf_bytes(self._whole()))
+        return BytesIO(netcdf_bytes(self._whole(), self._findings))
 
     def _csv(self) -> BytesIO:
         self.orbits.filename = "orbits.csv" if self._frame is None else self._named("-orbits.csv")

@@ -68,21 +68,23 @@ def _evaluate(jets, row, tau):
 
 def carry_deviations(
     kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, cancel: Event | None = None
-) -> np.ndarray:
-    """SALI (n,) at `times` along a path (4, n), from two deviation vectors (2, 4) = δx, δy, δpx, δpy at its start.
+) -> tuple[np.ndarray, np.ndarray]:
+    """SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of the first of two deviation vectors, at `times` along a path (4, n).
 
-    The map of deviations over each interval is found for all intervals at once, then they are applied in turn, each
-    vector brought back to unit length every time. `times` may be at most a step of the integrator apart.
+    vectors (2, 4) = δx, δy, δpx, δpy at the start of the path. The map of deviations over each interval is found for all
+    intervals at once, then they are applied in turn, each vector brought back to unit length every time. `times` may be at
+    most a step of the integrator apart.
     """
     sali = np.empty(times.size)
+    stretch = np.ones(times.size)
     w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
     for begin in range(0, times.size - 1, _CHUNK):
         _stop_if(cancel)
         end = min(begin + _CHUNK, times.size - 1)
         matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
-        _apply(matrices, w, sali[begin + 1 : end + 1])
-    return sali
+        _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
+    return sali, 0.5 * np.cumsum(np.log(stretch))
 
 
 def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
@@ -99,7 +101,8 @@ def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.nd
 
 
 @kernel
-def _apply(matrices, w, sali):
+def _apply(matrices, w, sali, stretch):
+    """Apply the maps in turn to w (2, 4); `stretch` becomes the squared length of the first vector after each, from length 1."""
     moved = np.empty((2, 4))
     for n in range(sali.size):
         for v in range(2):
@@ -112,6 +115,8 @@ def _apply(matrices, w, sali):
                 square += total * total
             for row in range(4):
                 w[v, row] = moved[v, row] / np.sqrt(square)
+            if v == 0:
+                stretch[n] = square
         apart = 0.0
         opposed = 0.0
         for row in range(4):

@@ -93,7 +93,7 @@ def series_slope(jet, i, tau):
 
 
 @kernel
-def _extremum(jet, i, low, high):
+def find_extremum(jet, i, low, high):
     """Where the slope changes its sign between low and high."""
     rising = series_slope(jet, i, low) > 0.0
     for _ in range(_ROOT_ITERATIONS):
@@ -123,7 +123,7 @@ def count_upward_crossings(y_jet, i, duration):
         if below and y_high >= 0.0:
             count += 1
         elif y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
-            turning = series_value(y_jet, i, _extremum(y_jet, i, low, high))
+            turning = series_value(y_jet, i, find_extremum(y_jet, i, low, high))
             if (turning < 0.0) != (y_low < 0.0):
                 count += 1
         low, y_low, slope_low = high, y_high, slope_high

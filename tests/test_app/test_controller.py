@@ -7,12 +7,11 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import numpy as np
 import pytest
 
 from app.controller import Controller
 from app.view_state import ViewState
-from engine import EscapeMap, Fate, Jobs, Regularity, RegularityMap
+from engine import EscapeMap, Jobs
 
 
 class Recorder:
@@ -39,9 +38,6 @@ class Recorder:
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         self.tell("map arrived", frame)
-
-    def regularity_arrived(self, frame: EscapeMap, regularity: RegularityMap) -> None:
-        self.tell("regularity arrived", (frame, regularity))
 
     def map_stopped(self) -> None:
         self.tell("map stopped")
@@ -116,40 +112,6 @@ def test_an_energy_without_exits_is_refused_in_words(session: Session) -> None:
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.told if what == "map failed")
     assert "energy=50.0" in sentence
-
-
-def judged(recorder: Recorder) -> list[tuple[EscapeMap, RegularityMap]]:
-    return [value for what, value in recorder.told if what == "regularity arrived"]
-
-
-def test_bounded_orbits_are_judged_when_that_is_wanted(session: Session) -> None:
-    state, _, recorder, _ = session
-    state.energy = 0.2
-    recorder.wait_for(recorder.complete)
-    assert not judged(recorder)
-    state.judge = True
-    recorder.wait_for(lambda: bool(judged(recorder)) and judged(recorder)[-1][1].complete)
-    frame, regularity = judged(recorder)[-1]
-    assert np.any(frame.fate == Fate.BOUNDED)
-    assert np.all(regularity.character[frame.fate == Fate.BOUNDED] != Regularity.NOT_JUDGED)
-
-
-def test_each_new_map_is_judged_while_that_is_wanted(session: Session) -> None:
-    state, _, recorder, _ = session
-    state.param.update(judge=True, energy=0.22)
-    recorder.wait_for(lambda: bool(judged(recorder)))
-    state.energy = 0.21
-    recorder.wait_for(lambda: judged(recorder)[-1][0].spec.energy == 0.21 and judged(recorder)[-1][1].complete)
-    names = recorder.names()
-    assert names.index("regularity arrived") > names.index("map arrived")
-
-
-def test_nothing_is_judged_any_more_once_it_is_not_wanted(session: Session) -> None:
-    state, _, recorder, jobs = session
-    state.param.update(judge=True, energy=0.12, t_max=1e5)
-    recorder.wait_for(lambda: bool(judged(recorder)), seconds=60.0)
-    state.judge = False
-    assert jobs.in_flight == 0
 
 
 def previews(recorder: Recorder) -> list[EscapeMap]:

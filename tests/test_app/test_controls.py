@@ -96,6 +96,6 @@ def test_another_case_begins_anew(page: Page) -> None:
 
 
 def test_the_controls_follow_a_preset(page: Page) -> None:
-    page.state.param.update(case="II", plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe", judge=True)
-    shown = {name: getattr(page.controls, name).value for name in ("case", "plane", "energy", "t_max", "palette", "judge")}
-    assert shown == {"case": "II", "plane": Plane.X_Y, "energy": 0.22, "t_max": 1e3, "palette": "safe", "judge": True}
+    page.state.param.update(case="II", plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
+    shown = {name: getattr(page.controls, name).value for name in ("case", "plane", "energy", "t_max", "palette")}
+    assert shown == {"case": "II", "plane": Plane.X_Y, "energy": 0.22, "t_max": 1e3, "palette": "safe"}

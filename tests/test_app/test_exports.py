@@ -12,10 +12,11 @@ import xarray as xr
 from PIL import Image
 
 from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from app.findings import Findings
 from app.palette import COLOUR_BLIND_SAFE, PAPER
 from app.pictures import TITLES
 from app.printed_pictures import draw_picture
-from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, compute_map, integrate_orbit
+from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, compute_map, compute_origin_fates, compute_trust, integrate_orbit
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {
@@ -74,6 +75,16 @@ def test_netcdf_gives_the_map_back(name: str) -> None:
             assert back[key].attrs == variable.attrs
 
 
+def test_netcdf_takes_along_what_second_looks_have_found() -> None:
+    frame = compute_map(SPECS["a window"])
+    findings = Findings(trust=compute_trust(frame), origins=compute_origin_fates(frame.spec))
+    with xr.open_dataset(BytesIO(netcdf_bytes(frame, findings)), engine="h5netcdf") as back:
+        np.testing.assert_array_equal(back["trust"], findings.trust.trust)
+        np.testing.assert_array_equal(back["origin"], findings.origins.origin)
+        assert "character" not in back
+        assert "3: doubtful" in back["trust"].attrs["codes"]
+
+
 def table(text: str) -> tuple[list[str], list[dict[str, str]]]:
     lines = text.splitlines()
     comments = [line for line in lines if line.startswith("#")]
@@ -85,7 +96,7 @@ def test_a_table_of_orbits_gives_them_back_to_the_bit(orbit: Orbit) -> None:
     comments, rows = table(orbits_csv([orbit, other]))
     for number, one in enumerate((orbit, other), 1):
         own = [row for row in rows if row["orbit"] == str(number)]
-        for column in ("t", "x", "y", "px", "py", "sali", "r2"):
+        for column in ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2"):
             np.testing.assert_array_equal([float(row[column]) for row in own], getattr(one, column))
         assert f"# orbit {number}: {one.describe()}" in comments
         assert f"# orbit {number}: energy {one.energy!r}" in comments

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from app.help_texts import HELP_TEXTS, help_details
+from app.views.energy_curves import TITLES as CURVES
 from app.views.maps import TITLES
 
 
@@ -17,6 +18,10 @@ def test_every_picture_has_a_help_text() -> None:
 
 def test_every_pane_has_a_help_text() -> None:
     assert {"path", "sali", "r2", "distance", "histogram", "probabilities"} <= set(HELP_TEXTS)
+
+
+def test_every_measure_has_a_help_text() -> None:
+    assert {"uncertainty", "survival", *CURVES} <= set(HELP_TEXTS)
 
 
 @pytest.mark.parametrize("name", HELP_TEXTS)

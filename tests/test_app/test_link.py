@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.link import LONGEST_VALUE, read_link, write_link
 from app.palette import MOST_ORBITS, PALETTES
-from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
+from app.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, ViewState
 from engine import CASES, Plane, Window
 
 numbers = st.floats(-1e3, 1e3, allow_nan=False)
@@ -31,17 +31,17 @@ def parameters(link: str) -> dict[str, str]:
     st.sampled_from(list(RESOLUTION_CHOICES.values())),
     windows,
     st.lists(st.tuples(numbers, numbers), max_size=MOST_ORBITS).map(tuple),
-    st.booleans(),
+    st.sets(st.sampled_from(SWITCHES)),
     st.sampled_from(list(PALETTES)),
     st.integers(0, MOST_ORBITS - 1),
 )
 def test_a_link_holds_the_view_to_the_last_digit(
-    case, plane, energy, t_max, resolution, window, starts, judge, palette, look
+    case, plane, energy, t_max, resolution, window, starts, switched_on, palette, look
 ) -> None:
     chosen = {
         "case": case, "plane": plane, "energy": energy, "t_max": t_max, "resolution": resolution,
-        "window": window, "starts": starts, "judge": judge, "palette": palette,
-        "chosen": look if look < len(starts) else 0,
+        "window": window, "starts": starts, "palette": palette,
+        "chosen": look if look < len(starts) else 0, **{name: name in switched_on for name in SWITCHES},
     }  # fmt: skip
     values, problems = read_link(parameters(write_link(ViewState(**chosen))))
     assert not problems
@@ -107,7 +107,8 @@ def test_what_nobody_knows_is_ignored() -> None:
 
 @given(
     st.dictionaries(
-        st.sampled_from(["case", "plane", "h", "t_max", "resolution", "window", "orbits", "judge", "palette", "look"]), st.text()
+        st.sampled_from(["case", "plane", "h", "t_max", "resolution", "window", "orbits", "palette", "look", *SWITCHES]),
+        st.text(),
     )
 )
 def test_any_text_is_read_or_refused(hostile: dict[str, str]) -> None:

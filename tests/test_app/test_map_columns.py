@@ -6,9 +6,20 @@ import numpy as np
 import pytest
 
 from app import palette
-from app.map_columns import character_column, longest_typical_time, map_columns
+from app.map_columns import character_column, longest_typical_time, map_columns, passage_column
 from app.palette import PAPER
-from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Regularity, compute_map, judge_bounded_orbits
+from engine import (
+    CASES,
+    Certificate,
+    EscapeMap,
+    Fate,
+    MapSpec,
+    Plane,
+    Regularity,
+    compute_map,
+    compute_origin_fates,
+    judge_bounded_orbits,
+)
 
 
 @pytest.fixture(scope="module")
@@ -104,3 +115,16 @@ def test_the_time_scale_ends_at_a_round_number_above_nearly_all_times(escape_map
     high = longest_typical_time(escape_map)
     assert high in {step * 10.0**k for step in (1.0, 2.0, 5.0) for k in range(1, 6)}
     assert np.mean(escape_map.escape_time[escape_map.fate > 0] <= high) >= 0.99
+
+
+def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
+    origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.3, (45, 45), t_max=200.0))
+    colours = np.array(PAPER.passage_colours)[passage_column(origins)["passage"][0]]
+    seen = 0
+    for origin in range(5):
+        for fate in range(5):
+            where = (origins.origin == origin) & (origins.fate == fate)
+            assert set(colours[where]) <= {PAPER.passage_colour(origin, fate)}
+            seen += int(where.sum())
+    assert seen == np.sum(origins.fate >= 0)
+    assert set(colours[origins.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}

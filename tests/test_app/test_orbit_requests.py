@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import pytest
 
+from app.indicators_request import IndicatorsRequest
 from app.orbit_requests import ChosenOrbit, OrbitRequests
 from app.separation_request import SeparationRequest
 from app.twin_request import TwinRequest
 from app.view_state import ViewState
-from engine import Jobs, Plane, Separation, integrate_orbit
+from engine import IndicatorVerdict, Jobs, Plane, Separation, Verdict, integrate_orbit
 
 
 class Desk:
@@ -22,6 +23,7 @@ class Desk:
         self.orbits: tuple[ChosenOrbit, ...] = ()
         self.said: list[str] = []
         self.separations: list[tuple[tuple[int, int] | None, Separation | None]] = []
+        self.verdicts: list[tuple[IndicatorVerdict, ...]] = []
         self.changed = threading.Condition()
 
     def hear(self, act: Callable[[], None]) -> None:
@@ -37,6 +39,9 @@ class Desk:
 
     def show_separation(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         self.hear(lambda: self.separations.append((pair, separation)))
+
+    def show_verdicts(self, verdicts: Sequence[IndicatorVerdict]) -> None:
+        self.hear(lambda: self.verdicts.append(tuple(verdicts)))
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
@@ -179,6 +184,44 @@ def test_one_orbit_has_no_distance(session: Session) -> None:
     desk.wait_for(lambda: desk.all_here(1))
     SeparationRequest(state, jobs, desk.show_separation, desk.say, unlocked).follow(desk.orbits)
     assert desk.separations == [(None, None)]
+
+
+@pytest.mark.parametrize(("energy", "conclusion"), [(0.05, Verdict.REGULAR), (0.1, Verdict.CHAOTIC)])
+def test_a_bounded_orbit_is_judged_by_three_indicators(session: Session, energy: float, conclusion: Verdict) -> None:
+    state, _, desk, jobs = session
+    indicators = IndicatorsRequest(state, jobs, desk.show_verdicts, desk.say, unlocked)
+    state.param.update(energy=energy, t_max=1e4)
+    state.add_start((0.1, 0.05))
+    desk.wait_for(lambda: desk.all_here(1))
+    indicators.follow(desk.orbits)
+    desk.wait_for(lambda: len(desk.verdicts) == 2)
+    assert [len(verdicts) for verdicts in desk.verdicts] == [2, 3]
+    assert {verdict.conclusion for verdict in desk.verdicts[-1]} == {conclusion}
+
+
+def test_an_escaping_orbit_gets_no_verdict(session: Session) -> None:
+    state, _, desk, jobs = session
+    state.add_start((0.1, 0.05))
+    desk.wait_for(lambda: desk.all_here(1))
+    IndicatorsRequest(state, jobs, desk.show_verdicts, desk.say, unlocked).follow(desk.orbits)
+    assert [verdict.conclusion for verdict in desk.verdicts[-1]] == [None, None]
+    assert jobs.in_flight == 0
+
+
+def test_an_orbit_is_judged_once(session: Session) -> None:
+    state, _, desk, jobs = session
+    state.add_start((0.1, 0.05))
+    desk.wait_for(lambda: desk.all_here(1))
+    indicators = IndicatorsRequest(state, jobs, desk.show_verdicts, desk.say, unlocked)
+    for _ in range(2):
+        indicators.follow(desk.orbits)
+    assert len(desk.verdicts) == 1
+
+
+def test_without_an_orbit_there_is_no_verdict(session: Session) -> None:
+    state, _, desk, jobs = session
+    IndicatorsRequest(state, jobs, desk.show_verdicts, desk.say, unlocked).follow(())
+    assert desk.verdicts == [()]
 
 
 def test_on_the_energy_plane_each_start_has_its_own_energy(session: Session) -> None:

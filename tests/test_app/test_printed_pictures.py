@@ -6,11 +6,24 @@ import numpy as np
 import pytest
 from PIL import Image, ImageColor, ImageFont
 
-from app.palette import LIGHT, PALETTES, PAPER, Palette
+from app.findings import Findings
+from app.palette import DOUBT, LIGHT, PALETTES, PAPER, Palette
 from app.pictures import TITLES, picture_pixels
 from app.printed_axes import label_axis, typed
 from app.printed_pictures import draw_picture, provenance_line
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, compute_map, judge_bounded_orbits
+from engine import (
+    CASES,
+    EscapeMap,
+    Fate,
+    MapSpec,
+    Plane,
+    Regularity,
+    Trust,
+    compute_map,
+    compute_trust,
+    find_stable_manifolds,
+    judge_bounded_orbits,
+)
 
 SIDE = 240
 
@@ -74,7 +87,7 @@ def test_slow_escapes_have_the_later_colours_and_the_rest_those_of_their_outcome
 def test_orbits_that_have_been_judged_show_what_they_are() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
     regularity = judge_bounded_orbits(whole)
-    pixels = picture_pixels(whole, "characters", PAPER, regularity=regularity)[::-1]
+    pixels = picture_pixels(whole, "characters", PAPER, Findings(regularity=regularity))[::-1]
     for character, colour in ((Regularity.REGULAR, PAPER.characters[1]), (Regularity.CHAOTIC, PAPER.characters[2])):
         where = regularity.character == character
         assert where.any()
@@ -118,7 +131,7 @@ def test_a_side_out_of_range_is_named_with_what_is_legal(escape_map: EscapeMap, 
 
 
 def test_a_picture_that_nobody_knows_is_named_with_those_there_are(escape_map: EscapeMap) -> None:
-    with pytest.raises(ValueError, match="picture='orbits': must be one of curves, basins, times, crossings, characters"):
+    with pytest.raises(ValueError, match=f"picture='orbits': must be one of {', '.join(TITLES)}"):
         picture_pixels(escape_map, "orbits", PAPER)
 
 
@@ -211,3 +224,20 @@ def test_a_long_legend_wraps_within_the_page(escape_map: EscapeMap) -> None:
     feet = [image.height - inner_edges(image, side)[3] for image, side in ((small, 100), (large, 600))]
     assert feet[0] > feet[1]
     assert np.all(np.asarray(small)[:, -1] == 255)
+
+
+def test_doubtful_pixels_are_marked_where_that_was_found() -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
+    trust = compute_trust(whole)
+    pixels = picture_pixels(whole, "basins", PAPER, Findings(trust=trust))[::-1]
+    marked = np.all(pixels == ImageColor.getcolor(DOUBT, "RGBA"), axis=-1)
+    np.testing.assert_array_equal(marked, trust.trust == Trust.DOUBTFUL)
+    assert marked.any()
+
+
+@pytest.mark.parametrize(("picture", "drawn_over"), [("basins", True), ("times", False)])
+def test_manifolds_are_printed_over_the_basins_alone(picture: str, drawn_over: bool) -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
+    found = Findings(manifolds=find_stable_manifolds(CASES["II"], 0.3, 1))
+    plain, printed = (draw_picture(whole, picture, PAPER, SIDE, findings=findings) for findings in (Findings(), found))
+    assert (plain.tobytes() != printed.tobytes()) is drawn_over

@@ -18,7 +18,10 @@ from engine import (
     MapSpec,
     OrbitSpec,
     Plane,
+    PreviewSpec,
+    RegularitySpec,
     SeparationSpec,
+    TwinAnswer,
     TwinSpec,
     compute_map,
     compute_separation,
@@ -82,7 +85,7 @@ def test_the_last_frame_is_the_map() -> None:
 def test_the_bounded_orbits_of_a_kept_map_are_judged_without_computing_it_again() -> None:
     jobs, second = Jobs(), Inbox()
     first = kept_map(jobs)
-    jobs.request_regularity(QUICK, second.result, second.error)
+    jobs.request(RegularitySpec(QUICK), second.result, second.error)
     assert second.done.wait(30)
     expected = judge_bounded_orbits(first)
     np.testing.assert_array_equal(second.results[-1].character, expected.character)
@@ -90,7 +93,7 @@ def test_the_bounded_orbits_of_a_kept_map_are_judged_without_computing_it_again(
 
 def test_a_map_not_kept_is_computed_to_judge_its_orbits() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request_regularity(QUICK, inbox.result, inbox.error)
+    jobs.request(RegularitySpec(QUICK), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert inbox.results[-1].complete
 
@@ -155,7 +158,7 @@ def test_a_longer_t_max_starts_from_the_kept_map(monkeypatch: pytest.MonkeyPatch
 def test_an_orbit_is_the_one_that_integrate_orbit_gives() -> None:
     jobs, inbox = Jobs(), Inbox()
     spec = OrbitSpec(CASES["I"], (0.1, 0.0, 0.05, 0.5), 500.0)
-    jobs.request_orbit(spec, inbox.result, inbox.error)
+    jobs.request(spec, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     np.testing.assert_array_equal(inbox.results[0].sali, integrate_orbit(spec.potential, spec.state, spec.t_max).sali)
 
@@ -164,32 +167,33 @@ def test_a_twin_is_the_one_that_find_twin_gives() -> None:
     # One thread: the search must not wait for the very worker it runs on.
     with ThreadPoolExecutor(1) as executor:
         jobs, inbox = Jobs(executor), Inbox()
-        jobs.request_twin(TWIN, inbox.result, inbox.error)
+        jobs.request(TWIN, inbox.result, inbox.error)
         assert inbox.done.wait(30)
-    assert inbox.results == [find_twin(TWIN.potential, TWIN.plane, TWIN.energy, TWIN.x, TWIN.ordinate, TWIN.t_max)]
+    expected = find_twin(TWIN.potential, TWIN.plane, TWIN.energy, TWIN.x, TWIN.ordinate, TWIN.t_max)
+    assert [answer.twin for answer in inbox.results] == [expected]
 
 
 def test_that_there_is_no_twin_is_an_answer_and_kept() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
     spec = replace(TWIN, energy=0.1)
-    jobs.request_twin(spec, first.result, first.error)
+    jobs.request(spec, first.result, first.error)
     assert first.done.wait(30)
     wait_until_idle(jobs)
-    jobs.request_twin(spec, second.result, second.error)
-    assert first.results == second.results == [None]
+    jobs.request(spec, second.result, second.error)
+    assert first.results == second.results == [TwinAnswer(None)]
     assert jobs.in_flight == 0
 
 
 def test_a_twin_of_a_forbidden_start_is_answered_with_its_error() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request_twin(replace(TWIN, ordinate=2.0), inbox.result, inbox.error)
+    jobs.request(replace(TWIN, ordinate=2.0), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert isinstance(inbox.errors[0], ValueError)
 
 
 def test_a_cancelled_orbit_never_arrives() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request_orbit(OrbitSpec(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e6), inbox.result, inbox.error).cancel()
+    jobs.request(OrbitSpec(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e6), inbox.result, inbox.error).cancel()
     wait_until_idle(jobs)
     time.sleep(0.3)
     assert not inbox.results
@@ -198,7 +202,7 @@ def test_a_cancelled_orbit_never_arrives() -> None:
 
 def test_a_bad_request_is_answered_with_its_error() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request_orbit(OrbitSpec(CASES["I"], (0.1, 0.0, 0.05, float("nan")), 500.0), inbox.result, inbox.error)
+    jobs.request(OrbitSpec(CASES["I"], (0.1, 0.0, 0.05, float("nan")), 500.0), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert isinstance(inbox.errors[0], ValueError)
 
@@ -226,18 +230,18 @@ def test_any_executor_serves() -> None:
 def test_a_quick_look_comes_once_and_is_kept() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.3)
-    jobs.request_preview(spec, first.result, first.error)
+    jobs.request(PreviewSpec(preview_spec(spec)), first.result, first.error)
     assert first.first.wait(30)
     wait_until_idle(jobs)
-    jobs.request_preview(spec, second.result, second.error)
+    jobs.request(PreviewSpec(preview_spec(spec)), second.result, second.error)
     assert second.results == first.results
-    assert first.results[0].spec == preview_spec(spec)
+    assert first.results[0].frame.spec == preview_spec(spec)
 
 
 def test_two_orbits_are_compared() -> None:
     jobs, inbox = Jobs(), Inbox()
     first, second = (0.1, 0.0, 0.05, 0.6), (0.1001, 0.0, 0.05, 0.6)
-    jobs.request_separation(SeparationSpec(CASES["I"], first, second, 3.0), inbox.result, inbox.error)
+    jobs.request(SeparationSpec(CASES["I"], first, second, 3.0), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     expected = compute_separation(CASES["I"], first, second, 3.0)
     np.testing.assert_array_equal(inbox.results[0].distance, expected.distance)

@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map, compute_trust
 
 SPECS = [
     MapSpec(CASES["III"], Plane.X_PX, 0.4, (30, 31), t_max=300.0),
@@ -57,3 +57,18 @@ def test_a_cancelled_map_holds_the_bands_so_far() -> None:
     assert not result.complete
     assert np.any(result.fate >= 1)
     assert np.any(result.fate == Fate.NOT_COMPUTED)
+
+
+def test_a_map_can_be_asked_for_with_its_trust_mask() -> None:
+    spec = MapSpec(CASES["II"], Plane.X_PX, 0.2, (40, 40), t_max=500.0)
+    whole = compute_map(spec, with_trust=True)
+    np.testing.assert_array_equal(whole.trust, compute_trust(compute_map(spec)).trust)
+    dataset = whole.to_xarray()
+    np.testing.assert_array_equal(dataset["trust"], whole.trust)
+    assert "3: doubtful" in dataset["trust"].attrs["codes"]
+
+
+def test_a_map_has_no_trust_mask_unless_it_is_asked_for() -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (8, 8), t_max=50.0))
+    assert whole.trust is None
+    assert "trust" not in whole.to_xarray()

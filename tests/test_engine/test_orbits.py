@@ -217,6 +217,74 @@ def test_sali_of_a_chaotic_orbit_follows_nearby_orbits_apart() -> None:
     assert chaotic.sali[-1] < 1e-6
 
 
+# The Lyapunov exponent.
+
+
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
+def test_the_lyapunov_exponent_is_that_of_scipys_variational_equations(name: str, energy: float) -> None:
+    start = interior_starts(name, energy, 20)[0]
+    orbit = integrate_orbit(CASES[name], start, 80.0)
+    pick = slice(orbit.t.size // 20, None, orbit.t.size // 20)
+    flat = np.concatenate([start, DEVIATION_VECTORS.ravel()])
+    both = solve_ivp(variational_equations(CASES[name]), (0, 80), flat, "DOP853", rtol=1e-12, atol=1e-12, t_eval=orbit.t[pick]).y
+    exponent = np.log(np.linalg.norm(both[4:8], axis=0)) / orbit.t[pick]
+    np.testing.assert_allclose(orbit.lyapunov_exponent[pick], exponent, rtol=1e-6, atol=1e-9)
+
+
+# Along the axis x = 0 of Case III the orbit is y = A sin t, A² = 2h, and deviations from the axis obey Mathieu's equation.
+def test_the_lyapunov_exponent_of_a_straight_line_orbit_is_mathieus() -> None:
+    energy = 0.6
+
+    def mathieu(t: float, d: np.ndarray) -> list[float]:
+        return [d[1], -(1 - 4 * energy * np.sin(t) ** 2) * d[0]]
+
+    columns = [solve_ivp(mathieu, (0, np.pi), column, "DOP853", rtol=1e-12, atol=1e-12).y[:, -1] for column in np.eye(2)]
+    multiplier = np.abs(np.linalg.eigvals(np.column_stack(columns))).max()
+    orbit = integrate_orbit(CASES["III"], [0.0, 0.0, 0.0, np.sqrt(2 * energy)], 2000.0)
+    assert orbit.fate == Fate.BOUNDED
+    assert multiplier > 1.5
+    assert orbit.lyapunov_exponent[-1] == pytest.approx(np.log(multiplier) / np.pi, rel=3e-3)
+
+
+def test_the_lyapunov_exponent_falls_like_a_logarithm_over_t_on_a_torus() -> None:
+    # In an island of Hénon & Heiles at E = 1/8.
+    orbit = integrate_orbit(CASES["II"], [0.558, 0.0, 0.0, 0.2334], 1e4)
+    late = orbit.t > 1000.0
+    ratio = orbit.lyapunov_exponent[late] * orbit.t[late] / np.log(orbit.t[late])
+    assert 0.5 < ratio.min() < ratio.max() < 1.0
+    assert orbit.lyapunov_exponent[-1] < 1e-3
+
+
+def test_mirror_images_grow_alike() -> None:
+    """Their deviation vectors are no mirror images, which must not matter once the fastest growing direction has won."""
+    start = interior_starts("II", 0.1666, 20)[0]
+    orbit, image = (integrate_orbit(CASES["II"], start * signs, 1000.0) for signs in ([1, 1, 1, 1], [1, -1, 1, -1]))
+    growth = orbit.lyapunov_exponent[-1] * 1000.0
+    assert growth > 100.0
+    assert image.lyapunov_exponent[-1] * 1000.0 == pytest.approx(growth, abs=4.0)
+
+
+def test_a_chaotic_orbit_run_backwards_grows_alike() -> None:
+    start = interior_starts("II", 0.1666, 20)[2]
+    orbit = integrate_orbit(CASES["II"], start, 300.0)
+    back = integrate_orbit(CASES["II"], states_of(orbit)[-1] * [1, 1, -1, -1], 300.0)
+    np.testing.assert_allclose(states_of(back)[-1] * [1, 1, -1, -1], start, atol=1e-4)
+    growth = orbit.lyapunov_exponent[-1] * 300.0
+    assert growth > 20.0
+    assert back.lyapunov_exponent[-1] * 300.0 == pytest.approx(growth, abs=2.0)
+
+
+def test_there_is_no_lyapunov_exponent_of_no_time() -> None:
+    orbit = integrate_orbit(CASES["II"], start_with_fate("II", Fate.BOUNDED), 5.0)
+    assert np.isnan(orbit.lyapunov_exponent[0])
+    assert np.isfinite(orbit.lyapunov_exponent[1:]).all()
+
+
+def test_all_arrays_count_as_bytes(bounded: tuple[str, np.ndarray, Orbit]) -> None:
+    arrays = [value for value in vars(bounded[2]).values() if isinstance(value, np.ndarray)]
+    assert bounded[2].nbytes == sum(array.nbytes for array in arrays) == 8 * bounded[2].t.nbytes
+
+
 # Bad input.
 
 

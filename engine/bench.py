@@ -1,0 +1,50 @@
+"""What a job works with: the pool, the wish to stop, and the maps that are there already."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Executor
+from dataclasses import dataclass
+from typing import Any
+
+from engine.escape_maps import EscapeMap
+from engine.map_specs import MapSpec
+from engine.orbit_batches import default_executor
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """The place where one job is done.
+
+    Attributes
+    ----------
+    executor
+        Any `concurrent.futures.Executor` for the computing; None for the pool of this process.
+    cancel
+        Set when nobody waits for the job any more.
+    publish
+        Hands a result on that is not complete yet.
+    map_at_hand
+        The map of a request, finished: kept, or computed for the purpose, or None when cancelled.
+    answer
+        What another request of `engine.job_specs` comes to: kept, or made for the purpose.
+    """
+
+    executor: Executor | None
+    cancel: threading.Event
+    publish: Callable[[Any], None]
+    map_at_hand: Callable[[MapSpec], EscapeMap | None]
+    answer: Callable[[Any], Any]
+
+    def whole_map(self, spec: MapSpec) -> EscapeMap:
+        """The map of a request, finished. Raises CancelledError when nobody waits for it any more."""
+        whole = self.map_at_hand(spec)
+        if whole is None:
+            raise CancelledError
+        return whole
+
+    def on_pool[Result](self, compute: Callable[..., Result], *arguments: Any, **options: Any) -> Result:
+        """What one call comes to, made by a thread that is there for computing."""
+        executor = self.executor or default_executor()
+        return executor.submit(compute, *arguments, cancel=self.cancel, **options).result()

@@ -1,0 +1,24 @@
+"""Switches write into the view state and follow it."""
+
+from __future__ import annotations
+
+from app.view_state import SWITCHES, ViewState
+from app.views.switches import LABELS, Switches
+
+
+def test_there_is_a_labelled_switch_for_each() -> None:
+    switches = Switches(ViewState())
+    assert list(switches.widgets) == list(SWITCHES) == list(LABELS)
+
+
+def test_a_switch_writes_into_the_state() -> None:
+    state = ViewState()
+    Switches(state).widgets["trust"].value = True
+    assert [name for name in SWITCHES if getattr(state, name)] == ["trust"]
+
+
+def test_a_switch_follows_the_state() -> None:
+    state = ViewState(judge=True)
+    switches = Switches(state)
+    state.param.update(judge=False, manifolds=True)
+    assert [name for name, widget in switches.widgets.items() if widget.value] == ["manifolds"]
