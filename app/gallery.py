@@ -7,8 +7,8 @@ from typing import Any
 
 from engine import Plane, Window
 
-GROUPS = ("The paper", "Places")
-"""The kinds of figures that the paper has, and places that were found by zooming."""
+GROUPS = ("The paper", "Places", "Why")
+"""The kinds of figures that the paper has, places that were found by zooming, and what explains both."""
 
 _SHOWN = ("key", "title", "caption", "group", "picture")
 
@@ -27,7 +27,7 @@ class Preset:
         One of `GROUPS`.
     picture
         Which of `app.pictures.TITLES` stands on its thumbnail.
-    case, plane, energy, window, t_max, resolution, judge, starts
+    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, origins, measures
         As in `ViewState`.
     """
 
@@ -42,15 +42,19 @@ class Preset:
     window: Window | None = None
     t_max: float = 1e5
     resolution: int = 225
-    judge: bool = False
     starts: tuple[tuple[float, float], ...] = ()
+    judge: bool = False
+    trust: bool = False
+    manifolds: bool = False
+    origins: bool = False
+    measures: bool = False
 
     def values(self) -> dict[str, Any]:
         """The values of the view state's attributes that show it."""
         return {part.name: getattr(self, part.name) for part in fields(self) if part.name not in _SHOWN}
 
 
-_PAPER, _PLACES = GROUPS
+_PAPER, _PLACES, _WHY = GROUPS
 
 # fmt: off
 PRESETS: tuple[Preset, ...] = (
@@ -217,6 +221,34 @@ PRESETS: tuple[Preset, ...] = (
         starts=((0.05, 0.31), (0.11, 0.01), (0.2, 0.46), (0.48, 0.2)),
         caption="In the calm light eye orbits leave at once. Outside, arms of ever longer delay wind towards the grey shore of a "
         "regular region, and where they reach it orbits may linger for thousands of time units.",
+    ),
+    Preset(
+        key="threads", title="Where the colours meet", group=_WHY, picture="curves", manifolds=True,
+        case="III", plane=Plane.X_PX, energy=0.45, t_max=1e4, starts=((0.1, 0.6), (0.55, 0.12)),
+        caption="Orbits that neither leave nor turn back at an exit, but stay with its Lyapunov orbit for ever, fill a tube: its "
+        "stable manifold. Cut by the section the tubes are these threads, and each thread parts starts that leave from starts "
+        "that turn back. The basins have no other boundaries.",
+    ),
+    Preset(
+        key="passages", title="From where to where", group=_WHY, picture="origins", origins=True,
+        case="III", plane=Plane.X_PX, energy=0.35, t_max=1e4, starts=((0.3, 0.45), (-0.3, -0.45)),
+        caption="Each orbit followed both ways: the hue is the exit, the tone the entrance. Smooth tiles are quick passages with "
+        "one history; in the fabric between them the future and the past are both a lottery. What is grey came from nowhere and "
+        "goes nowhere.",
+    ),
+    Preset(
+        key="doubt", title="Which pixels to believe", group=_WHY, picture="basins", trust=True,
+        case="I", plane=Plane.X_PX, energy=0.17, t_max=1e4, starts=((0.31, 0.05), (-0.2, 0.2)),
+        caption="Every pixel with a neighbour of another colour was computed again, from a start moved by 0.00000000001 and at "
+        "another tolerance. Black ones changed: no computer tells where these orbits go. The picture as a whole, and its shares, "
+        "are none the worse for it.",
+    ),
+    Preset(
+        key="measures", title="How fractal?", group=_WHY, picture="basins", measures=True,
+        case="II", plane=Plane.X_PX, energy=0.25, t_max=1e4, starts=((0.35, 0.05), (-0.3, 0.1)),
+        caption="Hénon and Heiles' potential with three exits. The measures below say how mixed the colours are, whether all "
+        "three share one boundary, and how slowly better knowledge of the start helps: press the button there to have pairs of "
+        "orbits followed.",
     ),
 )
 """In the order in which they are shown."""

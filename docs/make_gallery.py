@@ -18,8 +18,12 @@ from app.pictures import picture_pixels
 from app.view_state import ViewState
 from engine import (
     EscapeMap,
+    StableManifolds,
     compute_map,
+    compute_origin_fates,
+    compute_trust,
     find_lyapunov_orbits,
+    find_stable_manifolds,
     integrate_orbit,
     judge_bounded_orbits,
     start_states,
@@ -49,17 +53,28 @@ def main(keys: list[str]) -> None:
 def _thumbnail(preset: Preset) -> Image.Image:
     """RGBA; transparent where nothing can start, so that it goes with a light page and with a dark one."""
     frame = compute_map(replace(ViewState(**preset.values()).map_spec(), resolution=(SIDE, SIDE)))
-    findings = Findings(regularity=judge_bounded_orbits(frame) if preset.judge else None)
+    findings = _findings(frame, preset)
     picture = Image.fromarray(picture_pixels(frame, preset.picture, PAPER, findings))
-    return _with_lines(picture, frame, preset) if preset.picture == "curves" else picture
+    return _with_lines(picture, frame, preset, findings.manifolds) if preset.picture == "curves" else picture
 
 
-def _with_lines(picture: Image.Image, frame: EscapeMap, preset: Preset) -> Image.Image:
+def _findings(frame: EscapeMap, preset: Preset) -> Findings:
+    spec = frame.spec
+    return Findings(
+        regularity=judge_bounded_orbits(frame) if preset.judge else None,
+        trust=compute_trust(frame) if preset.trust else None,
+        origins=compute_origin_fates(spec) if preset.origins else None,
+        manifolds=find_stable_manifolds(spec.potential, preset.energy, 2) if preset.manifolds else None,
+    )
+
+
+def _with_lines(picture: Image.Image, frame: EscapeMap, preset: Preset, manifolds: StableManifolds | None) -> Image.Image:
     window = frame.spec.window
     large = picture.resize((SIDE * _FINER, SIDE * _FINER), Image.Resampling.NEAREST)
     scale = SIDE * _FINER / np.array([window.x_high - window.x_low, window.ordinate_low - window.ordinate_high])
     draw = ImageDraw.Draw(large)
-    for x, y, colour, width in _lines(frame, preset):
+    threads = [(arc.x, arc.px, PAPER.channels[arc.channel - 1], 0.7) for arc in manifolds.arcs] if manifolds is not None else []
+    for x, y, colour, width in threads or _lines(frame, preset):
         points = (np.column_stack([x, y]) - (window.x_low, window.ordinate_high)) * scale
         draw.line([tuple(point) for point in points.tolist()], fill=colour, width=round(width * _FINER), joint="curve")
     return large.resize((SIDE, SIDE), Image.Resampling.BOX)
