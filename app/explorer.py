@@ -27,6 +27,7 @@ from app.views.marks import NO_POINTS
 from app.views.numbers import NumbersView
 from app.views.orbit_desk import DeskActions, OrbitDesk
 from app.views.orbit_panes import OrbitPanes
+from app.views.orbit_row import OrbitRow
 from app.views.progress import ProgressView
 from app.views.separation_pane import SeparationPane
 from app.views.take_along import TakeAlong
@@ -89,6 +90,7 @@ class Explorer:
         )
         self.panes = OrbitPanes()
         self.separation_pane: SeparationPane = SeparationPane()
+        self.orbit_row = OrbitRow(self.panes, self.separation_pane)
         self.time_bar = TimeBar(self.panes.set_time)
         self.numbers = NumbersView(locked(lambda: self._count_in(None)))
         self.words = WordsView(state)
@@ -125,6 +127,7 @@ class Explorer:
         """Another theme."""
         self.maps.set_dark(dark)
         self.panes.outlines.set_dark(dark)
+        self.orbit_row.set_dark(dark)
         self.why.set_dark(dark)
 
     def _begin(self) -> None:
@@ -252,6 +255,7 @@ class Explorer:
             self.panes.show(self.state.potential, there, chosen)
             looked_at = there[chosen] if orbits else None
             self.time_bar.follow(float(looked_at.orbit.t[-1]) if looked_at is not None else None)
+            self.orbit_row.follow(sum(one is not None for one in there))
             self.separation.follow(orbits)
             self.indicators.follow(orbits)
             self.take_along.show_orbits(orbits)

@@ -9,9 +9,9 @@ class Certificate(IntEnum):
     """What the word bounded rests on, strongest claim about this very orbit first.
 
     ``NONE`` stands where nothing is called bounded. ``INTEGRATED``: followed to t_max. ``CLOSED``: its energy is below
-    every saddle. ``QUASI_PERIODIC``: its weighted averages converge as only those of a torus do. ``ENCLOSED``: invariant
-    curves of certified orbits part it from every exit; it may be chaotic itself. ``MIRRORED``: the mirror image of an orbit
-    certified early.
+    every saddle. ``QUASI_PERIODIC``: its weighted averages converge as those of a torus do, and of very few other orbits.
+    ``ENCLOSED``: invariant curves of certified orbits part it from every exit; it may be chaotic itself. ``MIRRORED``: the
+    mirror image of an orbit certified early.
     """
 
     NONE = 0
@@ -26,7 +26,7 @@ _SENTENCES = {
     Certificate.NONE: "",
     Certificate.INTEGRATED: "followed to t_max",
     Certificate.CLOSED: "its energy is below every saddle",
-    Certificate.QUASI_PERIODIC: "certified: quasi-periodic, on an invariant torus",
+    Certificate.QUASI_PERIODIC: "certified: quasi-periodic, as on an invariant torus",
     Certificate.ENCLOSED: "certified: invariant curves part it from every exit",
     Certificate.MIRRORED: "certified: mirror image of a certified orbit",
 }

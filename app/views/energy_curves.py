@@ -25,6 +25,8 @@ TITLES = {
 }
 START, STOP = "Sweep the energies", "Stop"
 _SECOND = LAW_COLOURS["exponential"]
+_NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": []}
+_DASH = "8 8"
 _COLUMNS = ("h", "s_b", "s_bb", "exponent", "exponent_low", "exponent_high", "mean_escape_time", "median_escape_time")
 
 
@@ -49,7 +51,7 @@ class EnergyCurvesView:
         self.text = pn.pane.HTML("", name="sweep", margin=(8, 10))
         energies = Range1d(0.0, 1.0)
         self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="energy_points")
-        self._shares = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="share_curves")
+        self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         logarithmic = {"escapes": {"y_axis_type": "log"}}
         self.figures = {
@@ -76,13 +78,20 @@ class EnergyCurvesView:
         """Draw what is known; None takes it away."""
         self.shown = curves
         if curves is None:
-            self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, {"xs": [], "ys": [], "colour": []}
+            self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, _NO_SHARES
             self.text.object = ""
             return
         self.points.data = {name: curves.energies if name == "h" else curves.curve(name) for name in _COLUMNS}
         shares = curves.shares.T
         colours = [self._palette.bounded, *self._palette.channels[: len(shares) - 1]]
-        self._shares.data = {"xs": [curves.energies] * len(shares), "ys": list(shares), "colour": colours}
+        # Mirror images have the same share: dashed curves, drawn last, let solid ones be seen through.
+        order = sorted(range(len(shares)), key=_is_dashed)
+        self._shares.data = {
+            "xs": [curves.energies] * len(shares),
+            "ys": [shares[k] for k in order],
+            "colour": [colours[k] for k in order],
+            "dash": [_DASH if _is_dashed(k) else "solid" for k in order],
+        }
         swept = curves.spec.energies
         if len(swept) > 1:
             set_range(self.figures["shares"].x_range, swept[0], swept[-1])
@@ -119,7 +128,7 @@ class EnergyCurvesView:
         return [pn.Row(self.button, self.text, sizing_mode="stretch_width"), *columns]
 
     def _draw(self) -> None:
-        shares = self.figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2))
+        shares = self.figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         assert shares is not None
         drawn = {
             "entropies": {"s_b": MEASURED, "s_bb": _SECOND},
@@ -140,6 +149,11 @@ def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str
     points = plot.add_glyph(source, Scatter(x="h", y=column, size=5, fill_color=colour, line_color=colour))
     tooltips = [("h", "@h{0.0000}"), (column.replace("_", " "), f"@{column}{{0.0000}}")]
     plot.add_tools(HoverTool(tooltips=tooltips, renderers=[points], mode="vline", visible=False))
+
+
+def _is_dashed(code: int) -> bool:
+    """Whether the curve of a channel, or with 0 of bounded starts, is dashed."""
+    return code > 0 and code % 2 == 0
 
 
 def _key(entries: dict[str, str]) -> pn.viewable.Viewable:

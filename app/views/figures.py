@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import panel as pn
@@ -13,6 +14,11 @@ from app.palette import DARK, LIGHT
 
 FRAME = 300
 """Side of each picture in pixels: four fit a screen of 1600, one fits a phone of 420."""
+
+_LETTERS = "Roboto, Helvetica, Arial, sans-serif"
+
+PANE = FRAME + 75
+"""Width of a picture with its axes."""
 
 
 def map_figure(name: str, title: str, ranges: tuple[Range1d, Range1d], spans: tuple[Span, Span]) -> figure:
@@ -33,6 +39,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot.center = []
     plot.title.text_font_size = "14px"
     plot.axis.axis_label_text_font_style = "normal"
+    plot.axis.major_tick_line_color = plot.axis.minor_tick_line_color = None
     # The page's theme gives the same to all figures that it knows from the start, and their colours.
     plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     return plot
@@ -41,7 +48,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
 def with_help(picture: pn.viewable.Viewable, name: str, *below: pn.viewable.Viewable) -> pn.Column:
     """A picture over what belongs to it and its explanation."""
     helping = pn.pane.HTML(help_details(name), width=FRAME + 60, margin=(0, 5))
-    return pn.Column(picture, *below, helping, margin=(0, 6), width=FRAME + 75)
+    return pn.Column(picture, *below, helping, margin=(0, 6), width=PANE)
 
 
 def set_range(edges: Range1d, low: float, high: float) -> None:
@@ -49,9 +56,15 @@ def set_range(edges: Range1d, low: float, high: float) -> None:
     edges.update(start=low, end=high, reset_start=low, reset_end=high)
 
 
+def set_decades(edges: Range1d, low: float, high: float) -> None:
+    """Show whole decades of a logarithmic axis from below `low`, and a little more than `high`: marks stand at powers of ten."""
+    set_range(edges, 10.0 ** math.floor(math.log10(low)), 1.3 * high)
+
+
 def dress(plot: figure, *, dark: bool) -> None:
-    """The colours of a light page or a dark one, for a figure that comes later than the page."""
+    """The letters and colours of a light page or a dark one, for a figure that comes later than the page."""
     inks = DARK if dark else LIGHT
+    plot.axis.axis_label_text_font = plot.axis.major_label_text_font = _LETTERS
+    plot.axis.axis_label_text_font_size, plot.axis.major_label_text_font_size = "12px", "11px"
     plot.title.text_color = plot.axis.axis_label_text_color = inks.text
     plot.axis.major_label_text_color = plot.axis.axis_line_color = inks.quiet
-    plot.axis.major_tick_line_color = plot.axis.minor_tick_line_color = inks.quiet

@@ -53,6 +53,7 @@ class MapsView:
         self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
         self._mappers = {name: LinearColorMapper() for name in TITLES}
         self._spec: MapSpec | None = None
+        self._judged = ""
         self._home: Window | None = None
         self._rest: Any = None
         self._following = False
@@ -98,7 +99,7 @@ class MapsView:
         """Paint a frame; the ranges follow a new window. `quickly` changes no more than it must, for a frame in passing."""
         if frame.spec != self._spec:
             self._follow(frame.spec)
-            self._spec = frame.spec
+            self._spec, self._judged = frame.spec, ""
             if quickly:
                 self.outlines.show(frame.spec, quickly=True)
             else:
@@ -118,7 +119,8 @@ class MapsView:
         open_share = np.mean(regularity.character[frame.fate == Fate.BOUNDED] == Regularity.NOT_JUDGED)
         sentence = judged if regularity.complete else f"Following deviations: {open_share:.1%} of the bounded orbits still open …"
         nothing = not np.any(frame.fate == Fate.BOUNDED)
-        self._legends["characters"].object = self._character_legend("No orbit is bounded." if nothing else sentence)
+        self._judged = "No orbit is bounded." if nothing else sentence
+        self._legends["characters"].object = self._character_legend()
 
     def set_palette(self, palette: Palette) -> None:
         """Paint everything in other colours."""
@@ -152,8 +154,8 @@ class MapsView:
         columns, rows = self._spec.pixel_centres()
         return float(columns[pixel[1]]), float(rows[pixel[0]])
 
-    def _character_legend(self, sentence: str) -> str:
-        return legend(self._palette.character_entries) + f'<div style="font-size:12px">{sentence}</div>'
+    def _character_legend(self) -> str:
+        return legend(self._palette.character_entries) + f'<div style="font-size:12px">{self._judged}</div>'
 
     def _follow(self, spec: MapSpec) -> None:
         """Go to the window of a new map, unless the user is on the way to another one."""
@@ -212,7 +214,7 @@ class MapsView:
             "basins": legend([*palette.channel_entries(spec.potential.channels), *reversed(outcomes), *self.overlays.entries()]),
             "times": legend(list(reversed(outcomes))),
             "crossings": legend([*palette.crossing_entries, *reversed(outcomes)]),
-            "characters": self._character_legend(""),
+            "characters": self._character_legend(),
             "origins": passage_legend(palette, spec.potential.channels),
         }
         for name, text in texts.items():

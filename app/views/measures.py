@@ -12,7 +12,7 @@ import panel_material_ui as pmui
 from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
 
 from app.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
-from app.views.figures import FRAME, set_range, square_figure, with_help
+from app.views.figures import FRAME, set_decades, set_range, square_figure, with_help
 from app.views.legends import legend
 from app.views.section import Section
 from engine import BasinMeasures, EscapeLaws, LawFit, UncertaintyExponent
@@ -73,7 +73,7 @@ class MeasuresView:
         if np.count_nonzero(seen) > 1 and laws.times[seen][-1] > 0.0:
             latest = float(laws.times[seen][-1])
             set_range(self.survival.x_range, min(1.0, 0.1 * latest), 1.5 * latest)
-            set_range(self.survival.y_range, 0.7 * float(laws.survival[seen].min()), 1.3)
+            set_decades(self.survival.y_range, float(laws.survival[seen].min()), 1.0)
         self._write()
 
     def wait_for_exponent(self) -> None:
@@ -100,7 +100,7 @@ class MeasuresView:
         self._line.data = {"separation": fitted, "share": found.amplitude * fitted**found.exponent}
         set_range(self.uncertainty.x_range, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
         if positive.any():
-            set_range(self.uncertainty.y_range, 0.5 * float(shares[positive].min()), 1.5 * float(shares.max()))
+            set_decades(self.uncertainty.y_range, float(shares[positive].min()), float(shares.max()))
         self._sentences["Uncertainty exponent"] = found.describe()
         self._write()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -80,7 +81,8 @@ class OrbitDesk:
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
         """What each indicator of chaos says of the orbit that is looked at."""
         rows = "".join(
-            f"<tr><th scope=row style='text-align:left;vertical-align:top;font-weight:normal;opacity:0.7'>{one.name}</th>"
+            f"<tr><th scope=row style='text-align:left;vertical-align:top;font-weight:normal;opacity:0.7'>{one.name}"
+            f"<br>{_value(one.value)}</th>"
             f"<td><b>{one.conclusion or 'no verdict'}</b><br>{escape(one.sentence)}</td></tr>"
             for one in verdicts
         )
@@ -135,6 +137,10 @@ class OrbitDesk:
             self.say("Type a number into both boxes first.")
             return
         self._actions.add(self.x.value, self.ordinate.value)
+
+
+def _value(value: float) -> str:
+    return f"{value:.3g}" if math.isfinite(value) else ""
 
 
 def _fate(one: ChosenOrbit) -> str:

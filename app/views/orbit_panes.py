@@ -10,7 +10,7 @@ from bokeh.models import BasicTickFormatter, ColumnDataSource, ImageRGBA, Linear
 
 from app.orbit_drawing import LEAST_SALI, OrbitDrawing, draw_orbit, moment
 from app.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
-from app.views.figures import set_range, square_figure, with_help
+from app.views.figures import set_decades, set_range, square_figure, with_help
 from app.views.outlines import Outlines
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
 
@@ -112,7 +112,7 @@ class OrbitPanes:
         if latest > earliest:
             set_range(self.sali.x_range, earliest, latest)
             ends = [drawing.exponent[1] for drawing in everything if drawing.exponent[1].size]
-            set_range(self.exponent.y_range, 0.5 * min(float(end[-1]) for end in ends), 10.0)
+            set_decades(self.exponent.y_range, min(float(end[-1]) for end in ends), 1.0)
         end_of_chosen = float(everything[-1].orbit.t[-1])
         for edges, end in ((self.r2.x_range, end_of_chosen or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
             set_range(edges, 0.0, end)

@@ -8,7 +8,7 @@ import panel as pn
 from bokeh.plotting import figure
 
 from app.views.figures import dress
-from app.views.wrapping import wrapping_row
+from app.views.wrapping import AS_HIGH_AS_ITS_CONTENT, wrapping_row
 
 
 class Section:
@@ -19,7 +19,7 @@ class Section:
         self._dark = False
         head = pn.pane.HTML(f"<h2 style='font-size:15px;margin:4px 0'>{title}</h2>", margin=(8, 10, 0, 10))
         self._content = [head, wrapping_row(*columns, justify_content="center", gap="4px")]
-        self._column = pn.Column(sizing_mode="stretch_width")
+        self._column = pn.Column(sizing_mode="stretch_width", styles=AS_HIGH_AS_ITS_CONTENT)
 
     def layout(self) -> pn.viewable.Viewable:
         """Where it stands on the page."""

@@ -45,6 +45,11 @@ STEPS = (
         "The numbers count all starts in view: the share of each exit, and how fast the well empties.",
     ),
     Step(
+        "See why",
+        "Switches above the maps mark the pixels that rounding decides, draw the curves that bound the basins, and tell where "
+        "orbits came from. Others measure how fractal the picture is, and how it all changes with the energy.",
+    ),
+    Step(
         "Take it along",
         "The address of the page is a link to what you see; pictures and data can be saved. "
         "The gallery leads to places worth a visit.",

@@ -7,6 +7,10 @@ from typing import Any
 import panel as pn
 
 
+AS_HIGH_AS_ITS_CONTENT = {"max-height": "none"}
+"""Styles: left alone, a layout is cut at the height of the window, and what follows lies over it."""
+
+
 def wrapping_row(*views: pn.viewable.Viewable, **options: Any) -> pn.FlexBox:
-    """A row as high as its content: left alone, a FlexBox is cut at the height of the window, and what follows lies over it."""
-    return pn.FlexBox(*views, styles={"max-height": "none"}, **options)
+    """A row as high as its content."""
+    return pn.FlexBox(*views, styles=AS_HIGH_AS_ITS_CONTENT, **options)

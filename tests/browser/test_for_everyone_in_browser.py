@@ -84,7 +84,8 @@ def test_a_tap_on_a_phone_integrates_an_orbit(open_explorer: Callable[..., Explo
 
 
 def test_on_a_phone_nothing_lies_over_anything_else(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(420, 800)
+    explorer = open_explorer(420, 800, "?case=I&h=0.25&orbits=0.1,0.05;0.2,0.1&measures=yes&energies=yes&origins=yes")
+    explorer.page.wait_for_function("[...Bokeh.index.all_views()].some(view => view.model.name == 'separation')")
     boxes = explorer.page.evaluate(
         """names => names.map(name => {
             for (const view of Bokeh.index.all_views()) if (view.model.name == name) {
@@ -92,7 +93,10 @@ def test_on_a_phone_nothing_lies_over_anything_else(open_explorer: Callable[...,
                 return [box.top, box.bottom]
             }
         })""",
-        ["curves", "basins", "times", "crossings", "path", "sali", "r2", "separation"],
+        [
+            *("curves", "basins", "times", "crossings", "origins", "path", "sali", "r2", "exponent", "separation"),
+            *("uncertainty", "survival", "shares", "entropies", "exponents", "escapes"),
+        ],
     )
     for above, below in itertools.pairwise(boxes):
         assert above[1] <= below[0] + 1
@@ -103,14 +107,14 @@ def test_a_first_visit_begins_with_the_tour_and_the_second_does_not(open_explore
     tour = explorer.page.get_by_role("dialog")
     expect(tour).to_be_visible()
     explorer.page.get_by_role("button", name="Next").last.click()
-    expect(tour).to_contain_text("2 of 6")
+    expect(tour).to_contain_text("2 of 7")
     explorer.page.get_by_role("button", name="Skip").click()
     expect(tour).not_to_be_visible()
     explorer.page.reload()
     explorer.wait_until_complete()
     expect(tour).not_to_be_visible()
     explorer.press("Tour")
-    expect(tour).to_contain_text("1 of 6")
+    expect(tour).to_contain_text("1 of 7")
     explorer.page.keyboard.press("Escape")
     expect(tour).not_to_be_visible()
 

@@ -52,7 +52,7 @@ def test_the_orbits_as_a_table(small: ExplorerPage) -> None:
     name, data = take(small, "Orbits (CSV)")
     assert name.endswith("orbits.csv")
     rows = [line for line in data.decode().splitlines() if not line.startswith("#")]
-    assert rows[0] == "orbit,t,x,y,px,py,sali,r2"
+    assert rows[0] == "orbit,t,x,y,px,py,sali,lyapunov_exponent,r2"
     assert {row.split(",")[0] for row in rows[1:]} == {"1", "2"}
 
 
