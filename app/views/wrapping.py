@@ -6,7 +6,6 @@ from typing import Any
 
 import panel as pn
 
-
 AS_HIGH_AS_ITS_CONTENT = {"max-height": "none"}
 """Styles: left alone, a layout is cut at the height of the window, and what follows lies over it."""
 
