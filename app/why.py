@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import panel as pn
 
-from app.findings import Findings
+from app.findings import NOTHING_FOUND, Findings
 from app.locking import Locked
 from app.palette import Palette
 from app.paper_energies import ENERGIES
@@ -50,6 +50,9 @@ IMAGES = 3
 
 SWEPT_ENERGIES = 33
 
+# By its switch, what a second look adds to the findings.
+_FINDING_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
+
 
 class Why:
     """The switches and what they switch; `on_findings(findings)` is told what is known of the map in view."""
@@ -59,7 +62,7 @@ class Why:
     ) -> None:
         self._state, self._maps, self._on_findings = state, maps, on_findings
         self._spec: MapSpec | None = None
-        self._findings = Findings()
+        self._findings = NOTHING_FOUND
         self._notes: dict[str, str] = {}
         self.switches = Switches(state)
         self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10))
@@ -96,9 +99,9 @@ class Why:
         self._maps.overlays.begin(spec)
         if self._state.measures:
             self.measures.begin()
-        if self._findings != Findings():
-            self._find(regularity=None, origins=None, trust=None, manifolds=None)
-        self._note(trust="", manifolds="", origins="")
+        if self._findings != NOTHING_FOUND:
+            self._find(**dict.fromkeys(_FINDING_OF.values()))
+        self._note(**dict.fromkeys(_FINDING_OF, ""))
 
     def set_palette(self, palette: Palette) -> None:
         """Draw in other colours."""
@@ -119,9 +122,10 @@ class Why:
         watch, state = self._state.param.watch, self._state
         watch(lambda *events: self._show_pictures(), list(ON_DEMAND.values()))
         watch(lambda event: self._open_sections(), ["measures", "energies"])
-        watch(lambda event: None if event.new else self._forget(event.name), ["trust", "manifolds", "origins"])
+        watch(lambda event: None if event.new else self._forget(event.name), list(_FINDING_OF))
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
         watch(lambda *events: self._stop_sweep(), ["case", "plane", "t_max"])
+        watch(lambda event: self.curves.show(None), "case")
         self._show_pictures()
         self._open_sections()
         self.curves.follow_energy(state.energy)
@@ -151,7 +155,7 @@ class Why:
             self._maps.overlays.show_trust(None)
         if name == "manifolds":
             self._maps.overlays.show_manifolds(None)
-        self._find(**{name: None})
+        self._find(**{_FINDING_OF[name]: None})
         self._note(**{name: ""})
 
     # What second looks answer.

@@ -115,11 +115,7 @@ class MapsView:
     def show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         """Paint which bounded orbits are regular and which chaotic, as far as it is known."""
         self.source.data = {**self.source.data, **character_column(frame, regularity)}
-        judged = f"{regularity.chaotic_share:.1%} of the bounded orbits are chaotic."
-        open_share = np.mean(regularity.character[frame.fate == Fate.BOUNDED] == Regularity.NOT_JUDGED)
-        sentence = judged if regularity.complete else f"Following deviations: {open_share:.1%} of the bounded orbits still open …"
-        nothing = not np.any(frame.fate == Fate.BOUNDED)
-        self._judged = "No orbit is bounded." if nothing else sentence
+        self._judged = _describe_judgement(regularity, regularity.character[frame.fate == Fate.BOUNDED])
         self._legends["characters"].object = self._character_legend()
 
     def set_palette(self, palette: Palette) -> None:
@@ -232,6 +228,15 @@ class MapsView:
         if name == "curves" or name in DOUBTED:
             self.overlays.draw(plot, doubts=name in DOUBTED, coloured=name == "curves")
         self.marks.draw(plot, sections=name in ("curves", "basins"))
+
+
+def _describe_judgement(regularity: RegularityMap, bounded: np.ndarray) -> str:
+    """How the bounded pixels (n,) are judged, or how many still wait."""
+    if not bounded.size:
+        return "No orbit is bounded."
+    if regularity.complete:
+        return f"{regularity.chaotic_share:.1%} of the bounded orbits are chaotic."
+    return f"Following deviations: {np.mean(bounded == Regularity.NOT_JUDGED):.1%} of the bounded orbits still open …"
 
 
 def _is_near(one: Window, other: Window) -> bool:

@@ -54,9 +54,10 @@ class MeasuresView:
 
     def begin(self) -> None:
         """Another map: what was measured of the last one says nothing of it."""
-        self._sentences = {}
-        self.show_exponent(None)
-        self._write()
+        if self._sentences:
+            self._sentences = {}
+            self.show_exponent(None)
+            self._write()
 
     def show_basins(self, measures: BasinMeasures) -> None:
         """What the pixels say."""

@@ -172,6 +172,26 @@ def test_a_sweep_comes_energy_by_energy_and_can_be_stopped(begin: Callable[..., 
     assert f"of {SWEPT_ENERGIES}" in curves.text.object
 
 
+def test_another_case_takes_the_curves_away(begin: Callable[..., Session]) -> None:
+    session = begin(energies=True)
+    curves = session.why.curves
+    curves.button.clicks += 1
+    session.wait_for(lambda: len(curves.points.data["h"]) >= 1)
+    session.state.param.update(case="III", energy=0.4)
+    assert not curves.running
+    assert len(curves.points.data["h"]) == 0
+    curves.open_near(0.3)
+    assert session.state.energy == 0.4
+
+
+def test_what_is_judged_is_forgotten_with_its_switch(begin: Callable[..., Session], frame: EscapeMap) -> None:
+    session = begin(judge=True)
+    session.show(frame)
+    session.wait_for(lambda: session.findings.regularity is not None)
+    session.state.judge = False
+    assert session.findings == Findings()
+
+
 def test_a_click_on_a_curve_opens_the_nearest_energy(begin: Callable[..., Session]) -> None:
     session = begin(energies=True)
     curves = session.why.curves
