@@ -61,8 +61,6 @@ class UncertaintyExponent:
         A; NaN without an exponent.
     misfit
         χ² per degree of freedom of the used shares about the line; NaN when there were too few to fit one.
-    complete
-        True: a computation that is cancelled has no result. Background jobs tell results from what is under way by it.
     one_inside, both_inside
         (m,) int64, pairs of which one orbit or both were still inside at the horizon: all that a later one could change. The
         former are among the uncertain. Empty where it is not known.
@@ -79,7 +77,6 @@ class UncertaintyExponent:
     high: float
     amplitude: float
     misfit: float
-    complete: bool = True
     one_inside: np.ndarray = field(default_factory=_nothing, repr=False)
     both_inside: np.ndarray = field(default_factory=_nothing, repr=False)
     horizon: float = float("nan")

@@ -35,3 +35,14 @@ def test_chaotic_by_sali_is_chaotic_by_lyapunov_exponent(name: str, energy: floa
     clear = (exponents < 0.004) | (exponents > 0.008)
     assert clear.sum() >= 12
     np.testing.assert_array_equal(chaotic[clear], exponents[clear] > 0.008)
+
+
+@pytest.mark.parametrize("state", [(-0.25, 0.0, 0.0), (-0.2, 0.0, 0.1), (-0.25, 0.0, 0.05)])
+def test_the_chaotic_sea_of_henon_and_heiles_has_the_exponent_of_the_literature(state: tuple[float, float, float]) -> None:
+    """At E = 1/8 galpy's test of its own exponents quotes 0.04 to 0.08 (github.com/jobovy/galpy/pull/945, orbit with 0.0519)."""
+    x, y, px = state
+    potential = CASES["II"]  # Hénon and Heiles' potential with x and y exchanged
+    py = float(np.sqrt(2.0 * (0.125 - potential.value(x, y)) - px**2))
+    orbit = integrate_orbit(potential, (x, y, px, py), 1e5)
+    assert orbit.regularity is Regularity.CHAOTIC
+    assert 0.04 < orbit.lyapunov_exponent[-1] < 0.08
