@@ -1,6 +1,7 @@
 """Escapes in open Hamiltonian systems with polynomial potentials: orbits, exits, maps. Computes, and knows of no screen."""
 
 from engine.certificates import Certificate, describe_certificate
+from engine.crossing_statistics import compute_crossing_statistics, tabulate_crossing_statistics
 from engine.energy_curves import (
     EnergyCurves,
     EnergyCurvesSpec,
@@ -43,6 +44,7 @@ from engine.metrics.uncertainty import UncertaintyExponent, compute_uncertainty_
 from engine.orbits import Orbit, integrate_orbit
 from engine.origin_fates import OriginFateMap, compute_origin_fates, join_origin_fates
 from engine.outcomes import Outcomes, classify_orbits
+from engine.paper_fits import PAPER_FITS, HyperbolicTangent, PaperFits, Polynomial
 from engine.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.potentials import CASES, Potential
 from engine.preparation import prepare_kernels
@@ -50,6 +52,7 @@ from engine.previews import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 from engine.sections import read_section_points
 from engine.separations import LONGEST_SEPARATION, Separation, compute_separation
+from engine.share_fits import Deviation, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from engine.stable_manifolds import ManifoldArc, StableManifolds, find_stable_manifolds
 from engine.trust_maps import TrustMap, compute_trust
 from engine.twins import Twin, find_twin
@@ -62,6 +65,7 @@ __all__ = [
     "LONGEST_SEPARATION",
     "LONGEST_TIME",
     "MERGING_COUNTS_BOUNDED",
+    "PAPER_FITS",
     "PREVIEW_SIDE",
     "PREVIEW_TIME",
     "BasinEntropy",
@@ -69,6 +73,7 @@ __all__ = [
     "BasinMeasuresSpec",
     "BirkhoffDigits",
     "Certificate",
+    "Deviation",
     "DigitsSpec",
     "EnergyCurves",
     "EnergyCurvesSpec",
@@ -80,6 +85,7 @@ __all__ = [
     "EscapeMap",
     "EscapeStatistics",
     "Fate",
+    "HyperbolicTangent",
     "IndicatorVerdict",
     "JobSpec",
     "Jobs",
@@ -94,7 +100,9 @@ __all__ = [
     "OriginFateMap",
     "OriginSpec",
     "Outcomes",
+    "PaperFits",
     "Plane",
+    "Polynomial",
     "Potential",
     "Preview",
     "PreviewSpec",
@@ -103,6 +111,7 @@ __all__ = [
     "RegularitySpec",
     "Separation",
     "SeparationSpec",
+    "ShareFit",
     "StableManifolds",
     "Ticket",
     "Trust",
@@ -118,6 +127,7 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_birkhoff_digits",
+    "compute_crossing_statistics",
     "compute_energy_curves",
     "compute_map",
     "compute_merging",
@@ -136,18 +146,22 @@ __all__ = [
     "find_lyapunov_orbits",
     "find_stable_manifolds",
     "find_twin",
+    "fit_direct_shares",
     "fit_escape_laws",
+    "fit_escape_shares",
     "fit_uncertainty",
     "integrate_orbit",
     "join_origin_fates",
     "judge_bounded_orbits",
     "judge_indicators",
     "judge_regularity",
+    "measure_deviation",
     "measure_energy",
     "prepare_kernels",
     "preview_spec",
     "read_section_points",
     "start_states",
+    "tabulate_crossing_statistics",
     "trace_equipotentials",
     "trace_zero_velocity_curve",
 ]
