@@ -7,7 +7,8 @@ COPY pyproject.toml README.md LICENSE ./
 RUN uv sync --no-dev --no-install-project
 COPY engine engine
 COPY app app
-RUN uv sync --no-dev && /opt/venv/bin/python -m compileall -q app engine
+COPY cli cli
+RUN uv sync --no-dev && /opt/venv/bin/python -m compileall -q app cli engine
 
 FROM python:3.13-slim
 COPY --from=build /opt/venv /opt/venv

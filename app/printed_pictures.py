@@ -13,13 +13,11 @@ from app.findings import NOTHING_FOUND, Findings
 from app.palette import DOUBT, LIGHT, MANIFOLD, MARK_EDGE, Entry, Palette
 from app.pictures import DOUBTED, TITLES, picture_pixels
 from app.printed_axes import WHITE, draw_colour_bar, draw_flow, draw_panel, font_of
+from app.printed_lines import stroke
 from engine import CASES, EscapeMap, Fate, Plane, StableManifolds, find_lyapunov_orbits, trace_zero_velocity_curve
 
 SMALLEST_SIDE, LARGEST_SIDE = 100, 4000
 """Sides in pixels that the map itself may have."""
-
-# Lines are drawn this much larger and shrunk, as Pillow draws them without smooth edges; less on pictures that are large.
-_SMOOTHING, _LARGEST_MASK = 4, 8000
 
 
 class _Curve(NamedTuple):
@@ -125,21 +123,9 @@ def _square(pixels: np.ndarray, curves: list[_Curve], side: int, size: int) -> I
     square.paste(raster, mask=raster)
     for curve in curves:
         if curve.halo:
-            _stroke(square, curve.pieces, LIGHT.halo, 1.8 * curve.weight * size)
-        _stroke(square, curve.pieces, curve.entry.colour, curve.weight * size)
+            stroke(square, curve.pieces, LIGHT.halo, 1.8 * curve.weight * size)
+        stroke(square, curve.pieces, curve.entry.colour, curve.weight * size)
     return square
-
-
-def _stroke(square: Image.Image, pieces: list[np.ndarray], colour: str, width: float) -> None:
-    """Draw lines with smooth edges."""
-    side = square.width
-    scale = min(_SMOOTHING, _LARGEST_MASK // side)
-    mask = Image.new("L", (scale * side, scale * side))
-    draw = ImageDraw.Draw(mask)
-    for piece in pieces:
-        points = (piece * [1, -1] + [0, 1]) * scale * side
-        draw.line([(float(x), float(y)) for x, y in points], 255, max(1, round(width * scale)), joint="curve")
-    square.paste(colour, (0, 0, side, side), mask.reduce(scale))
 
 
 def _mark(square: Image.Image, place: np.ndarray, number: str, colour: str, size: int) -> None:
@@ -150,7 +136,7 @@ def _mark(square: Image.Image, place: np.ndarray, number: str, colour: str, size
     for ink, width in ((LIGHT.halo, 0.6), (MARK_EDGE, 0.4), (colour, 0.2)):
         arm = (0.4 + width / 2) * size / square.width
         bars = [place + arm * np.array([[-1, 0], [1, 0]]), place + arm * np.array([[0, -1], [0, 1]])]
-        _stroke(square, bars, ink, width * size)
+        stroke(square, bars, ink, width * size)
     x, y = place[0] * square.width, (1 - place[1]) * square.width
     # The number stays on the picture: left of a cross at the right edge, below one at the top.
     anchor, dx = ("r", -0.5) if x > square.width - 2 * size else ("l", 0.5)

@@ -53,28 +53,22 @@ from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 from engine.sections import read_section_points
 from engine.separations import LONGEST_SEPARATION, Separation, compute_separation
 from engine.share_fits import Deviation, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
-from engine.stable_manifolds import ManifoldArc, StableManifolds, find_stable_manifolds
+from engine.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
 from engine.trust_maps import TrustMap, compute_trust
 from engine.twins import Twin, find_twin
+from engine.sweeps import SweepPlan, SweepSpec, plan_sweep, run_sweep
 
 __all__ = [
-    "CASES",
-    "CHAOS_THRESHOLD",
-    "ENTROPY_COUNTS_BOUNDED",
-    "LARGEST_SIDE",
-    "LONGEST_SEPARATION",
-    "LONGEST_TIME",
-    "MERGING_COUNTS_BOUNDED",
-    "PAPER_FITS",
-    "PREVIEW_SIDE",
-    "PREVIEW_TIME",
     "BasinEntropy",
     "BasinMeasures",
     "BasinMeasuresSpec",
     "BirkhoffDigits",
+    "CASES",
+    "CHAOS_THRESHOLD",
     "Certificate",
     "Deviation",
     "DigitsSpec",
+    "ENTROPY_COUNTS_BOUNDED",
     "EnergyCurves",
     "EnergyCurvesSpec",
     "EnergyPoint",
@@ -89,8 +83,13 @@ __all__ = [
     "IndicatorVerdict",
     "JobSpec",
     "Jobs",
+    "LARGEST_SIDE",
+    "LONGEST_SEPARATION",
+    "LONGEST_TIME",
     "LawFit",
     "LyapunovOrbit",
+    "MERGING_COUNTS_BOUNDED",
+    "MOST_IMAGES",
     "ManifoldArc",
     "ManifoldsSpec",
     "MapSpec",
@@ -100,6 +99,9 @@ __all__ = [
     "OriginFateMap",
     "OriginSpec",
     "Outcomes",
+    "PAPER_FITS",
+    "PREVIEW_SIDE",
+    "PREVIEW_TIME",
     "PaperFits",
     "Plane",
     "Polynomial",
@@ -113,6 +115,8 @@ __all__ = [
     "SeparationSpec",
     "ShareFit",
     "StableManifolds",
+    "SweepPlan",
+    "SweepSpec",
     "Ticket",
     "Trust",
     "TrustMap",
@@ -157,9 +161,11 @@ __all__ = [
     "judge_regularity",
     "measure_deviation",
     "measure_energy",
+    "plan_sweep",
     "prepare_kernels",
     "preview_spec",
     "read_section_points",
+    "run_sweep",
     "start_states",
     "tabulate_crossing_statistics",
     "trace_equipotentials",

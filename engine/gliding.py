@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.orbit_batches import LANES, default_executor
+from engine.orbit_batches import LANES, count_workers, default_executor
 from engine.potentials import Potential
 from engine.taylor.loop import VECTOR
 
@@ -34,7 +34,7 @@ def glide(
     (lanes, *shape) numbers. When `cancel` is set, orbits not reached are NaN.
     """
     executor = executor or default_executor()
-    ahead = 2 * getattr(executor, "_max_workers", 2)
+    ahead = 2 * count_workers(executor)
     running: deque[tuple[int, Future[np.ndarray]]] = deque()
     results = np.full((len(states), *shape), np.nan)
 

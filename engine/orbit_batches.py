@@ -36,6 +36,15 @@ def default_executor() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(count() or 1, thread_name_prefix="orbits")
 
 
+def count_workers(executor: Executor) -> int:
+    """How many calls an executor runs at once; 2 when it does not say."""
+    # Dask's executor knows its client, and that the workers it has now: they may come and go.
+    threads = getattr(getattr(executor, "_client", None), "nthreads", None)
+    if threads is not None:
+        return sum(threads().values()) or 2
+    return int(getattr(executor, "_max_workers", 2))
+
+
 class SerialExecutor(Executor):
     """Runs everything at once in the calling thread: for one orbit, or inside a worker of a pool."""
 
@@ -209,7 +218,7 @@ def carry_on(
     interruptions. `tolerance` is that of the steps; another one than the usual gives a second opinion.
     """
     executor = executor or default_executor()
-    workers = getattr(executor, "_max_workers", 2)
+    workers = count_workers(executor)
     gates = exit_gates(curves)
     todo = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
     tiles = _tiles(batch, todo, workers)

@@ -1,0 +1,78 @@
+"""``curves``: shares, entropies, exponent and escape times against energy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cli import options
+from cli.options import PlaneName
+
+if TYPE_CHECKING:
+    from engine import EnergyCurves
+
+EXAMPLES = """Examples:
+
+escape-explorer curves I --low 0.13 --high 0.5 --count 38 --output curves-I
+
+escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 225
+"""
+
+
+def draw_curves(
+    case: options.Case,
+    low: Annotated[float, typer.Option("--low", help="The lowest h.")],
+    high: Annotated[float, typer.Option("--high", help="The highest h.")],
+    count: Annotated[int, typer.Option("--count", min=1, max=1000, help="How many energies, evenly spaced.")],
+    plane: options.Plane = PlaneName.X_PX,
+    resolution: options.Resolution = "113",
+    t_max: options.TMax = 1e5,
+    exponent: Annotated[
+        bool, typer.Option("--exponent/--no-exponent", help="Whether to measure the uncertainty exponent, which takes longest.")
+    ] = True,
+    output: options.Output = None,
+    threads: options.Threads = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Measure the exits at many energies: STEM.nc and STEM.csv."""
+    from cli.requests import find_plane, find_potential, read_resolution, space_energies
+    from cli.work import working
+    from cli.written_files import add_ending, check_folder, write_files
+    from engine import EnergyCurvesSpec, compute_energy_curves
+
+    energies = space_energies(low, high, count)
+    spec = EnergyCurvesSpec(find_potential(case), find_plane(plane), energies, read_resolution(resolution), t_max, exponent)
+    stem = output or Path(f"curves-{case}-{plane}")
+    check_folder(stem)
+    with working(threads) as work:
+        report = work.begin("energies")
+        tell = None if report is None else lambda curves: report(len(curves.points) / len(energies))
+        curves = compute_energy_curves(spec, tell, work.cancel, work.executor)
+    netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
+    head, rows = _tabulate(curves)
+    table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+    files = write_files({add_ending(stem, "nc"): netcdf, add_ending(stem, "csv"): table})
+    _answer(head, rows, files, as_json)
+
+
+def _tabulate(curves: EnergyCurves) -> tuple[list[str], list[list[float]]]:
+    """Names and rows: h, the shares, then the other curves; numbers that are not there are NaN."""
+    dataset = curves.to_xarray()
+    others = [str(name) for name in dataset.data_vars if name != "share"]
+    head = ["h", "bounded", *(f"channel_{k}" for k in range(1, curves.shares.shape[1])), *others]
+    columns = [curves.energies, *curves.shares.T, *(curves.curve(name) for name in others)]
+    return head, [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)]
+
+
+def _answer(head: list[str], rows: list[list[float]], files: list[str], as_json: bool) -> None:
+    from cli.answers import print_json, print_sentences, print_table
+
+    if as_json:
+        print_json({"points": [dict(zip(head, row, strict=True)) for row in rows], "files": files})
+        return
+    print_table(
+        [name.replace("_", " ") for name in head], [[f"{number:.4g}".replace("nan", "–") for number in row] for row in rows]
+    )
+    print_sentences(f"Written: {', '.join(files)}")

@@ -1,0 +1,73 @@
+"""``lyapunov``: the periodic orbits over the open exits."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cli import options
+
+if TYPE_CHECKING:
+    from engine import LyapunovOrbit
+
+EXAMPLES = """Examples:
+
+escape-explorer lyapunov II --energy 0.2
+
+escape-explorer lyapunov III --energy 0.3 --json --output exits.csv
+"""
+
+
+def list_lyapunov_orbits(
+    case: options.Case,
+    energy: Annotated[float, typer.Option("--energy", help="h, dimensionless.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", metavar="FILE.csv", help="A table of their paths over one period; replaced if it exists."),
+    ] = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """The Lyapunov orbit over each open exit: its period, and where it comes to rest on the zero-velocity curve."""
+    from cli.requests import find_potential
+    from cli.written_files import check_folder, write_files
+    from engine import find_lyapunov_orbits
+
+    potential = find_potential(case)
+    if output is not None:
+        check_folder(output)
+    orbits = find_lyapunov_orbits(potential, energy)
+    files = write_files({output: _paths_csv(orbits)}) if output is not None else []
+    _answer(energy, potential.escape_energy, orbits, files, as_json)
+
+
+def _paths_csv(orbits: tuple[LyapunovOrbit, ...]) -> str:
+    lines = ["channel,t,x,y"]
+    for orbit in orbits:
+        last = orbit.x.size - 1
+        times = [orbit.period * k / last for k in range(last + 1)]
+        points = zip(times, orbit.x.tolist(), orbit.y.tolist(), strict=True)
+        lines += [f"{orbit.channel},{t!r},{x!r},{y!r}" for t, x, y in points]
+    return "\n".join(lines) + "\n"
+
+
+def _answer(energy: float, escape_energy: float, orbits: tuple[LyapunovOrbit, ...], files: list[str], as_json: bool) -> None:
+    from cli.answers import print_json, print_sentences, print_table
+
+    found: list[dict[str, Any]] = [
+        {"channel": orbit.channel, "period": orbit.period, "ends": orbit.half_path[[0, -1]].tolist()} for orbit in orbits
+    ]
+    if as_json:
+        print_json({"energy": energy, "escape_energy": escape_energy, "orbits": found, "files": files})
+        return
+    if not found:
+        print_sentences(f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}.")
+    else:
+        rows = [(str(one["channel"]), f"{one['period']:.12g}", *(_point(end) for end in one["ends"])) for one in found]
+        print_table(("channel", "period", "one end (x, y)", "other end (x, y)"), rows)
+    print_sentences(*[f"Written: {', '.join(files)}"] if files else [])
+
+
+def _point(point: list[float]) -> str:
+    return f"({point[0]:.12f}, {point[1]:.12f})"

@@ -1,0 +1,83 @@
+"""``orbit``: one orbit in full, and what the indicators of chaos say of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from cli import options
+from cli.options import PlaneName
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from engine import IndicatorVerdict, Orbit
+
+EXAMPLES = """Examples:
+
+escape-explorer orbit I --energy 0.19 --start 0.1 -0.2
+
+escape-explorer orbit III --state 0.1 0 0 0.7 --t-max 1e4 --output orbit --json
+"""
+
+
+def follow_orbit(
+    case: options.Case,
+    energy: options.Energy = None,
+    plane: options.Plane = PlaneName.X_PX,
+    start: Annotated[
+        tuple[float, float] | None, typer.Option("--start", metavar="X ORDINATE", help="A point of the plane, at --energy.")
+    ] = None,
+    state: Annotated[
+        tuple[float, float, float, float] | None,
+        typer.Option("--state", metavar="X Y PX PY", help="The whole state instead; its energy is the orbit's."),
+    ] = None,
+    t_max: options.TMax = 1e5,
+    most_rows: Annotated[int, typer.Option("--most-rows", min=1, help="Of the table; a longer orbit is thinned.")] = 100_000,
+    palette: Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")] = "paper",
+    output: options.Output = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Follow one orbit: its verdict, SALI, Lyapunov exponent and Birkhoff digits.
+
+    With --output, STEM.csv holds the path with SALI, exponent and R² against time, and STEM.png draws them.
+    """
+    from app.exports import orbits_csv
+    from cli.orbit_pictures import orbit_png
+    from cli.requests import find_palette, find_potential, find_start
+    from cli.work import working
+    from cli.written_files import add_ending, check_folder, write_files
+    from engine import Fate, compute_birkhoff_digits, integrate_orbit, judge_indicators
+
+    potential, colours = find_potential(case), find_palette(palette)
+    whole = find_start(case, plane, energy, start, state)
+    if output is not None:
+        check_folder(output)
+    with working() as work:
+        work.begin("orbit")
+        orbit = integrate_orbit(potential, whole, t_max, cancel=work.cancel)
+        bounded = orbit.fate == Fate.BOUNDED
+        digits = compute_birkhoff_digits(potential, whole, t_max, cancel=work.cancel) if bounded else None
+    files: list[str] = []
+    if output is not None:
+        drawn, table = orbit_png(potential, orbit, colours), orbits_csv([orbit], most_rows)
+        files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
+    _answer(orbit, judge_indicators(orbit, digits), files, as_json)
+
+
+def _answer(orbit: Orbit, verdicts: Sequence[IndicatorVerdict], files: list[str], as_json: bool) -> None:
+    from cli.answers import name_outcome, print_json, print_sentences
+
+    if not as_json:
+        said = [f"{verdict.name} {verdict.value:.3g}: {verdict.sentence}" for verdict in verdicts]
+        print_sentences(orbit.describe(), *said, *([f"Written: {', '.join(files)}"] if files else []))
+        return
+    names = ("energy", "escape_time", "crossings", "energy_error")
+    answer: dict[str, Any] = {"verdict": orbit.describe(), "outcome": name_outcome(orbit.fate), "fate": orbit.fate}
+    answer |= {name: getattr(orbit, name) for name in names}
+    answer["start"] = [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")]
+    answer["indicators"] = [
+        {"name": one.name, "value": one.value, "conclusion": one.conclusion, "sentence": one.sentence} for one in verdicts
+    ]
+    print_json(answer | {"files": files})

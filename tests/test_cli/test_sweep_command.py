@@ -1,0 +1,100 @@
+"""``sweep``: a store that holds the engine's maps, and can be gone on with."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import engine
+from cli.main import STOPPED, WENT_WRONG, WRONG_REQUEST
+from engine import CASES, Plane, SweepSpec
+
+Run = Callable[..., tuple[int, str, str]]
+
+SWEEP = ("sweep", "I", "--low", 0.13, "--high", 0.2, "--count", 3, "--resolution", "9x7", "--t-max", 50)
+SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist()), (9, 7), t_max=50.0)
+
+
+def opened(store: Path) -> xr.Dataset:
+    return xr.open_zarr(store, chunks=None, consolidated=False).load()
+
+
+def test_the_store_holds_the_engines_maps(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run(*SWEEP, "--json", "--store", tmp_path / "store.zarr")
+    found = opened(tmp_path / "store.zarr")
+    assert (code, json.loads(out)["dimensions"]) == (0, {"h": 3, "px": 7, "x": 9})
+    for place, energy in enumerate(SPEC.energies):
+        np.testing.assert_array_equal(found["escape_time"][place], engine.compute_map(SPEC.map_spec(energy)).escape_time)
+
+
+def test_energies_can_be_listed(run: Run, tmp_path: Path) -> None:
+    listed = [argument for energy in SPEC.energies for argument in ("--energy", energy)]
+    run("sweep", "I", *listed, "--resolution", "9x7", "--t-max", 50, "--store", tmp_path / "listed.zarr")
+    run(*SWEEP, "--store", tmp_path / "spaced.zarr")
+    xr.testing.assert_identical(opened(tmp_path / "listed.zarr"), opened(tmp_path / "spaced.zarr"))
+
+
+def test_ctrl_c_leaves_a_store_to_go_on_with(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run_sweep = engine.run_sweep
+
+    def interrupted(spec: SweepSpec, store: Path, *, on_progress: Any, cancel: Any, executor: Any) -> xr.Dataset:
+        def stop_later(share: float) -> None:
+            if share >= 1 / 3 and not cancel.is_set():
+                signal.raise_signal(signal.SIGINT)
+
+        return run_sweep(spec, store, on_progress=stop_later, cancel=cancel, executor=executor)
+
+    store = tmp_path / "store.zarr"
+    with monkeypatch.context() as patch:
+        patch.setattr(engine, "run_sweep", interrupted)
+        code, out, err = run(*SWEEP, "--store", store)
+    assert (code, out) == (STOPPED, "")
+    assert f"stay in {store}" in err
+    assert opened(store)["done"].values.tolist() == [True, False, False]
+    assert run(*SWEEP, "--store", store)[0] == 0
+    assert opened(store)["done"].values.all()
+
+
+def test_a_store_of_another_sweep_is_refused(run: Run, tmp_path: Path) -> None:
+    run(*SWEEP, "--store", tmp_path / "store.zarr")
+    code, _, err = run(*SWEEP[:-1], 60, "--store", tmp_path / "store.zarr")
+    assert (code, err.count("\n")) == (WRONG_REQUEST, 1)
+    assert "t_max" in err
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        ("--low", 0.13, "--high", 0.2),
+        ("--energy", 0.2, "--low", 0.13),
+        ("--energy", 0.2, "--plane", "x_h"),
+        ("--energy", 0.2, "--threads", 2, "--local-cluster", 2),
+        (),
+    ],
+)
+def test_half_a_request_is_refused(wrong: tuple[object, ...], run: Run, tmp_path: Path) -> None:
+    code, _, err = run("sweep", "I", *wrong, "--store", tmp_path / "store.zarr")
+    assert (code, err.count("\n")) == (WRONG_REQUEST, 1)
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_plan_computes_no_sweep(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run(*SWEEP, "--plan", "--store", tmp_path / "store.zarr")
+    assert (code, out.count("\n")) == (0, 1)
+    assert "189 orbits" in out
+    assert not any(tmp_path.iterdir())
+
+
+def test_without_dask_a_cluster_says_how_to_get_it(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    code, _, err = run(*SWEEP, "--local-cluster", 1, "--store", tmp_path / "store.zarr")
+    assert code == WENT_WRONG
+    assert err == "escape-explorer: a cluster needs Dask: pip install 'escape-explorer[cluster]'\n"

@@ -1,0 +1,346 @@
+"""Sweeps over energies: what is in the store, what survives a kill, and that a cluster makes the same numbers."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError, Executor
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import engine.sweeps
+from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map
+from engine.orbit_batches import SerialExecutor, count_workers
+from engine.planes import default_window
+from engine.sweeps import SweepPlan, SweepSpec, plan_sweep, run_sweep
+
+ARRAYS = ("fate", "escape_time", "crossings", "certificate", "outside", "energy_error")
+SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0)
+# Long enough for certificates of every kind, and for a kill in between.
+LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.34, 0.35, 0.36, 0.38, 0.4, 0.45), (20, 20), t_max=2e4)
+LONG_RUN = """
+from pathlib import Path
+from engine import CASES, Plane
+from engine.sweeps import SweepSpec, run_sweep
+spec = SweepSpec(CASES["III"], Plane.X_PX, (0.34, 0.35, 0.36, 0.38, 0.4, 0.45), (20, 20), t_max=2e4)
+run_sweep(spec, Path("killed"))
+"""
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """The energies of the maps that a run computes, in order."""
+    energies: list[float] = []
+
+    def counted(spec: MapSpec, *arguments: Any) -> EscapeMap:
+        assert not isinstance(spec.energy, tuple)
+        energies.append(spec.energy)
+        return compute_map(spec, *arguments)
+
+    monkeypatch.setattr(engine.sweeps, "compute_map", counted)
+    return energies
+
+
+def bytes_of(dataset: xr.Dataset) -> dict[str, bytes]:
+    return {name: dataset[name].to_numpy().tobytes() for name in ARRAYS}
+
+
+def marks(store: Path) -> list[Path]:
+    return sorted((store / "done" / "c").glob("[0-9]*"))
+
+
+def files_of(store: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
+def stacked_maps(spec: SweepSpec) -> xr.Dataset:
+    maps = [compute_map(spec.map_spec(h)).to_xarray() for h in spec.energies]
+    return xr.concat(maps, xr.DataArray(list(spec.energies), dims="h", name="h"), combine_attrs="drop_conflicts", join="exact")
+
+
+def cancel_at(share: float) -> tuple[threading.Event, Callable[[float], None]]:
+    """A wish to stop, and what makes it once that much is done."""
+    cancel = threading.Event()
+    return cancel, lambda progress: cancel.set() if progress >= share else None
+
+
+class TestRequest:
+    def test_energies_are_sorted_and_made_unique(self) -> None:
+        assert replace(SPEC, energies=(0.5, 0.3, 0.4, 0.3)).energies == (0.3, 0.4, 0.5)
+
+    @pytest.mark.parametrize(
+        ("change", "said"),
+        [
+            ({"energies": ()}, "energies: 0 different"),
+            ({"energies": (0.3, np.nan)}, "energies: 2 different"),
+            ({"energies": np.linspace(0.3, 0.4, 10_001)}, "energies: 10001 different"),
+            ({"energies": 0.3}, "energies=0.3"),
+            ({"plane": Plane.X_H}, r"plane=\(x, h\)"),
+            ({"t_max": 0.0}, "t_max=0"),
+            ({"resolution": (0, 5)}, "resolution"),
+            ({"window": Window(0.0, 1e-14, 0.0, 1.0)}, "window"),
+        ],
+    )
+    def test_what_is_not_legal_is_named(self, change: dict[str, Any], said: str) -> None:
+        with pytest.raises(ValueError, match=said):
+            replace(SPEC, **change)
+
+    @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
+    @pytest.mark.parametrize(("case", "highest"), [("I", 0.5), ("II", 0.5), ("III", 1.0)])
+    def test_the_window_of_the_highest_energy_contains_those_of_the_others(self, case: str, highest: float, plane: Plane) -> None:
+        potential = CASES[case]
+        energies = tuple(np.linspace(0.4 * potential.escape_energy, highest, 15))
+        window = SweepSpec(potential, plane, energies).window
+        assert window is not None
+        for h in energies:
+            inner = default_window(potential, plane, h)
+            assert window.x_low <= inner.x_low < inner.x_high <= window.x_high
+            assert window.ordinate_low <= inner.ordinate_low < inner.ordinate_high <= window.ordinate_high
+
+    def test_an_energy_without_exits_is_refused_before_anything_is_written(self, tmp_path: Path) -> None:
+        spec = replace(SPEC, window=Window(-1.0, 1.0, -1.0, 1.0), energies=(0.3, 20.0))
+        with pytest.raises(ValueError, match="no Lyapunov orbit"):
+            run_sweep(spec, tmp_path / "store")
+        assert not any(tmp_path.iterdir())
+
+
+class TestStore:
+    @pytest.mark.parametrize("spec", [SPEC, SweepSpec(CASES["I"], Plane.X_Y, (0.1, 0.2), (9, 14), t_max=100.0)])
+    def test_its_netcdf_is_that_of_the_stacked_maps(self, tmp_path: Path, spec: SweepSpec) -> None:
+        run_sweep(spec, tmp_path / "store").to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
+        expected = stacked_maps(spec)
+        with xr.open_dataset(tmp_path / "sweep.nc", engine="h5netcdf") as found:
+            assert found["fate"].dims == ("h", spec.plane.ordinate, "x")
+            assert set(found.data_vars) == set(ARRAYS)
+            for name in (*ARRAYS, *expected.coords):
+                np.testing.assert_array_equal(found[name], expected[name])
+                assert found[name].dtype == expected[name].dtype
+            for name in ARRAYS:
+                assert {**found[name].attrs} == {**expected[name].attrs}
+
+    def test_it_says_what_made_it(self, tmp_path: Path) -> None:
+        attributes = run_sweep(SPEC, tmp_path / "store").attrs
+        for name, value in SPEC.map_spec(0.5).provenance().items():
+            if name != "energy":
+                assert attributes[name] == (list(value) if isinstance(value, tuple) else value)
+        assert "energy" not in attributes
+
+    def test_nothing_is_read_before_it_is_looked_at(self, tmp_path: Path) -> None:
+        dataset = run_sweep(SPEC, tmp_path / "store")
+        shutil.rmtree(tmp_path / "store" / "fate")
+        assert not dataset["fate"]._in_memory
+
+    def test_a_chunk_is_a_band_of_rows_where_a_map_is_computed_in_bands(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        whole = bytes_of(run_sweep(SPEC, tmp_path / "whole"))
+        for module in ("maps", "sweeps"):
+            monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", 48)
+        assert bytes_of(run_sweep(SPEC, tmp_path / "banded")) == whole
+        assert len(list((tmp_path / "banded" / "fate" / "c" / "0").iterdir())) == 3
+
+    @pytest.mark.parametrize(
+        ("change", "name"),
+        [
+            ({"t_max": 301.0}, "t_max"),
+            ({"potential": CASES["I"]}, "potential"),
+            ({"plane": Plane.X_Y}, "plane"),
+            ({"resolution": (12, 11)}, "resolution"),
+            ({"window": Window(-1.0, 1.0, -1.0, 1.0)}, "window"),
+            ({"certify": False}, "certify"),
+            ({"energies": (0.3, 0.41, 0.5)}, "values of h"),
+        ],
+    )
+    def test_that_of_another_request_is_refused(self, tmp_path: Path, change: dict[str, Any], name: str) -> None:
+        run_sweep(SPEC, tmp_path / "store")
+        before = files_of(tmp_path / "store")
+        with pytest.raises(ValueError, match=name):
+            run_sweep(replace(SPEC, **change), tmp_path / "store")
+        assert files_of(tmp_path / "store") == before
+
+    def test_a_folder_of_something_else_is_refused(self, tmp_path: Path) -> None:
+        (tmp_path / "thesis.tex").touch()
+        with pytest.raises(ValueError, match="holds something else"):
+            run_sweep(SPEC, tmp_path)
+
+    def test_an_empty_folder_will_do(self, tmp_path: Path) -> None:
+        run_sweep(SPEC, tmp_path)
+        assert len(marks(tmp_path)) == 3
+
+
+class TestResuming:
+    def test_a_finished_energy_is_never_computed_again(self, tmp_path: Path, computed: list[float]) -> None:
+        cancel, on_progress = cancel_at(1 / 3)
+        with pytest.raises(CancelledError):
+            run_sweep(SPEC, tmp_path / "store", on_progress=on_progress, cancel=cancel)
+        assert len(marks(tmp_path / "store")) == 1
+        computed.clear()
+        run_sweep(SPEC, tmp_path / "store")
+        run_sweep(SPEC, tmp_path / "store")
+        assert computed == [0.4, 0.5]
+
+    def test_a_cancelled_run_goes_on_to_the_same_bytes(self, tmp_path: Path) -> None:
+        cancel, on_progress = cancel_at(0.4)
+        with pytest.raises(CancelledError):
+            run_sweep(SPEC, tmp_path / "store", on_progress=on_progress, cancel=cancel)
+        run_sweep(SPEC, tmp_path / "store")
+        run_sweep(SPEC, tmp_path / "straight")
+        assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
+
+    def test_arrays_without_a_mark_are_written_over(self, tmp_path: Path, computed: list[float]) -> None:
+        store = tmp_path / "store"
+        run_sweep(SPEC, store)
+        whole = files_of(store)
+        marks(store)[1].unlink()
+        chunk = store / "fate" / "c" / "1" / "0" / "0"
+        chunk.write_bytes(chunk.read_bytes()[:7])
+        computed.clear()
+        run_sweep(SPEC, store)
+        assert files_of(store) == whole
+        assert computed == [0.4]
+
+    @pytest.mark.slow
+    def test_a_killed_run_goes_on_to_the_same_bytes(self, tmp_path: Path, computed: list[float]) -> None:
+        straight = run_sweep(LONG_SPEC, tmp_path / "straight")
+        root = Path(engine.sweeps.__file__).parents[1]
+        store = tmp_path / "killed"
+        with subprocess.Popen([sys.executable, "-c", LONG_RUN], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(root)}) as run:
+            deadline = time.monotonic() + 120.0
+            while len(marks(store)) < 2 and run.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.002)
+            run.send_signal(signal.SIGKILL)
+        assert run.returncode == -signal.SIGKILL
+        done = len(marks(store))
+        assert 2 <= done < len(LONG_SPEC.energies)
+        computed.clear()
+        resumed = run_sweep(LONG_SPEC, store)
+        assert len(computed) == len(LONG_SPEC.energies) - done
+        assert bytes_of(resumed) == bytes_of(straight)
+
+    def test_progress_rises_to_the_whole(self, tmp_path: Path) -> None:
+        seen: list[float] = []
+        run_sweep(SPEC, tmp_path / "store", on_progress=seen.append)
+        assert seen == sorted(seen)
+        assert seen[0] == 0.0
+        assert seen[-1] == 1.0
+
+
+class TestFailingDisk:
+    @pytest.fixture
+    def no_room(self) -> Iterator[SimpleNamespace]:
+        """While `full` is called, no file of this process may grow beyond a few bytes."""
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        yield SimpleNamespace(full=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8, limits[1])))
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+    def test_finished_energies_outlive_a_disk_that_runs_full(
+        self, tmp_path: Path, no_room: SimpleNamespace, computed: list[float]
+    ) -> None:
+        straight = bytes_of(run_sweep(SPEC, tmp_path / "straight"))
+        computed.clear()
+        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+        with pytest.raises(OSError, match="too large"):
+            run_sweep(SPEC, tmp_path / "store", on_progress=lambda share: no_room.full() if share > 1 / 3 else None)
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        assert len(marks(tmp_path / "store")) == 1
+        assert computed == [0.3, 0.4]
+        assert bytes_of(run_sweep(SPEC, tmp_path / "store")) == straight
+        assert computed == [0.3, 0.4, 0.4, 0.5]
+
+    def test_a_store_that_cannot_be_made_is_an_error_before_anything_is_computed(
+        self, tmp_path: Path, computed: list[float]
+    ) -> None:
+        (tmp_path / "file").touch()
+        with pytest.raises(OSError, match="file"):
+            run_sweep(SPEC, tmp_path / "file" / "store")
+        assert not computed
+
+    def test_a_store_that_cannot_be_written_to_is_an_error_before_anything_is_computed(
+        self, tmp_path: Path, computed: list[float], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        run_sweep(SPEC, tmp_path / "store")
+        marks(tmp_path / "store")[0].unlink()
+        computed.clear()
+
+        def refused(*_arguments: object, **_named: object) -> None:
+            raise PermissionError("read-only")
+
+        monkeypatch.setattr("engine.sweep_stores.tempfile.TemporaryFile", refused)
+        with pytest.raises(PermissionError):
+            run_sweep(SPEC, tmp_path / "store")
+        assert not computed
+
+
+class TestCluster:
+    def test_workers_of_a_dask_client_are_counted(self) -> None:
+        client = SimpleNamespace(nthreads=lambda: {"tcp://a": 3, "tcp://b": 4})
+        executor = SerialExecutor()
+        executor._client = client  # type: ignore[attr-defined]
+        assert count_workers(executor) == 7
+
+    @pytest.mark.slow
+    def test_a_dask_cluster_makes_the_same_bytes(self, tmp_path: Path) -> None:
+        distributed = pytest.importorskip("distributed")
+        spec = replace(LONG_SPEC, energies=(0.35, 0.4))
+        cluster = distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None
+        )
+        with cluster, distributed.Client(cluster) as client:
+            executor: Executor = client.get_executor()
+            assert count_workers(executor) == 2
+            spread = run_sweep(spec, tmp_path / "cluster", executor=executor)
+        assert bytes_of(spread) == bytes_of(run_sweep(spec, tmp_path / "threads"))
+        assert np.unique(spread["certificate"]).size >= 3
+
+
+class TestPlan:
+    def test_it_counts_all_starts_and_their_bytes(self, tmp_path: Path) -> None:
+        plan = plan_sweep(SPEC, cores=3)
+        assert plan.orbits == 3 * 12 * 10
+        assert plan.cores == 3
+        assert plan.bytes == sum(run_sweep(SPEC, tmp_path / "store")[name].nbytes for name in ARRAYS)
+
+    def test_time_grows_with_pixels_and_shrinks_with_cores(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("engine.sweeps._measure_seconds", lambda spec, _cancel: 0.5 + 1e-4 * np.prod(spec.resolution))
+        one = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=1)
+        many = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=10)
+        assert one.seconds == pytest.approx(3 * 100.5)
+        assert many.seconds == pytest.approx(one.seconds / 10)
+
+    def test_many_energies_are_planned_from_the_middles_of_twelve_parts(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        seen: set[float] = set()
+
+        def measured(spec: MapSpec, _cancel: object) -> float:
+            seen.add(float(spec.energy))  # type: ignore[arg-type]
+            return 1.0
+
+        monkeypatch.setattr("engine.sweeps._measure_seconds", measured)
+        plan_sweep(replace(SPEC, energies=tuple(np.linspace(0.0, 0.24, 241))))
+        assert sorted(seen) == pytest.approx(np.arange(0.01, 0.24, 0.02), abs=0.001)
+
+    def test_it_can_be_cancelled(self) -> None:
+        cancel = threading.Event()
+        cancel.set()
+        with pytest.raises(CancelledError):
+            plan_sweep(SPEC, cancel=cancel)
+
+    def test_cores_must_be_positive(self) -> None:
+        with pytest.raises(ValueError, match="cores=0"):
+            plan_sweep(SPEC, cores=0)
+
+    def test_it_says_its_figures(self) -> None:
+        said = SweepPlan(10**9, 7200.0, 23 * 10**9, 16).describe()
+        assert said == "1e+09 orbits: about 2 hours on 16 cores (32 core hours), at most 23 GB"
