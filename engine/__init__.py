@@ -54,21 +54,29 @@ from engine.sections import read_section_points
 from engine.separations import LONGEST_SEPARATION, Separation, compute_separation
 from engine.share_fits import Deviation, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from engine.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
+from engine.sweeps import SweepPlan, SweepSpec, plan_sweep, run_sweep
 from engine.trust_maps import TrustMap, compute_trust
 from engine.twins import Twin, find_twin
-from engine.sweeps import SweepPlan, SweepSpec, plan_sweep, run_sweep
 
 __all__ = [
+    "CASES",
+    "CHAOS_THRESHOLD",
+    "ENTROPY_COUNTS_BOUNDED",
+    "LARGEST_SIDE",
+    "LONGEST_SEPARATION",
+    "LONGEST_TIME",
+    "MERGING_COUNTS_BOUNDED",
+    "MOST_IMAGES",
+    "PAPER_FITS",
+    "PREVIEW_SIDE",
+    "PREVIEW_TIME",
     "BasinEntropy",
     "BasinMeasures",
     "BasinMeasuresSpec",
     "BirkhoffDigits",
-    "CASES",
-    "CHAOS_THRESHOLD",
     "Certificate",
     "Deviation",
     "DigitsSpec",
-    "ENTROPY_COUNTS_BOUNDED",
     "EnergyCurves",
     "EnergyCurvesSpec",
     "EnergyPoint",
@@ -83,13 +91,8 @@ __all__ = [
     "IndicatorVerdict",
     "JobSpec",
     "Jobs",
-    "LARGEST_SIDE",
-    "LONGEST_SEPARATION",
-    "LONGEST_TIME",
     "LawFit",
     "LyapunovOrbit",
-    "MERGING_COUNTS_BOUNDED",
-    "MOST_IMAGES",
     "ManifoldArc",
     "ManifoldsSpec",
     "MapSpec",
@@ -99,9 +102,6 @@ __all__ = [
     "OriginFateMap",
     "OriginSpec",
     "Outcomes",
-    "PAPER_FITS",
-    "PREVIEW_SIDE",
-    "PREVIEW_TIME",
     "PaperFits",
     "Plane",
     "Polynomial",
