@@ -23,6 +23,7 @@ from engine.metrics.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
 from engine.metrics.uncertainty import WORK, UncertaintyExponent, compute_uncertainty_exponent
 from engine.planes import Plane
 from engine.potentials import Potential
+from engine.swept_energies import checked_sweep
 
 MOST_ENERGIES = 1000
 """Most energies of one sweep."""
@@ -76,11 +77,8 @@ class EnergyCurvesSpec:
     exponent: bool = True
 
     def __post_init__(self) -> None:
-        if Plane(self.plane) is Plane.X_H:
-            raise ValueError(f"plane={self.plane}: energies are swept on (x, y) or (x, px); (x, h) holds all of them")
-        energies = tuple(sorted({float(h) for h in self.energies}))
-        if not 1 <= len(energies) <= MOST_ENERGIES or not np.isfinite(energies).all():
-            raise ValueError(f"energies: {len(energies)} different ones; must be 1 to {MOST_ENERGIES} finite numbers")
+        plane, energies = checked_sweep(self.plane, self.energies, MOST_ENERGIES)
+        object.__setattr__(self, "plane", plane)
         object.__setattr__(self, "energies", energies)
         # Says what is wrong with the rest before anything is computed.
         MapSpec(self.potential, self.plane, energies[0], self.resolution, t_max=self.t_max)

@@ -10,7 +10,6 @@ The limits below were set on 850 orbits bounded until t = 1e5 on six maps (I at 
 from __future__ import annotations
 
 import threading
-from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -24,6 +23,7 @@ from engine.orbits import Orbit, checked_state
 from engine.outcomes import classify_orbits
 from engine.potentials import Potential
 from engine.quasi_periodicity import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.taylor.dense import stop_if
 
 EARLIEST_REGULAR = 1000.0
 """No bounded orbit is called regular before this time: weak chaos needs as long to show."""
@@ -136,7 +136,7 @@ def compute_birkhoff_digits(
         if 2.0 * window > t_max or not _stays(potential, start, 2.0 * window, cancel):
             break
         found = count_agreeing_digits(potential, start[None], window, executor=SerialExecutor(), cancel=cancel)[0]
-        _stop_if(cancel)
+        stop_if(cancel)
         if found == 0.0:
             break
         digits.append(float(found))
@@ -152,13 +152,8 @@ def _stays(potential: Potential, start: np.ndarray, t_end: float, cancel: thread
     """Whether the orbit has not left by `t_end`."""
     energy = float(potential.energy(start))
     fate = classify_orbits(potential, energy, start[None], t_end, executor=SerialExecutor(), cancel=cancel).fate[0]
-    _stop_if(cancel)
+    stop_if(cancel)
     return bool(fate == Fate.BOUNDED)
-
-
-def _stop_if(cancel: threading.Event | None) -> None:
-    if cancel is not None and cancel.is_set():
-        raise CancelledError
 
 
 def judge_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> tuple[IndicatorVerdict, ...]:

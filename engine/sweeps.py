@@ -23,6 +23,7 @@ from engine.planes import Plane, Window
 from engine.potentials import Potential
 from engine.preparation import prepare_kernels
 from engine.sweep_stores import SweepStore, create_store
+from engine.swept_energies import checked_sweep
 
 MOST_SWEPT_ENERGIES = 10_000
 """Most energies of a stored sweep: each is some files in every array's folder."""
@@ -69,10 +70,7 @@ class SweepSpec:
     certify: bool = True
 
     def __post_init__(self) -> None:
-        plane = Plane(self.plane)
-        if plane is Plane.X_H:
-            raise ValueError(f"plane={plane.value}: energies are swept on (x, y) or (x, px); (x, h) holds all of them")
-        energies = _checked_energies(self.energies)
+        plane, energies = checked_sweep(self.plane, self.energies, MOST_SWEPT_ENERGIES)
         highest = MapSpec(
             self.potential, plane, energies[-1], self.resolution, self.window, self.t_max, self.certify  # type: ignore[arg-type]
         )  # fmt: skip
@@ -99,16 +97,6 @@ class SweepSpec:
     def orbits(self) -> int:
         """How many starts there are at all energies together, forbidden and outside ones included."""
         return len(self.energies) * self.resolution[0] * self.resolution[1]
-
-
-def _checked_energies(energies: Any) -> tuple[float, ...]:
-    try:
-        checked = tuple(sorted({float(h) for h in energies}))
-    except (TypeError, ValueError):
-        raise ValueError(f"energies={energies!r}: must be finite numbers") from None
-    if not 1 <= len(checked) <= MOST_SWEPT_ENERGIES or not np.isfinite(checked).all():
-        raise ValueError(f"energies: {len(checked)} different ones; must be 1 to {MOST_SWEPT_ENERGIES} finite numbers")
-    return checked
 
 
 def run_sweep(

@@ -14,7 +14,8 @@ from engine.taylor.compilation import kernel
 _CHUNK = 8192
 
 
-def _stop_if(cancel: Event | None) -> None:
+def stop_if(cancel: Event | None) -> None:
+    """Raise CancelledError when nobody waits any more."""
     if cancel is not None and cancel.is_set():
         raise CancelledError
 
@@ -26,7 +27,7 @@ def trace_steps(kernels: ModuleType, state: np.ndarray, t_end: float, channels: 
     pieces = []
     begin, start, count = 0.0, state, _CHUNK
     while count == _CHUNK:
-        _stop_if(cancel)
+        stop_if(cancel)
         piece = np.empty((_CHUNK, 5))
         count = kernels.trace(start, begin, t_end, TOLERANCE, gates, piece)
         # A full piece ends where the next begins.
@@ -40,7 +41,7 @@ def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cance
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
-        _stop_if(cancel)
+        stop_if(cancel)
         part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
         jets = np.empty((2, ORDER + 1, part.shape[1]))
         kernels.jets(part.shape[1], *part[:4], *jets)
@@ -80,7 +81,7 @@ def carry_deviations(
     w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
     for begin in range(0, times.size - 1, _CHUNK):
-        _stop_if(cancel)
+        stop_if(cancel)
         end = min(begin + _CHUNK, times.size - 1)
         matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
         _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
