@@ -9,6 +9,7 @@ import numpy as np
 from engine.escape_maps import EscapeMap
 from engine.fates import Fate
 from engine.planes import Window
+from engine.read_only import read_only
 
 SURVIVAL_POINTS = 500
 """Most points of a survival curve."""
@@ -87,7 +88,7 @@ class EscapeStatistics:
         map without failures; in one under way those that leave late are still missing, so every p_n may change.
         """
         left_before = np.cumsum(self.crossing_counts) - self.crossing_counts
-        return _read_only(self.crossing_counts / (self.decided - left_before))
+        return read_only(self.crossing_counts / (self.decided - left_before))
 
     def time_histogram(self, bins: int) -> tuple[np.ndarray, np.ndarray]:
         """How many left when.
@@ -116,7 +117,7 @@ class EscapeStatistics:
             low, high = low * _LOWER_SIDE, high / _LOWER_SIDE
         edges = np.geomspace(low, high, bins + 1)
         place = np.clip(np.searchsorted(edges, self.escape_times, side="right") - 1, 0, bins - 1)
-        return _read_only(edges), _read_only(np.bincount(place, minlength=bins))
+        return read_only(edges), read_only(np.bincount(place, minlength=bins))
 
 
 def compute_statistics(frame: EscapeMap, window: Window | None = None) -> EscapeStatistics:
@@ -143,8 +144,8 @@ def compute_statistics(frame: EscapeMap, window: Window | None = None) -> Escape
         failed=counts[Fate.FAILED - _LOWEST_CODE],
         mean_escape_time=float(times.mean()) if times.size else float("nan"),
         median_escape_time=float(np.median(times)) if times.size else float("nan"),
-        crossing_counts=_read_only(np.bincount(frame.crossings[part][left])),
-        escape_times=_read_only(times),
+        crossing_counts=read_only(np.bincount(frame.crossings[part][left])),
+        escape_times=read_only(times),
     )
 
 
@@ -170,7 +171,7 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
         grid = np.geomspace(first, times[-1], SURVIVAL_POINTS - 1)[:-1]
         kept = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])
         times, survival = times[kept], survival[kept]
-    return _read_only(times), _read_only(survival)
+    return read_only(times), read_only(survival)
 
 
 def _pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slice]:
@@ -180,8 +181,3 @@ def _pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slic
     rows = np.searchsorted(frame.ordinate, window.ordinate_low), np.searchsorted(frame.ordinate, window.ordinate_high, "right")
     columns = np.searchsorted(frame.x, window.x_low), np.searchsorted(frame.x, window.x_high, "right")
     return slice(*map(int, rows)), slice(*map(int, columns))
-
-
-def _read_only(array: np.ndarray) -> np.ndarray:
-    array.flags.writeable = False
-    return array

@@ -20,6 +20,7 @@ import shapely
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.planes import Plane, Window, default_window
 from engine.potentials import Potential
+from engine.read_only import read_only
 from engine.unstable_tubes import UnstableTube
 
 MOST_IMAGES = 6
@@ -151,17 +152,12 @@ def find_stable_manifolds(
         image = int(potential.mirror_channels[orbit.channel]) if potential.mirror_in_x else orbit.channel
         if image in arcs and window is None:
             # x → −x carries (x, px) into (−x, −px).
-            mirrored = ((arc.image, _frozen(-arc.x), _frozen(-arc.px)) for arc in arcs[image])
+            mirrored = ((arc.image, read_only(-arc.x), read_only(-arc.px)) for arc in arcs[image])
             arcs[orbit.channel] = [ManifoldArc(orbit.channel, *fields) for fields in mirrored]
             continue
         arcs[orbit.channel], unfinished = _find_arcs(potential, orbit, images, grain, executor, cancel)
         truncated = truncated or unfinished
     return StableManifolds(potential, float(energy), tuple(arc for found in arcs.values() for arc in found), images, truncated)
-
-
-def _frozen(array: np.ndarray) -> np.ndarray:
-    array.flags.writeable = False
-    return array
 
 
 def _find_arcs(
@@ -296,4 +292,4 @@ def _split(curve: np.ndarray, grain: _Grain, closed: bool) -> list[np.ndarray]:
 def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
     """A line (m, 2) of the unstable manifold as an arc of the stable one: with momenta reversed."""
     x, px = line.T
-    return ManifoldArc(channel, image, _frozen(x.copy()), _frozen(-px))
+    return ManifoldArc(channel, image, read_only(x.copy()), read_only(-px))

@@ -12,6 +12,7 @@ import numpy as np
 from engine.gliding import glide
 from engine.lyapunov_orbits import LyapunovOrbit, channel_axes, exit_curves, exit_gates
 from engine.potentials import Potential
+from engine.read_only import read_only
 from engine.taylor.build import load_kernels
 from engine.taylor.codegen import TOLERANCE
 from engine.taylor.dense import sample_path, trace_steps
@@ -71,7 +72,7 @@ class UnstableTube:
             end = _FIRST_IMAGE_ENDS * float(np.hypot(*potential.saddles[orbit.channel - 1]))
             periods = math.ceil(math.log(end / _LAUNCH) / math.log(multiplier))
             largest, near_cuts = end * multiplier**-periods, periods - 1
-        tube = cls(potential, orbit, _frozen(direction), multiplier, largest / multiplier, largest, near_cuts)
+        tube = cls(potential, orbit, read_only(direction), multiplier, largest / multiplier, largest, near_cuts)
         return replace(tube, largest=tube._size_after_period(_leading_eigenvector(monodromy.T)[1]))
 
     def _size_after_period(self, across: np.ndarray) -> float:
@@ -121,11 +122,6 @@ class UnstableTube:
             excess = self.potential.energy(states) - self.orbit.energy
             states = states - (excess / np.sum(slope * slope, axis=1))[:, None] * slope
         return states
-
-
-def _frozen(array: np.ndarray) -> np.ndarray:
-    array.flags.writeable = False
-    return array
 
 
 def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from engine.metrics.labels import checked_labels
+from engine.read_only import read_only
 
 FEWEST_BASINS = 3
 """Wada is said of three or more basins; two always share their boundary."""
@@ -94,11 +95,11 @@ def compute_merging(labels: Any, valid: Any = None) -> MergingTest:
     anywhere = _slim_boundary(labels, valid)
     count = int(np.count_nonzero(anywhere))
     if len(basins) < FEWEST_BASINS or not count:
-        return MergingTest(basins, math.nan, math.nan, count, _read_only(np.empty(0)))
+        return MergingTest(basins, math.nan, math.nan, count, read_only(np.empty(0)))
     reach = np.sort(_furthest_boundary(labels, valid, basins, anywhere))
     shares = np.cumsum(np.bincount(reach[np.isfinite(reach)].astype(np.intp))) / count
     radius_99 = float(reach[-(-_NEARLY_ALL * count // 100) - 1])
-    return MergingTest(basins, float(reach[-1]), radius_99, count, _read_only(shares))
+    return MergingTest(basins, float(reach[-1]), radius_99, count, read_only(shares))
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
@@ -120,8 +121,3 @@ def _furthest_boundary(labels: np.ndarray, valid: np.ndarray, basins: tuple[int,
             return np.full_like(reach, np.inf)
         np.maximum(reach, ndimage.distance_transform_cdt(~slim, "chessboard")[where], out=reach)
     return reach
-
-
-def _read_only(array: np.ndarray) -> np.ndarray:
-    array.flags.writeable = False
-    return array
