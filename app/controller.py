@@ -11,7 +11,7 @@ from app.preview_requests import PreviewRequests
 from app.second_looks import SecondLook, SecondLooks
 from app.sentences import sentence
 from app.view_state import ViewState
-from engine import EscapeMap, Jobs, Ticket
+from engine import EscapeMap, Requests, Ticket
 
 
 class MapListener(Protocol):
@@ -41,7 +41,7 @@ class Controller:
     """
 
     def __init__(
-        self, state: ViewState, jobs: Jobs, listener: MapListener, locked: Locked, looks: Sequence[SecondLook] = ()
+        self, state: ViewState, jobs: Requests, listener: MapListener, locked: Locked, looks: Sequence[SecondLook] = ()
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None

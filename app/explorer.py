@@ -36,7 +36,7 @@ from app.views.tour import Tour
 from app.views.words import WordsView
 from app.views.zoom_buttons import ZoomButtons
 from app.why import Why
-from engine import EscapeMap, Jobs, Plane, Window
+from engine import EscapeMap, Jobs, Plane, Visitor, Window
 
 
 @cache
@@ -57,7 +57,7 @@ class Explorer:
         # Clicks come without the session's lock, which bare Bokeh models need.
         self._locked: Callable[..., Any] = document.locked_callback
         self._make_views()
-        jobs = shared_jobs()
+        jobs = self._visitor = Visitor(shared_jobs())
         self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
         self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks())
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
@@ -122,6 +122,7 @@ class Explorer:
         """The session is over."""
         for requests in (self.controller, self.orbits, self.twin, self.separation, self.indicators, self.why):
             requests.close()
+        self._visitor.close()
 
     def set_dark(self, dark: bool) -> None:
         """Another theme."""

@@ -8,7 +8,7 @@ from app.locking import Locked
 from app.orbit_requests import ChosenOrbit
 from app.single_request import SingleRequest
 from app.view_state import ViewState
-from engine import BirkhoffDigits, DigitsSpec, Fate, IndicatorVerdict, Jobs, Orbit, judge_indicators
+from engine import BirkhoffDigits, DigitsSpec, Fate, IndicatorVerdict, Orbit, Requests, judge_indicators
 
 
 class IndicatorsRequest:
@@ -17,7 +17,7 @@ class IndicatorsRequest:
     def __init__(
         self,
         state: ViewState,
-        jobs: Jobs,
+        jobs: Requests,
         show: Callable[[Sequence[IndicatorVerdict]], None],
         say: Callable[[str], None],
         locked: Locked,

@@ -10,7 +10,7 @@ from app.locking import Locked
 from app.orbit_drawing import OrbitDrawing, draw_orbit
 from app.sentences import sentence
 from app.view_state import Start, ViewState
-from engine import Fate, Jobs, Orbit, OrbitSpec, Ticket, describe_fate
+from engine import Fate, Orbit, OrbitSpec, Requests, Ticket, describe_fate
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class ChosenOrbit:
 class OrbitRequests:
     """One session's orbits; `show(orbits)` is told of every change, under the session's lock."""
 
-    def __init__(self, state: ViewState, jobs: Jobs, show: Callable[[tuple[ChosenOrbit, ...]], None], locked: Locked) -> None:
+    def __init__(self, state: ViewState, jobs: Requests, show: Callable[[tuple[ChosenOrbit, ...]], None], locked: Locked) -> None:
         self._state, self._jobs, self._show = state, jobs, show
         self._tickets: dict[OrbitSpec, Ticket | None] = {}
         self._answers: dict[OrbitSpec, OrbitDrawing | str] = {}

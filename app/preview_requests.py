@@ -8,14 +8,14 @@ from typing import Any
 from app.locking import Locked
 from app.map_columns import map_columns
 from app.view_state import ViewState
-from engine import EscapeMap, Jobs, PreviewSpec, Ticket, preview_spec
+from engine import EscapeMap, PreviewSpec, Requests, Ticket, preview_spec
 
 
 class PreviewRequests:
     """One session's previews; `show(frame, columns)` paints one, under the session's lock."""
 
     def __init__(
-        self, state: ViewState, jobs: Jobs, show: Callable[[EscapeMap, dict[str, list[Any]]], None], locked: Locked
+        self, state: ViewState, jobs: Requests, show: Callable[[EscapeMap, dict[str, list[Any]]], None], locked: Locked
     ) -> None:
         self._state, self._jobs, self._show = state, jobs, show
         self._wanted: float | None = None

@@ -10,7 +10,7 @@ from typing import Any
 from app.locking import Locked
 from app.single_request import SingleRequest
 from app.view_state import ViewState
-from engine import EscapeMap, Jobs, JobSpec
+from engine import EscapeMap, JobSpec, Requests
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class SecondLooks:
     """One session's second looks; `fail(sentence)` hears what went wrong, under the session's lock like `show`."""
 
     def __init__(
-        self, state: ViewState, jobs: Jobs, looks: Sequence[SecondLook], fail: Callable[[str], None], locked: Locked
+        self, state: ViewState, jobs: Requests, looks: Sequence[SecondLook], fail: Callable[[str], None], locked: Locked
     ) -> None:
         self._frame: EscapeMap | None = None
         self._requests = [(look, SingleRequest(jobs, partial(self._show, look), fail, locked)) for look in looks]

@@ -8,7 +8,7 @@ from app.locking import Locked
 from app.orbit_requests import ChosenOrbit
 from app.single_request import SingleRequest
 from app.view_state import ViewState
-from engine import Jobs, Orbit, Separation, SeparationSpec
+from engine import Orbit, Requests, Separation, SeparationSpec
 
 Pair = tuple[int, int]
 
@@ -19,7 +19,7 @@ class SeparationRequest:
     def __init__(
         self,
         state: ViewState,
-        jobs: Jobs,
+        jobs: Requests,
         show: Callable[[Pair | None, Separation | None], None],
         say: Callable[[str], None],
         locked: Locked,

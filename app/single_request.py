@@ -8,13 +8,13 @@ from typing import Any
 
 from app.locking import Locked
 from app.sentences import sentence
-from engine import Jobs, JobSpec, Ticket
+from engine import JobSpec, Requests, Ticket
 
 
 class SingleRequest:
     """`show(answer)` is told what comes, more than once where it grows; `fail(sentence)` what went wrong; both under the lock."""
 
-    def __init__(self, jobs: Jobs, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
+    def __init__(self, jobs: Requests, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
         self._jobs, self._show, self._fail = jobs, show, fail
         self._wanted: JobSpec[Any] | None = None
         self._ticket: Ticket | None = None

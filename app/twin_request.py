@@ -7,13 +7,13 @@ from collections.abc import Callable
 from app.locking import Locked
 from app.single_request import SingleRequest
 from app.view_state import ViewState
-from engine import Jobs, TwinAnswer, TwinSpec, describe_fate
+from engine import Requests, TwinAnswer, TwinSpec, describe_fate
 
 
 class TwinRequest:
     """One session's search; the twin becomes one of the starts, and `say(sentence)` hears how it goes."""
 
-    def __init__(self, state: ViewState, jobs: Jobs, say: Callable[[str], None], locked: Locked) -> None:
+    def __init__(self, state: ViewState, jobs: Requests, say: Callable[[str], None], locked: Locked) -> None:
         self._state, self._say = state, say
         self._spec: TwinSpec | None = None
         self._request = SingleRequest(jobs, self._answered, say, locked)

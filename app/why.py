@@ -28,7 +28,6 @@ from engine import (
     EnergyCurvesSpec,
     EscapeLawsSpec,
     EscapeMap,
-    Jobs,
     JobSpec,
     ManifoldsSpec,
     MapSpec,
@@ -37,6 +36,7 @@ from engine import (
     Plane,
     RegularityMap,
     RegularitySpec,
+    Requests,
     StableManifolds,
     TrustMap,
     TrustSpec,
@@ -58,7 +58,7 @@ class Why:
     """The switches and what they switch; `on_findings(findings)` is told what is known of the map in view."""
 
     def __init__(
-        self, state: ViewState, jobs: Jobs, maps: MapsView, on_findings: Callable[[Findings], None], locked: Locked
+        self, state: ViewState, jobs: Requests, maps: MapsView, on_findings: Callable[[Findings], None], locked: Locked
     ) -> None:
         self._state, self._maps, self._on_findings = state, maps, on_findings
         self._spec: MapSpec | None = None

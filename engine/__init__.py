@@ -16,6 +16,7 @@ from engine.escape_maps import EscapeMap, describe_codes
 from engine.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
 from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust, describe_fate, judge_regularity
 from engine.indicators import BirkhoffDigits, IndicatorVerdict, Verdict, compute_birkhoff_digits, judge_indicators
+from engine.job_figures import JobFigures
 from engine.job_specs import (
     BasinMeasures,
     BasinMeasuresSpec,
@@ -33,7 +34,7 @@ from engine.job_specs import (
     TwinSpec,
     UncertaintySpec,
 )
-from engine.jobs import Jobs, JobSpec, Ticket
+from engine.jobs import Jobs, JobSpec
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
 from engine.maps import compute_map
@@ -55,8 +56,10 @@ from engine.separations import LONGEST_SEPARATION, Separation, compute_separatio
 from engine.share_fits import Deviation, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from engine.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
 from engine.sweeps import SweepPlan, SweepSpec, plan_sweep, run_sweep
+from engine.tickets import Ticket
 from engine.trust_maps import TrustMap, compute_trust
 from engine.twins import Twin, find_twin
+from engine.visitors import Requests, Visitor
 
 __all__ = [
     "CASES",
@@ -89,6 +92,7 @@ __all__ = [
     "Fate",
     "HyperbolicTangent",
     "IndicatorVerdict",
+    "JobFigures",
     "JobSpec",
     "Jobs",
     "LawFit",
@@ -111,6 +115,7 @@ __all__ = [
     "Regularity",
     "RegularityMap",
     "RegularitySpec",
+    "Requests",
     "Separation",
     "SeparationSpec",
     "ShareFit",
@@ -127,6 +132,7 @@ __all__ = [
     "UncertaintyExponent",
     "UncertaintySpec",
     "Verdict",
+    "Visitor",
     "Window",
     "classify_orbits",
     "compute_basin_entropy",

@@ -10,7 +10,6 @@ from typing import Any
 
 from engine.escape_maps import EscapeMap
 from engine.map_specs import MapSpec
-from engine.orbit_batches import default_executor
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +19,9 @@ class Bench:
     Attributes
     ----------
     executor
-        Any `concurrent.futures.Executor` for the computing; None for the pool of this process.
+        Takes the parts of what is computed: each call is back within about 50 ms.
+    call_executor
+        Takes calls that compute something whole, and may last.
     cancel
         Set when nobody waits for the job any more.
     publish
@@ -31,7 +32,8 @@ class Bench:
         What another request of `engine.job_specs` comes to: kept, or made for the purpose.
     """
 
-    executor: Executor | None
+    executor: Executor
+    call_executor: Executor
     cancel: threading.Event
     publish: Callable[[Any], None]
     map_at_hand: Callable[[MapSpec], EscapeMap | None]
@@ -46,5 +48,4 @@ class Bench:
 
     def on_pool[Result](self, compute: Callable[..., Result], *arguments: Any, **options: Any) -> Result:
         """What one call comes to, made by a thread that is there for computing."""
-        executor = self.executor or default_executor()
-        return executor.submit(compute, *arguments, cancel=self.cancel, **options).result()
+        return self.call_executor.submit(compute, *arguments, cancel=self.cancel, **options).result()

@@ -7,18 +7,30 @@ import threading
 from collections.abc import Callable, Hashable
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from functools import partial
 from typing import Any, Protocol
 
 from engine.bench import Bench
 from engine.escape_maps import EscapeMap
+from engine.fair_pool import FairPool, Rank
+from engine.job_figures import JobFigures
+from engine.job_specs import PreviewSpec
 from engine.map_specs import MapSpec
-from engine.maps import compute_map
+from engine.maps import LARGEST_RUN, compute_map
+from engine.orbit_batches import count_workers
 from engine.result_cache import ResultCache, Sized
+from engine.room import Room
+from engine.tickets import Ticket
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
+"""Memory for kept results."""
+
+DEFAULT_ORBITS = 4 * 2**20
+"""Orbits of large jobs under way together: some 500 MiB."""
+
 # Threads that only wait for the pool and hand frames on; more jobs than this wait for their turn.
-_COORDINATORS = 32
+_COORDINATORS = 1024
 
 log = logging.getLogger(__name__)
 
@@ -32,46 +44,24 @@ class JobSpec[Result: Sized](Protocol):
         """The answer."""
 
 
-class Ticket:
-    """One person's claim on a job. Cancelling it stops the job when nobody else waits for it."""
-
-    def __init__(
-        self, release: Callable[[Ticket], None], on_result: Callable[[Any], None], on_error: Callable[[Exception], None]
-    ):
-        self._release = release
-        self._on_result = on_result
-        self._on_error = on_error
-        self._open = True
-
-    def cancel(self) -> None:
-        """Hear no more of it; at once, and as often as you like."""
-        self._open = False
-        self._release(self)
-
-    def deliver(self, result: Any) -> None:
-        """Hand a frame or a result over, unless cancelled."""
-        self._call(self._on_result, result)
-
-    def fail(self, error: Exception) -> None:
-        """Hand over what went wrong, unless cancelled."""
-        self._call(self._on_error, error)
-
-    def _call(self, receive: Callable[[Any], None], what: Any) -> None:
-        if not self._open:
-            return
-        try:
-            receive(what)
-        except Exception:
-            # One listener's fault is no other listener's.
-            log.exception("a listener failed")
+class _End(Enum):
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
 
 
 @dataclass(eq=False)
 class _Job:
     key: Hashable
     tickets: list[Ticket]
+    owner: Hashable
+    looked_for: bool
+    """Whether somebody sees nothing until this is there."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
+
+    def rank(self) -> Rank:
+        return Rank.FIRST_LOOK if self.looked_for and self.latest is None else Rank.TILE
 
 
 class Jobs:
@@ -80,39 +70,86 @@ class Jobs:
     Parameters
     ----------
     executor
-        Any `concurrent.futures.Executor` for the computing; None for the pool of this process.
+        Any `concurrent.futures.Executor` for the computing; None for the pool of this process, in which those who ask take turns.
     cache_bytes
         Most memory for finished and interrupted results, in bytes.
+    most_orbits
+        Of all large jobs under way together, which bounds the memory that they hold, by about 120 bytes an orbit.
     """
 
-    def __init__(self, executor: Executor | None = None, cache_bytes: int = DEFAULT_CACHE_BYTES) -> None:
+    def __init__(
+        self, executor: Executor | None = None, cache_bytes: int = DEFAULT_CACHE_BYTES, most_orbits: int = DEFAULT_ORBITS
+    ) -> None:
         self._executor = executor
+        self._pool = FairPool()
+        self._room = Room(most_orbits)
+        self._ended = dict.fromkeys(_End, 0)
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
         self._in_flight: dict[Hashable, _Job] = {}
         self.cache = ResultCache(cache_bytes)
 
-    def request_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]) -> Ticket:
+    def request_map(
+        self,
+        spec: MapSpec,
+        on_frame: Callable[[EscapeMap], None],
+        on_error: Callable[[Exception], None],
+        *,
+        owner: Hashable = None,
+    ) -> Ticket:
         """Ask for a map; frames come to `on_frame` from another thread, the last one with ``complete`` True.
 
         A map that is kept comes at once; one that somebody already waits for is shared; one that was interrupted, or is kept
-        to a shorter t_max, goes on from there.
+        to a shorter t_max, goes on from there. All jobs of an `owner` together have one turn in each round; the first frame of
+        every map comes before the second one of any.
         """
-        return self._request(spec, on_frame, on_error, lambda bench: self._compute_map(spec, bench.publish, bench.cancel))
+
+        def run(bench: Bench) -> EscapeMap:
+            return self._compute_map(spec, bench, bench.publish)
+
+        return self._request(spec, on_frame, on_error, run, owner, looked_for=True)
 
     def request[Result: Sized](
-        self, spec: JobSpec[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
+        self,
+        spec: JobSpec[Result],
+        on_result: Callable[[Result], None],
+        on_error: Callable[[Exception], None],
+        *,
+        owner: Hashable = None,
     ) -> Ticket:
         """Ask for anything else (`engine.job_specs`); it comes to `on_result` from another thread.
 
         What grows as it is computed comes more than once, the last time with ``complete`` True.
         """
-        return self._request(spec, on_result, on_error, spec.run)
+        return self._request(spec, on_result, on_error, spec.run, owner, looked_for=isinstance(spec, PreviewSpec))
 
     @property
     def in_flight(self) -> int:
         """Number of jobs under way."""
         return len(self._in_flight)
+
+    def figures(self) -> JobFigures:
+        """How busy this is, and has been."""
+        done, failed, cancelled = (self._ended[end] for end in _End)
+        return JobFigures(
+            in_flight=self.in_flight,
+            calls_waiting=self._pool.waiting,
+            done=done,
+            failed=failed,
+            cancelled=cancelled,
+            cache_bytes=self.cache.nbytes,
+            cache_limit=self.cache.limit,
+            orbits_held=self._room.taken,
+            orbits_limit=self._room.orbits,
+            threads=count_workers(self._executor) if self._executor is not None else self._pool.threads,
+        )
+
+    def stop(self) -> None:
+        """Stop all jobs, within about 0.2 s; those who wait for them hear nothing any more."""
+        with self._lock:
+            tickets = [ticket for job in self._in_flight.values() for ticket in job.tickets]
+        for ticket in tickets:
+            ticket.cancel()
 
     def _request(
         self,
@@ -120,21 +157,24 @@ class Jobs:
         on_result: Callable[[Any], None],
         on_error: Callable[[Exception], None],
         run: Callable[[Bench], Sized],
+        owner: Hashable,
+        looked_for: bool,
     ) -> Ticket:
         ticket = Ticket(lambda ticket: self._leave(key, ticket), on_result, on_error)
         with self._lock:
             kept = self.cache.get(key)
-            if kept is not None and getattr(kept, "complete", True):
+            whole = kept is not None and getattr(kept, "complete", True)
+            if whole:
                 latest = kept
             elif key in self._in_flight:
                 self._in_flight[key].tickets.append(ticket)
                 latest = self._in_flight[key].latest
             else:
                 latest = None
-                job = self._in_flight[key] = _Job(key, [ticket])
+                job = self._in_flight[key] = _Job(key, [ticket], owner, looked_for)
                 self._coordinators.submit(self._work, job, run)
         if latest is not None:
-            ticket.deliver(latest)
+            ticket.deliver(latest, last=whole)
         return ticket
 
     def _leave(self, key: Hashable, ticket: Ticket) -> None:
@@ -151,8 +191,9 @@ class Jobs:
         error: Exception | None = None
         result: Sized | None = None
         try:
-            if not job.cancel.is_set():
-                result = run(self._bench(job))
+            with self._room.hold(_count_orbits(job.key), job.cancel):
+                if not job.cancel.is_set():
+                    result = run(self._bench(job))
         except CancelledError:
             pass
         except Exception as raised:
@@ -164,11 +205,12 @@ class Jobs:
             if self._in_flight.get(job.key) is job:
                 del self._in_flight[job.key]
             tickets = list(job.tickets)
+            self._ended[_End.FAILED if error else _End.CANCELLED if job.cancel.is_set() else _End.DONE] += 1
         for ticket in tickets:
             if error is not None:
                 ticket.fail(error)
             elif result is not None:
-                ticket.deliver(result)
+                ticket.deliver(result, last=True)
 
     def _bench(self, job: _Job) -> Bench:
         def answer(spec: JobSpec[Any]) -> Any:
@@ -178,19 +220,19 @@ class Jobs:
                 self.cache.put(spec, kept)
             return kept
 
-        publish, map_at_hand = partial(self._publish, job), partial(self._map_at_hand, cancel=job.cancel)
-        bench = Bench(self._executor, job.cancel, publish, map_at_hand, answer)
+        def map_at_hand(spec: MapSpec) -> EscapeMap | None:
+            whole: EscapeMap | None = self.cache.get(spec)
+            if whole is None or not whole.complete:
+                whole = self._compute_map(spec, bench, on_frame=None)
+            return whole if whole.complete else None
+
+        tiles = self._executor or self._pool.line(job.owner, job.rank)
+        calls = self._executor or self._pool.line(job.owner, lambda: Rank.WHOLE)
+        bench = Bench(tiles, calls, job.cancel, partial(self._publish, job), map_at_hand, answer)
         return bench
 
-    def _map_at_hand(self, spec: MapSpec, cancel: threading.Event) -> EscapeMap | None:
-        """The finished map, for a job that needs it; None when cancelled."""
-        whole: EscapeMap | None = self.cache.get(spec)
-        if whole is None or not whole.complete:
-            whole = self._compute_map(spec, None, cancel)
-        return whole if whole.complete else None
-
-    def _compute_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None] | None, cancel: threading.Event) -> EscapeMap:
-        return compute_map(spec, on_frame, cancel, self._executor, resume=self._find_resumable(spec))
+    def _compute_map(self, spec: MapSpec, bench: Bench, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
+        return compute_map(spec, on_frame, bench.cancel, bench.executor, resume=self._find_resumable(spec))
 
     def _publish(self, job: _Job, frame: Any) -> None:
         """Hand a frame on; the complete one is the result, which follows at once with all that belongs to it."""
@@ -200,7 +242,7 @@ class Jobs:
             job.latest = frame
             tickets = list(job.tickets)
         for ticket in tickets:
-            ticket.deliver(frame)
+            ticket.deliver(frame, last=False)
 
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
         """The kept map of the same picture that has been followed longest, though not beyond t_max."""
@@ -214,3 +256,12 @@ class Jobs:
 def _is_less_than_kept(result: Sized, kept: Any) -> bool:
     """An interrupted result never replaces a finished one."""
     return kept is not None and getattr(kept, "complete", True) and not getattr(result, "complete", True)
+
+
+def _count_orbits(spec: Any) -> int:
+    """How many orbits the job holds at the same time: those of its map, when it has one."""
+    map_spec = getattr(spec, "map_spec", spec)
+    if not isinstance(map_spec, MapSpec):
+        return 0
+    columns, rows = map_spec.resolution
+    return min(columns * rows, LARGEST_RUN)

@@ -245,3 +245,13 @@ def test_two_orbits_are_compared() -> None:
     assert inbox.done.wait(30)
     expected = compute_separation(CASES["I"], first, second, 3.0)
     np.testing.assert_array_equal(inbox.results[0].distance, expected.distance)
+
+
+def test_stopping_ends_all_jobs_and_nobody_hears_of_it() -> None:
+    inbox, jobs = Inbox(), Jobs()
+    jobs.request_map(LONG, inbox.result, inbox.error)
+    assert inbox.first.wait(30)
+    jobs.stop()
+    heard = len(inbox.results)
+    wait_until_idle(jobs)
+    assert (len(inbox.results), inbox.errors) == (heard, [])

@@ -1,0 +1,138 @@
+"""One pool for many: those who wait take turns, and nobody's fine picture is computed before everybody's first coarse one."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict, deque
+from collections.abc import Callable, Hashable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from engine.orbit_batches import count_workers, default_executor
+
+
+class Rank(IntEnum):
+    """What is computed before what."""
+
+    FIRST_LOOK = 0
+    """For somebody who sees nothing yet."""
+
+    TILE = 1
+    """A part of something larger, back within about 50 ms."""
+
+    WHOLE = 2
+    """All of something at once, which may take a second or more: one thread is kept free of these, where there are two."""
+
+
+class _Task(NamedTuple):
+    line: Line
+    future: Future[Any]
+    call: Callable[[], Any]
+
+
+class FairPool:
+    """Threads whose work is chosen at the last moment: by rank, and within a rank by turns.
+
+    Parameters
+    ----------
+    pool
+        The threads; None for those of this process.
+    """
+
+    def __init__(self, pool: ThreadPoolExecutor | None = None) -> None:
+        self._pool = pool or default_executor()
+        self.threads = count_workers(self._pool)
+        self._lock = threading.Lock()
+        # In the order of their turns; only those who wait for something.
+        self._waiting: OrderedDict[Hashable, deque[_Task]] = OrderedDict()
+        self._whole_ones = 0
+
+    def line(self, owner: Hashable, rank: Callable[[], Rank]) -> Line:
+        """Where one job hands its work in.
+
+        Parameters
+        ----------
+        owner
+            Whose job it is: all jobs of one owner together have one turn in each round.
+        rank
+            Asked each time that a thread is free.
+        """
+        return Line(self, owner, rank)
+
+    @property
+    def waiting(self) -> int:
+        """Number of calls that no thread has taken up yet."""
+        with self._lock:
+            return sum(map(len, self._waiting.values()))
+
+    def _take_in(self, task: _Task) -> None:
+        with self._lock:
+            self._waiting.setdefault(task.line.owner, deque()).append(task)
+        self._pool.submit(self._serve)
+
+    def _serve(self) -> None:
+        """The work of a thread: whatever is next. As many of these are under way as there are calls."""
+        with self._lock:
+            chosen = self._choose()
+        if chosen is None:
+            # Held back; whoever ends such a call comes for it.
+            return
+        task, rank = chosen
+        try:
+            _carry_out(task)
+        finally:
+            if rank is Rank.WHOLE:
+                with self._lock:
+                    self._whole_ones -= 1
+                self._pool.submit(self._serve)
+
+    def _choose(self) -> tuple[_Task, Rank] | None:
+        for rank in Rank:
+            if rank is Rank.WHOLE and self._whole_ones >= max(self.threads - 1, 1):
+                return None
+            for owner, tasks in self._waiting.items():
+                for task in tasks:
+                    if task.line.rank() is rank:
+                        self._end_turn(owner, task)
+                        self._whole_ones += rank is Rank.WHOLE
+                        return task, rank
+        return None
+
+    def _end_turn(self, owner: Hashable, task: _Task) -> None:
+        tasks = self._waiting[owner]
+        tasks.remove(task)
+        self._waiting.move_to_end(owner)
+        if not tasks:
+            del self._waiting[owner]
+
+
+class Line(Executor):
+    """An executor whose calls wait for their turn in a `FairPool`."""
+
+    def __init__(self, pool: FairPool, owner: Hashable, rank: Callable[[], Rank]) -> None:
+        self._fair_pool = pool
+        self.owner = owner
+        self.rank = rank
+
+    @property
+    def _max_workers(self) -> int:
+        """As executors say how many calls they run at once."""
+        return self._fair_pool.threads
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """The future of a call that waits for its turn."""
+        future: Future[Any] = Future()
+        self._fair_pool._take_in(_Task(self, future, lambda: fn(*args, **kwargs)))
+        return future
+
+
+def _carry_out(task: _Task) -> None:
+    if not task.future.set_running_or_notify_cancel():
+        return
+    try:
+        result = task.call()
+    except BaseException as error:
+        task.future.set_exception(error)
+    else:
+        task.future.set_result(result)

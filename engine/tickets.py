@@ -1,0 +1,45 @@
+"""What somebody who waits for a job holds."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+log = logging.getLogger(__name__)
+
+
+class Ticket:
+    """One person's claim on a job. Cancelling it stops the job when nobody else waits for it."""
+
+    def __init__(
+        self, release: Callable[[Ticket], None], on_result: Callable[[Any], None], on_error: Callable[[Exception], None]
+    ):
+        self._release = release
+        self._on_result = on_result
+        self._on_error = on_error
+        self.open = True
+        """Whether anything is still to come."""
+
+    def cancel(self) -> None:
+        """Hear no more of it; at once, and as often as you like."""
+        self.open = False
+        self._release(self)
+
+    def deliver(self, result: Any, *, last: bool) -> None:
+        """Hand a frame or a result over, unless cancelled."""
+        self._call(self._on_result, result, last)
+
+    def fail(self, error: Exception) -> None:
+        """Hand over what went wrong, unless cancelled."""
+        self._call(self._on_error, error, True)
+
+    def _call(self, receive: Callable[[Any], None], what: Any, last: bool) -> None:
+        if not self.open:
+            return
+        self.open = not last
+        try:
+            receive(what)
+        except Exception:
+            # One listener's fault is no other listener's.
+            log.exception("a listener failed")

@@ -1,0 +1,84 @@
+"""One of the many who ask: requests that take turns with those of others, and are limited in number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from engine.escape_maps import EscapeMap
+from engine.jobs import Jobs, JobSpec
+from engine.map_specs import MapSpec
+from engine.result_cache import Sized
+from engine.tickets import Ticket
+
+MOST_REQUESTS = 32
+"""Requests of one visitor under way at the same time, unless told otherwise: more than all switches of the page make together."""
+
+
+class Requests(Protocol):
+    """Where requests are made: `Jobs` itself, or one visitor's way to it."""
+
+    def request_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]) -> Ticket:
+        """Ask for a map, as `Jobs.request_map` says."""
+
+    def request[Result: Sized](
+        self, spec: JobSpec[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
+    ) -> Ticket:
+        """Ask for anything else, as `Jobs.request` says."""
+
+
+class Visitor:
+    """One visitor's way to the jobs of a process.
+
+    Parameters
+    ----------
+    jobs
+        The background work of the process.
+    most_requests
+        How many may be under way at the same time, 1 or more.
+    """
+
+    def __init__(self, jobs: Jobs, most_requests: int = MOST_REQUESTS) -> None:
+        if most_requests < 1:
+            raise ValueError(f"most_requests={most_requests}: must be 1 or more")
+        self._jobs = jobs
+        self._most_requests = most_requests
+        self._tickets: list[Ticket] = []
+
+    def request_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]) -> Ticket:
+        """As `Jobs.request_map`; ValueError to `on_error` when too many requests are under way."""
+        return self._admit(on_error) or self._keep(self._jobs.request_map(spec, on_frame, on_error, owner=self))
+
+    def request[Result: Sized](
+        self, spec: JobSpec[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
+    ) -> Ticket:
+        """As `Jobs.request`; ValueError to `on_error` when too many requests are under way."""
+        return self._admit(on_error) or self._keep(self._jobs.request(spec, on_result, on_error, owner=self))
+
+    def close(self) -> None:
+        """Nobody waits any more, for anything."""
+        for ticket in self._tickets:
+            ticket.cancel()
+        self._tickets.clear()
+
+    def _keep(self, ticket: Ticket) -> Ticket:
+        self._tickets.append(ticket)
+        return ticket
+
+    def _admit(self, on_error: Callable[[Exception], None]) -> Ticket | None:
+        """None where there is room for one more request; else the ticket of one that has failed."""
+        self._tickets = [ticket for ticket in self._tickets if ticket.open]
+        if len(self._tickets) < self._most_requests:
+            return None
+        refused = Ticket(lambda ticket: None, _nobody, on_error)
+        refused.fail(
+            ValueError(
+                f"requests: {self._most_requests} are under way for this page, and that is all it may have; "
+                "wait for one to end, or switch something off"
+            )
+        )
+        return refused
+
+
+def _nobody(_result: Any) -> None:
+    """Where a request that was never made would have been answered."""
