@@ -12,12 +12,20 @@ Four functions come out for each potential, every one a loop over lanes `i`:
 ``glide``    one step of a given size, summing weighted squares of x and y on the way;
 ``jets``     the coefficients themselves: the dense output of a step;
 ``tangent``  a deviation vector carried over a given time: the same recurrence, linearised.
+
+The source depends on the structure of V alone, that is on which exponents occur and on a few facts about the coefficients
+that save work (`find_difference`, `crossings_can_hide`). Its coefficients come at run time, in a table that is every
+function's first argument, so that potentials which differ in numbers only share their compiled code.
 """
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
 
 from engine.taylor.products import Monomial, Polynomial, Product, X, Y, derivative, find_difference, find_scales, plan_products
 
@@ -43,6 +51,44 @@ HIDDEN, GATE, OVERSHOOT = 1, 2, 4
 """Flags of a step: crossings of y = 0 may hide in it; its end is past an exit's gate; it ends beyond the horizon."""
 
 Terms = tuple[tuple[int, int, float], ...]
+
+Origins = Mapping[Monomial, tuple[Monomial, int]]
+"""A derivative of V: for each of its monomials, the term of V that it comes from and the whole number that it has gained."""
+
+
+class _Table:
+    """The numbers that the source leaves open. What is the same multiple of the same coefficient of V has one entry."""
+
+    def __init__(self, terms: Polynomial) -> None:
+        self._terms = terms
+        self._entries: dict[tuple[Monomial, float, float], float] = {}
+        self._names: dict[tuple[Monomial, float, float], str] = {}
+
+    def name(self, term: Monomial, multiple: float, factor: float = 1.0) -> str:
+        """The local variable that holds factor · multiple · (the coefficient of a term of V)."""
+        key = (term, multiple, factor)
+        if key not in self._entries:
+            self._names[key] = f"c{len(self._entries)}_"
+            self._entries[key] = factor * (self._terms[term] * multiple)
+        return self._names[key]
+
+    def values(self) -> np.ndarray:
+        """(m,) every entry, in order; read-only."""
+        values = np.array(list(self._entries.values()), dtype=float)
+        values.flags.writeable = False
+        return values
+
+    def differentiated(self, *axes: int) -> Origins:
+        """Where the monomials of ∂^n V / ∂(axes) come from."""
+        origins = {term: (term, 1) for term in self._terms}
+        for axis in axes:
+            gained = {m: (term, multiple * m[axis]) for m, (term, multiple) in origins.items() if m[axis]}
+            origins = {(i - (axis == 0), j - (axis == 1)): origin for (i, j), origin in gained.items()}
+        return origins
+
+    def evaluated(self, origins: Origins) -> dict[Monomial, float]:
+        """A derivative with its coefficients."""
+        return {m: multiple * self._terms[term] for m, (term, multiple) in origins.items()}
 
 
 def _series(monomial: Monomial) -> str:
@@ -74,32 +120,38 @@ def _half_square(factor: str, k: int) -> list[tuple[str, str]]:
     return [*middle, *pairs]
 
 
-def _linear_combination(polynomial: Polynomial, scales: Mapping[Monomial, float], k: int, factor: float) -> str:
-    """factor · (coefficient k of the polynomial's series)."""
+def _linear_combination(table: _Table, origins: Origins, scales: Mapping[Monomial, float], k: int, factor: float) -> str:
+    """factor · (coefficient k of the series of a derivative of V).
+
+    Low degrees last: a sum of two products contracts into the product that comes first, and the linear term is known earliest.
+    """
     parts = [
-        f"({factor * c!r})" if sum(m) == 0 else f"({factor * c / scales[m]!r})*{_series(m)}{k}"
-        for m, c in polynomial.items()
+        table.name(term, multiple / scales[m], factor) + (f"*{_series(m)}{k}" if sum(m) else "")
+        for m, (term, multiple) in reversed(list(origins.items()))
         if sum(m) > 0 or k == 0
     ]
     return " + ".join(parts) or "0.0"
 
 
-def _recurrence(vx: Polynomial, vy: Polynomial, products: list[Product], also: Sequence[Polynomial] = ()) -> list[str]:
-    """Statements for x0 … x_ORDER, y0 … y_ORDER and the products that they, and the polynomials `also`, need."""
+def _recurrence(table: _Table, products: list[Product], also: Sequence[Origins] = ()) -> list[str]:
+    """Statements for x0 … x_ORDER, y0 … y_ORDER and the products that they, and the derivatives `also`, need."""
+    vx, vy = table.differentiated(0), table.differentiated(1)
     lines = ["x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]"]
     scales = find_scales(products)
-    difference = find_difference(products, (vx, vy, *also))
+    difference = find_difference(products, [table.evaluated(origins) for origins in (vx, vy, *also)])
     if difference is not None:
         one, other = difference
         products = [p for p in products if p not in difference]
-        vx, vy = ({m: c for m, c in force.items() if m != other.monomial} for force in (vx, vy))
+        vx, vy = ({m: origin for m, origin in force.items() if m != other.monomial} for force in (vx, vy))
     for k in range(ORDER - 1):
         lines += [f"{_series(p.monomial)}{k} = {_cauchy(_series(p.left), _series(p.right), k)}" for p in products]
         if difference is not None:
             halves = (_half_square(_series(p.left), k) for p in difference)
             lines.append(f"{_series(one.monomial)}{k} = {_sum_of_products(*halves)}")
         factor = -1.0 / ((k + 1) * (k + 2))
-        lines += [f"{name}{k + 2} = {_linear_combination(force, scales, k, factor)}" for name, force in (("x", vx), ("y", vy))]
+        lines += [
+            f"{name}{k + 2} = {_linear_combination(table, force, scales, k, factor)}" for name, force in (("x", vx), ("y", vy))
+        ]
     return lines
 
 
@@ -162,13 +214,21 @@ def _hidden_crossings() -> list[str]:
 
 def _gates(channels: int) -> list[str]:
     """Is the end of the step past any exit's gate: the line across a channel that its exit curve lies beyond?"""
-    test = "gate = {flag} if gates[{k}, 0]*xh + gates[{k}, 1]*yh > gates[{k}, 2] else gate"
+    test = "gate = {flag} if g{k}x*xh + g{k}y*yh > g{k} else gate"
     return ["gate = 0", *(test.format(flag=GATE, k=k) for k in range(channels))]
 
 
-def _function(signature: str, body: list[str]) -> str:
-    lines = ["", "", "@kernel", f"def {signature}:", "    for i in range(n):"]
-    return "\n".join([*lines, *(f"        {line}" for line in body)]) + "\n"
+def _loads(body: Iterable[str]) -> list[str]:
+    """Statements that fetch the entries of the table that `body` names, once for all lanes."""
+    used = {int(n) for n in re.findall(r"\bc(\d+)_\b", "\n".join(body))}
+    return [f"c{n}_ = coefficients[{n}]" for n in sorted(used)]
+
+
+def _function(name: str, arguments: str, body: list[str], before: Iterable[str] = ()) -> str:
+    lines = ["", "", "@kernel", f"def {name}(coefficients, n, {arguments}):"]
+    # Read in the loop, each would be checked against all that the loop writes; past some 100 checks nothing is vector code.
+    lines += [f"    {line}" for line in (*_loads(body), *before)]
+    return "\n".join([*lines, "    for i in range(n):", *(f"        {line}" for line in body)]) + "\n"
 
 
 def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
@@ -191,8 +251,9 @@ def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
         "py_new[i] = pyh",
         "t_new[i] = th",
     ]
-    arguments = "n, tolerance, horizon, gates, x, y, px, py, t, x_new, y_new, px_new, py_new, t_new, h_taken, flag, crossed"
-    return _function(f"step({arguments})", body)
+    arguments = "tolerance, horizon, gates, x, y, px, py, t, x_new, y_new, px_new, py_new, t_new, h_taken, flag, crossed"
+    gates = [f"g{k}{w} = gates[{k}, {c}]" for k in range(channels) for c, w in enumerate(("x", "y", ""))]
+    return _function("step", arguments, body, gates)
 
 
 def _glide(recurrence: list[str]) -> str:
@@ -207,64 +268,74 @@ def _glide(recurrence: list[str]) -> str:
         "px[i] = pxh",
         "py[i] = pyh",
     ]
-    return _function("glide(n, h, weight, x, y, px, py, x_square, y_square)", body)
+    return _function("glide", "h, weight, x, y, px, py, x_square, y_square", body)
 
 
 def _jets(recurrence: list[str]) -> str:
     stores = [f"{name}_jet[{k}, i] = {name}{k}" for name in "xy" for k in range(ORDER + 1)]
-    return _function("jets(n, x, y, px, py, x_jet, y_jet)", [*recurrence, *stores])
+    return _function("jets", "x, y, px, py, x_jet, y_jet", [*recurrence, *stores])
 
 
-def _tangent(terms: Polynomial) -> str:
+def _tangent(table: _Table) -> str:
     """Variational equations ẅ = −(Hessian of V along the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
-    vx, vy = derivative(terms, 0), derivative(terms, 1)
-    hessian = {"hxx": derivative(vx, 0), "hxy": derivative(vx, 1), "hyy": derivative(vy, 1)}
+    hessian = {name: table.differentiated(*axes) for name, axes in (("hxx", (0, 0)), ("hxy", (0, 1)), ("hyy", (1, 1)))}
     forces = {"u": (("hxx", "u"), ("hxy", "v")), "v": (("hxy", "u"), ("hyy", "v"))}
-    polynomials = (vx, vy, *hessian.values())
-    products = plan_products({m for polynomial in polynomials for m in polynomial})
+    needed = (table.differentiated(0), table.differentiated(1), *hessian.values())
+    products = plan_products(frozenset(m for origins in needed for m in origins))
     scales = find_scales(products)
-    body = [*_recurrence(vx, vy, products, tuple(hessian.values())), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
+    body = [*_recurrence(table, products, tuple(hessian.values())), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
     for k in range(ORDER - 1):
-        body += [f"{name}{k} = {_linear_combination(polynomial, scales, k, -1.0)}" for name, polynomial in hessian.items()]
+        body += [f"{name}{k} = {_linear_combination(table, origins, scales, k, -1.0)}" for name, origins in hessian.items()]
         for name, pairs in forces.items():
             parts = [_cauchy(h, w, k) for h, w in pairs if hessian[h]]
             body.append(f"{name}{k + 2} = ({' + '.join(parts) or '0.0'})*({1.0 / ((k + 1) * (k + 2))!r})")
     body += ["h = duration[i]", *_horner("u", "uh", "wpx_new"), *_horner("v", "vh", "wpy_new")]
     body += ["wx[i] = uh", "wy[i] = vh", "wpx[i] = wpx_new", "wpy[i] = wpy_new"]
-    return _function("tangent(n, duration, x, y, px, py, wx, wy, wpx, wpy)", body)
+    return _function("tangent", "duration, x, y, px, py, wx, wy, wpx, wpy", body)
 
 
-def _potential_value(terms: Polynomial) -> str:
+def _potential_value(table: _Table, terms: Iterable[Monomial]) -> str:
     """V itself, at one point."""
-    factors = [[repr(c), *["x"] * i, *["y"] * j] for (i, j), c in terms.items()]
-    body = " + ".join("*".join(factor) for factor in factors) or "0.0"
-    return f"\n\n@kernel\ndef potential_value(x, y):\n    return {body}\n"
+    body = " + ".join("*".join([table.name((i, j), 1.0), *["x"] * i, *["y"] * j]) for i, j in terms) or "0.0"
+    loads = "".join(f"    {line}\n" for line in _loads([body]))
+    return f"\n\n@kernel\ndef potential_value(coefficients, x, y):\n{loads}    return {body}\n"
 
 
 def generate_source(terms: Terms, channels: int) -> str:
-    """The source of ``step``, ``glide``, ``jets``, ``tangent`` and ``potential_value`` for one potential.
+    """The source of ``step``, ``glide``, ``jets``, ``tangent`` and ``potential_value`` for the structure of one potential.
 
     Parameters
     ----------
     terms
-        ((i, j, c), …) of V = Σ c x^i y^j.
+        ((i, j, c), …) of V = Σ c x^i y^j, in any order.
     channels
         How many gates ``step`` tests.
 
     Returns
     -------
-    Python source that needs ``np`` and ``kernel`` in its namespace.
+    Python source that needs ``np`` and ``kernel`` in its namespace. The first argument of each function is the table of
+    `tabulate_coefficients`; no coefficient of V stands in the text.
     """
-    polynomial = {(i, j): c for i, j, c in terms}
-    vx, vy = derivative(polynomial, 0), derivative(polynomial, 1)
-    recurrence = _recurrence(vx, vy, plan_products({*vx, *vy}))
+    return _generate(terms, channels)[0]
+
+
+def tabulate_coefficients(terms: Terms) -> np.ndarray:
+    """(m,) what the functions of `generate_source` take as their first argument, for a potential of these terms; read-only."""
+    return _generate(terms, 0)[1]
+
+
+@functools.lru_cache(maxsize=64)
+def _generate(terms: Terms, channels: int) -> tuple[str, np.ndarray]:
+    # One order for all who write the same potential.
+    polynomial = {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}
+    table = _Table(polynomial)
+    recurrence = _recurrence(table, plan_products(frozenset({*table.differentiated(0), *table.differentiated(1)})))
     hidden = _hidden_crossings() if crossings_can_hide(polynomial) else ["hidden = 0"]
-    return "".join(
-        [
-            _step(recurrence, hidden, channels),
-            _glide(recurrence),
-            _jets(recurrence),
-            _tangent(polynomial),
-            _potential_value(polynomial),
-        ]
-    )
+    functions = [
+        _step(recurrence, hidden, channels),
+        _glide(recurrence),
+        _jets(recurrence),
+        _tangent(table),
+        _potential_value(table, polynomial),
+    ]
+    return "".join(functions), table.values()

@@ -3,6 +3,7 @@
 from numpy import ndarray
 
 def step(
+    coefficients: ndarray,
     n: int,
     tolerance: float,
     horizon: float,
@@ -22,6 +23,7 @@ def step(
     crossed: ndarray,
 ) -> None: ...
 def glide(
+    coefficients: ndarray,
     n: int,
     h: float,
     weight: float,
@@ -32,8 +34,11 @@ def glide(
     x_square: ndarray,
     y_square: ndarray,
 ) -> None: ...
-def jets(n: int, x: ndarray, y: ndarray, px: ndarray, py: ndarray, x_jet: ndarray, y_jet: ndarray) -> None: ...
+def jets(
+    coefficients: ndarray, n: int, x: ndarray, y: ndarray, px: ndarray, py: ndarray, x_jet: ndarray, y_jet: ndarray
+) -> None: ...
 def tangent(
+    coefficients: ndarray,
     n: int,
     duration: ndarray,
     x: ndarray,
@@ -45,4 +50,4 @@ def tangent(
     wpx: ndarray,
     wpy: ndarray,
 ) -> None: ...
-def potential_value(x: float, y: float) -> float: ...
+def potential_value(coefficients: ndarray, x: float, y: float) -> float: ...

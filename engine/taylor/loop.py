@@ -35,11 +35,11 @@ _LEAVES, _STAYS = 0, 1
 
 
 @kernel
-def resolve(n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, crossings, last_crossings, fate):
+def resolve(coefficients, n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, crossings, last_crossings, fate):
     """Look into `n` whole steps set aside: count their upward crossings and, for orbits that leave, settle the fate."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
-    jets(start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    jets(coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
         j = orbit[i]
         if leaves[i] == _STAYS:
@@ -65,8 +65,9 @@ def resolve(n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, cr
 
 @kernel
 def advance(
-    todo, horizon, final, tolerance, budget, lanes, gates, curves, curve_row, state, t, crossings, last_crossings, fate, waiting
-):
+    coefficients, todo, horizon, final, tolerance, budget, lanes, gates, curves, curve_row,
+    state, t, crossings, last_crossings, fate, waiting,
+):  # fmt: skip
     """Carry orbits on until they leave, pass `horizon`, or `budget` steps are spent.
 
     todo: numbers of the orbits to carry on; state (n, 4), t, crossings, last_crossings, fate, waiting: of all orbits,
@@ -103,7 +104,7 @@ def advance(
     while riding > 0 and taken < budget:
         width = (riding + VECTOR - 1) // VECTOR * VECTOR
         step(
-            width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
+            coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
         taken += riding
@@ -137,7 +138,7 @@ def advance(
                 aside += 1
                 if aside == lanes:
                     resolve(
-                        aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
+                        coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
                         curves, curve_row, state, t, crossings, last_crossings, fate,
                     )  # fmt: skip
                     aside = 0
@@ -162,7 +163,7 @@ def advance(
         now, new = new, now
     if aside > 0:
         resolve(
-            aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
+            coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
             curves, curve_row, state, t, crossings, last_crossings, fate,
         )  # fmt: skip
     for i in range(riding):
@@ -175,7 +176,7 @@ def advance(
 
 
 @kernel
-def trace(start, begin, end, tolerance, gates, steps):
+def trace(coefficients, start, begin, end, tolerance, gates, steps):
     """The starts of the steps of one orbit from time `begin` up to `end`, as `advance` takes them, until `steps` is full.
 
     steps (m, 5): x, y, px, py, t at the start of each step. Returns how many were written; when the last step reaches `end`
@@ -195,7 +196,7 @@ def trace(start, begin, end, tolerance, gates, steps):
             steps[count, c] = now[c, 0]
         count += 1
         step(
-            VECTOR, tolerance, end, gates, now[0], now[1], now[2], now[3], now[4],
+            coefficients, VECTOR, tolerance, end, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
         if flag[0] & OVERSHOOT != 0:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 Monomial = tuple[int, int]
 Polynomial = Mapping[Monomial, float]
 
 X, Y = (1, 0), (0, 1)
+
+# Coefficients that cancel in exact arithmetic, of a term like −x³ ε/3, do so to a few roundings.
+_ROUNDING = 1e-15
 
 
 @dataclass(frozen=True)
@@ -33,7 +38,7 @@ def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
     return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
 
 
-def plan_products(needed: set[Monomial]) -> list[Product]:
+def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
     """A short list of Cauchy products that yields every needed monomial.
 
     Greedy, monomial after monomial; tried also with each monomial that divides a needed one made first, and the cheapest kept.
@@ -89,10 +94,11 @@ def find_scales(plan: list[Product]) -> dict[Monomial, float]:
 
 
 def find_difference(products: list[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
-    """Two squares that enter everything as their difference only: one series then does for both."""
+    """Two squares that enter everything as their difference only, to rounding: one series then does for both."""
     factors = {monomial for p in products for monomial in (p.left, p.right)}
     squares = [p for p in products if p.left == p.right and p.monomial not in factors]
     for one, other in itertools.combinations(squares, 2):
-        if all(polynomial.get(one.monomial, 0.0) == -polynomial.get(other.monomial, 0.0) for polynomial in polynomials):
+        pairs = [(polynomial.get(one.monomial, 0.0), -polynomial.get(other.monomial, 0.0)) for polynomial in polynomials]
+        if all(math.isclose(a, b, rel_tol=_ROUNDING) for a, b in pairs):
             return one, other
     return None

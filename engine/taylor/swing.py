@@ -23,14 +23,14 @@ _MOST_STEPS = 400
 
 
 @kernel
-def find_wall(u, saddle_x, saddle_y, outward_x, outward_y, energy):
+def find_wall(coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
     """The q < 0 at which V = energy on the line across the channel at u; NaN where there is no wall."""
     x = saddle_x + u * outward_x
     y = saddle_y + u * outward_y
     high = 0.0
-    if potential_value(x, y) >= energy:
+    if potential_value(coefficients, x, y) >= energy:
         return np.nan
-    while potential_value(x + high * outward_y, y - high * outward_x) < energy:
+    while potential_value(coefficients, x + high * outward_y, y - high * outward_x) < energy:
         high += _WALL_STRIDE
         if high > _FURTHEST_WALL:
             return np.nan
@@ -39,7 +39,7 @@ def find_wall(u, saddle_x, saddle_y, outward_x, outward_y, energy):
         middle = 0.5 * (low + high)
         if middle <= low or middle >= high:
             break
-        if potential_value(x + middle * outward_y, y - middle * outward_x) < energy:
+        if potential_value(coefficients, x + middle * outward_y, y - middle * outward_x) < energy:
             low = middle
         else:
             high = middle
@@ -47,7 +47,7 @@ def find_wall(u, saddle_x, saddle_y, outward_x, outward_y, energy):
 
 
 @kernel
-def swing(u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance, steps):
+def swing(coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance, steps):
     """From rest on the wall q < 0 at u until the motion across the channel turns back.
 
     Returns (u̇ at that moment, its time, number of steps): u̇ < 0 for a start too far in, > 0 for one too far out, 0 for the
@@ -62,7 +62,7 @@ def swing(u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance,
     crossed = np.zeros(lanes, np.int64)
     gates = np.full((16, 3), np.inf)
     gates[:, :2] = 0.0
-    q = find_wall(u, saddle_x, saddle_y, outward_x, outward_y, energy)
+    q = find_wall(coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy)
     if np.isnan(q):
         return np.nan, np.nan, 0
     now[0, 0] = saddle_x + u * outward_x - q * outward_y
@@ -71,11 +71,11 @@ def swing(u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance,
         for c in range(5):
             steps[count, c] = now[c, 0]
         step(
-            lanes, tolerance, np.inf, gates, now[0], now[1], now[2], now[3], now[4],
+            coefficients, lanes, tolerance, np.inf, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
         if outward_x * new[3, 0] - outward_y * new[2, 0] <= 0.0:
-            return _turning_point(now, h[0], outward_x, outward_y, count)
+            return _turning_point(coefficients, now, h[0], outward_x, outward_y, count)
         run = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
         if not abs(run) < reach:
             return (1.0 if run > 0.0 else -1.0), np.nan, count + 1
@@ -84,10 +84,10 @@ def swing(u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance,
 
 
 @kernel
-def _turning_point(now, h, outward_x, outward_y, count):
+def _turning_point(coefficients, now, h, outward_x, outward_y, count):
     x_jet = np.empty((ORDER + 1, 1))
     y_jet = np.empty((ORDER + 1, 1))
-    jets(1, now[0], now[1], now[2], now[3], x_jet, y_jet)
+    jets(coefficients, 1, now[0], now[1], now[2], now[3], x_jet, y_jet)
     low, high = 0.0, h
     for _ in range(_BISECTIONS):
         tau = 0.5 * (low + high)

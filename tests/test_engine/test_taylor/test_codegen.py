@@ -15,7 +15,7 @@ from numba import njit
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.planes import Plane
 from engine.taylor.build import load_kernels
-from engine.taylor.codegen import ORDER, TOLERANCE, crossings_can_hide, generate_source
+from engine.taylor.codegen import ORDER, TOLERANCE, crossings_can_hide, generate_source, tabulate_coefficients
 from tests.peers import taylor_heyoka
 
 # One potential beyond the paper's: odd in both coordinates, of degree 5, with a term in neither force's pattern.
@@ -194,6 +194,22 @@ def test_squares_that_enter_as_their_difference_become_one_series() -> None:
     assert ("x2y0_0 = " in step) != ("x0y2_0 = " in step)
 
 
+def test_a_difference_is_one_whatever_its_strength() -> None:
+    terms, sources = CASES["II"].terms, set()
+    for strength in np.linspace(0.1, 2.0, 20):
+        sources.add(generate_source((*terms[:2], (3, 0, -strength / 3), (1, 2, strength)), 3))
+    assert len(sources) == 1
+
+
+def test_other_coefficients_or_another_order_of_terms_are_the_same_source() -> None:
+    (i, j, c), *rest = CASES["III"].terms
+    assert generate_source((*rest, (i, j, 1.3 * c)), 4) == generate_source(CASES["III"].terms, 4)
+
+
+def test_the_table_is_not_to_be_written_to() -> None:
+    assert not tabulate_coefficients(CASES["I"].terms).flags.writeable
+
+
 def test_squares_that_enter_on_their_own_do_not() -> None:
     # V_x holds x², V_y holds y²: no difference anywhere.
     source = generate_source(((2, 0, 0.5), (0, 2, 0.5), (3, 0, 0.1), (0, 3, 0.2)), 0)
@@ -210,7 +226,8 @@ def test_a_step_is_vector_code_throughout(name: str) -> None:
     namespace = {"np": np, "kernel": njit(error_model="numpy", fastmath={"contract"})}
     exec(generate_source(CASES[name].terms, CASES[name].channels), namespace)
     flags = np.zeros((2, n), np.int64)
-    namespace["step"](n, TOLERANCE, np.inf, np.zeros((CASES[name].channels, 3)), *np.zeros((11, n)), *flags)
+    table = tabulate_coefficients(CASES[name].terms)
+    namespace["step"](table, n, TOLERANCE, np.inf, np.zeros((CASES[name].channels, 3)), *np.zeros((11, n)), *flags)
     assembly = "".join(namespace["step"].inspect_asm().values())
     packed, scalar = (len(re.findall(rf"\bv(?:fn?m|mul)\w*{kind}\b", assembly)) for kind in ("pd", "sd"))
     assert packed > 300
