@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from engine.checks import read_array, read_count, shown
 from engine.escape_laws import FEWEST_ESCAPES, LEAST_P_VALUE, EscapeLaw, EscapeLaws, LawFit, clock_length, read_clock
 from engine.escape_statistics import EscapeStatistics, compute_survival
 from engine.map_specs import checked_t_max
@@ -22,6 +23,9 @@ from engine.truncated_exponentials import (
 
 FEWEST_RESAMPLES = 500
 """Fewest bootstrap resamples: 12 of them then lie beyond each end of a 95 % interval."""
+
+MOST_RESAMPLES = 100_000
+"""Most of them: beyond, an interval is drawn more sharply than its model is true."""
 
 _ENDS = (2.5, 97.5)
 # Of the escapes that remain, the share that the next window tried has.
@@ -82,12 +86,12 @@ def fit_escape_laws(
         When a parameter is out of its range.
     """
     t_max = checked_t_max(t_max)
-    if resamples < FEWEST_RESAMPLES:
-        raise ValueError(f"resamples={resamples}: must be {FEWEST_RESAMPLES} or more")
-    if seed < 0:
-        raise ValueError(f"seed={seed}: must be 0 or more")
-    if window is not None and not 0.0 < window[0] < window[1] <= t_max:
-        raise ValueError(f"window={window}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
+    resamples = read_count("resamples", resamples, FEWEST_RESAMPLES, MOST_RESAMPLES)
+    seed = read_count("seed", seed, 0, 2**63 - 1)
+    if window is not None:
+        ends = read_array("window", window)
+        if ends.shape != (2,) or not 0.0 < ends[0] < ends[1] <= t_max:
+            raise ValueError(f"window={shown(window)}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
     fitter = _Fitter(statistics, t_max if window is None else float(window[1]), resamples, seed, cancel)
     t_low, settled = fitter.choose_t_low() if window is None else (float(window[0]), True)
     return fitter.fit(t_low, settled)

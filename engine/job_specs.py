@@ -22,6 +22,7 @@ from engine.metrics.uncertainty import UncertaintyExponent, compute_uncertainty_
 from engine.orbits import Orbit, integrate_orbit
 from engine.origin_fates import OriginFateMap, join_origin_fates
 from engine.planes import Plane, Window
+from engine.potential_review import PotentialReview, review_potential
 from engine.potentials import Potential
 from engine.previews import compute_preview
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
@@ -55,6 +56,26 @@ class DigitsSpec:
     def run(self, bench: Bench) -> BirkhoffDigits:
         """Compute them."""
         return bench.on_pool(compute_birkhoff_digits, self.potential, self.state, self.t_max)
+
+
+@dataclass(frozen=True)
+class ReviewAnswer:
+    """What a potential is like."""
+
+    review: PotentialReview
+    nbytes: int = 8192
+    """About what it takes."""
+
+
+@dataclass(frozen=True)
+class ReviewSpec:
+    """The request to look a potential over."""
+
+    potential: Potential
+
+    def run(self, bench: Bench) -> ReviewAnswer:
+        """Look it over."""
+        return ReviewAnswer(bench.executor.submit(review_potential, self.potential).result())
 
 
 @dataclass(frozen=True)

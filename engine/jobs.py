@@ -75,13 +75,19 @@ class Jobs:
         Most memory for finished and interrupted results, in bytes.
     most_orbits
         Of all large jobs under way together, which bounds the memory that they hold, by about 120 bytes an orbit.
+    threads
+        Of a pool of its own; None for that of this process.
     """
 
     def __init__(
-        self, executor: Executor | None = None, cache_bytes: int = DEFAULT_CACHE_BYTES, most_orbits: int = DEFAULT_ORBITS
+        self,
+        executor: Executor | None = None,
+        cache_bytes: int = DEFAULT_CACHE_BYTES,
+        most_orbits: int = DEFAULT_ORBITS,
+        threads: int | None = None,
     ) -> None:
         self._executor = executor
-        self._pool = FairPool()
+        self._pool = FairPool(None if threads is None else ThreadPoolExecutor(threads, thread_name_prefix="orbits"))
         self._room = Room(most_orbits)
         self._ended = dict.fromkeys(_End, 0)
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")

@@ -8,6 +8,7 @@ too far out falls outward; the orbit is the root of the velocity along the chann
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass, replace
 from types import ModuleType
 
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy import optimize
 
+from engine.checks import read_number
 from engine.potentials import Potential
 from engine.taylor import events
 from engine.taylor.build import load_kernels
@@ -28,6 +30,7 @@ _FURTHEST = 2.0
 
 _SAMPLES_PER_SWING = 100
 _LARGEST_MISFIT = 1e-11
+# In units of the distance of the saddle, taken as a power of 2.
 _GATE_MARGIN = 1e-3
 _MOST_STEPS = 400
 # Column k holds the power series of the Chebyshev polynomial T_k.
@@ -88,22 +91,56 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     Raises
     ------
     ValueError
-        When `energy` is not finite, or so high that no Lyapunov orbit that crosses its channel as a graph is found.
+        When `energy` is not finite, or so high that no Lyapunov orbit that crosses its channel as a graph is found, or that the
+        exits meet.
     """
-    if not np.isfinite(energy):
-        raise ValueError(f"energy={energy}: must be a finite number")
-    return _find_all(potential, float(energy))
+    return _find_all(potential, read_number("energy", energy))
 
 
 @functools.lru_cache(maxsize=4096)
 def _find_all(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """Found in units of the potential's length, in which every absolute length of the search and of the steps is at home."""
+    length = potential.length
+    if length == 1.0:
+        orbits = _find_in_units(potential, energy, energy)
+    else:
+        found = _find_in_units(potential.in_units(length), energy / length**2, energy)
+        orbits = tuple(_enlarged(orbit, length) for orbit in found)
+    _check_apart(potential, energy, orbits)
+    return orbits
+
+
+def _find_in_units(potential: Potential, energy: float, named: float) -> tuple[LyapunovOrbit, ...]:
+    """The orbits of a potential of length 1; errors name the energy as the caller knows it."""
     found: dict[int, LyapunovOrbit] = {}
     for channel in potential.open_channels(energy):
         image = int(potential.mirror_channels[channel]) if potential.mirror_in_x else channel
-        found[channel] = _mirrored(found[image], channel) if image in found else _find(potential, energy, channel)
+        found[channel] = _mirrored(found[image], channel) if image in found else _find(potential, energy, channel, named)
         if image == channel and potential.mirror_in_x:
             found[channel] = _symmetrised(found[channel])
     return tuple(found.values())
+
+
+def _enlarged(orbit: LyapunovOrbit, length: float) -> LyapunovOrbit:
+    """An orbit found in units of `length`, a power of 2, in the units of its potential: no digit changes."""
+    curve = orbit.curve * length
+    directions = slice(events.OUTWARD_X, events.BEARING_Y + 1)
+    curve[directions] = orbit.curve[directions]
+    arrays = (orbit.x * length, orbit.y * length, curve)
+    for array in arrays:
+        array.flags.writeable = False
+    return LyapunovOrbit(orbit.channel, orbit.energy * length**2, orbit.period, *arrays)
+
+
+def _check_apart(potential: Potential, energy: float, orbits: tuple[LyapunovOrbit, ...]) -> None:
+    """Every exit must lie in the directions in which its saddle is the nearest: by that rule a point is said to be outside."""
+    towards = potential.saddles / np.hypot(*potential.saddles.T)[:, None] if orbits else potential.saddles
+    for orbit in orbits:
+        nearest = np.argmax(orbit.half_path @ towards.T, axis=1) + 1
+        if np.any(nearest != orbit.channel):
+            other = int(nearest[nearest != orbit.channel][0])
+            meet = f"the exits of channels {orbit.channel} and {other} meet"
+            raise ValueError(f"energy={energy}: too high for potential {potential.name}: {meet}")
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
@@ -133,17 +170,10 @@ def _symmetrised(orbit: LyapunovOrbit) -> LyapunovOrbit:
 @functools.cache
 def channel_axes(potential: Potential, channel: int) -> np.ndarray:
     """Unit vector along the unstable direction of a channel's saddle, pointing away from the well."""
-    saddle = potential.saddles[channel - 1]
-    vxx, vxy, vyy = potential.hessian(*saddle)
-    outward = np.linalg.eigh(np.array([[vxx, vxy], [vxy, vyy]]))[1][:, 0]
-    outward = np.where(np.abs(outward) < 1e-13, 0.0, outward)
-    outward = outward if outward @ saddle > 0 else -outward
-    if potential.mirror_in_x and saddle[0] < 0.0:
-        outward = channel_axes(potential, int(potential.mirror_channels[channel])) * [-1.0, 1.0]
-    return outward
+    return potential.outward_direction(channel)
 
 
-def _find(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
+def _find(potential: Potential, energy: float, channel: int, named: float) -> LyapunovOrbit:
     kernels = load_kernels(potential.terms, potential.channels)
     saddle = potential.saddles[channel - 1]
     outward = channel_axes(potential, channel)
@@ -156,16 +186,16 @@ def _find(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
 
     bracket = _bracket(drift, scale)
     if bracket is None:
-        raise ValueError(f"energy={energy}: no Lyapunov orbit found across channel {channel} of potential {potential.name}")
+        raise ValueError(f"energy={named}: no Lyapunov orbit found across channel {channel} of potential {potential.name}")
     u = optimize.brentq(drift, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
     _, half_period, count = kernels.swing(u, *frame)
     if not np.isfinite(half_period):
-        raise ValueError(f"energy={energy}: the Lyapunov orbit of channel {channel} of {potential.name} does not turn back")
+        raise ValueError(f"energy={named}: the Lyapunov orbit of channel {channel} of {potential.name} does not turn back")
     x, y = _dense_path(kernels, steps[:count], half_period)
     curve = _exit_curve(saddle, outward, x, y)
     if curve is None:
         raise ValueError(
-            f"energy={energy}: too high for potential {potential.name}: across channel {channel} the Lyapunov orbit is no "
+            f"energy={named}: too high for potential {potential.name}: across channel {channel} the Lyapunov orbit is no "
             f"longer a smooth graph, so the exit is not defined by it"
         )
     whole = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
@@ -179,7 +209,10 @@ def _bracket(drift: object, scale: float) -> tuple[float, float] | None:
     """Two neighbouring starts, the inner of which falls inward and the outer outward; strides grow from the saddle on."""
     assert callable(drift)
     here, stride = 0.0, _FIRST_STRIDE * scale
-    inward = drift(here) < 0
+    first = drift(here)
+    if np.isnan(first):
+        return None
+    inward = first < 0
     while abs(here) < _FURTHEST * scale:
         there = here + stride if inward else here - stride
         value = drift(there)
@@ -255,10 +288,12 @@ def find_outside_exits(potential: Potential, energy: float, x: np.ndarray, y: np
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:
     """(channels, 3) lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
-    rows = curves.reshape(-1, *curves.shape[-2:])
+    channels, columns = curves.shape[-2:]
+    rows = curves.reshape(math.prod(curves.shape[:-2]), channels, columns)
     s = np.linspace(-1.0, 1.0, 201)
     lowest = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))
     outward = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
     saddles = rows[0, :, events.SADDLE_X : events.SADDLE_Y + 1]
-    offset = np.sum(outward * saddles, axis=1) + lowest - _GATE_MARGIN
+    length = 2.0 ** np.round(np.log2(np.hypot(*saddles.T)))
+    offset = np.sum(outward * saddles, axis=1) + lowest - _GATE_MARGIN * length
     return np.column_stack([outward, offset])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numbers
 import operator
 from dataclasses import dataclass
 from importlib import metadata
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.checks import LARGEST_NUMBER, read_array, read_number, shown
 from engine.planes import Plane, Window, default_window, start_states
 from engine.potentials import Potential
 from engine.taylor.codegen import ORDER, TOLERANCE
@@ -115,25 +115,22 @@ class MapSpec:
         return (row, column) if 0 <= row < rows and 0 <= column < columns else None
 
 
-def checked_t_max(t_max: float) -> float:
-    """`t_max` as a float; ValueError unless 0 < t_max ≤ LONGEST_TIME."""
-    if not 0 < t_max <= LONGEST_TIME:
-        raise ValueError(f"t_max={t_max}: must be above 0 and at most {LONGEST_TIME:g}")
+def checked_t_max(t_max: float, longest: float = LONGEST_TIME) -> float:
+    """`t_max` as a float; ValueError unless 0 < t_max ≤ longest."""
+    given: Any = t_max
+    # Compared as it is: an integer may be too large for a float.
+    if not (isinstance(given, (int, float, np.number)) and 0 < given <= longest):
+        raise ValueError(f"t_max={shown(t_max)}: must be above 0 and at most {longest:g}")
     return float(t_max)
 
 
 def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
     if plane is not Plane.X_H:
-        if not isinstance(energy, numbers.Real) or not np.isfinite(float(energy)):
-            raise ValueError(f"energy={energy!r}: on {plane.value} it must be one finite number")
-        return float(energy)
-    try:
-        values = tuple(float(h) for h in np.ravel(energy))
-    except (TypeError, ValueError):
-        values = ()
-    if len(values) != 2 or not (np.all(np.isfinite(values)) and values[0] < values[1]):
-        raise ValueError(f"energy={energy!r}: on {plane.value} it must be a pair (low, high) of finite numbers")
-    return values[0], values[1]
+        return read_number("energy", energy, f"one finite number on {plane.value}")
+    values = read_array("energy", energy).ravel()
+    if values.size != 2 or not (np.all(np.abs(values) <= LARGEST_NUMBER) and values[0] < values[1]):
+        raise ValueError(f"energy={shown(energy)}: on {plane.value} it must be a pair (low, high) of finite numbers")
+    return float(values[0]), float(values[1])
 
 
 def _checked_window(window: Any, resolution: tuple[int, int]) -> Window:
@@ -147,8 +144,8 @@ def _checked_window(window: Any, resolution: tuple[int, int]) -> Window:
 def _window_from(edges: Any) -> Window:
     try:
         x_low, x_high, ordinate_low, ordinate_high = map(float, edges)
-    except (TypeError, ValueError):
-        raise ValueError(f"window={edges!r}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"window={shown(edges)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
     return Window(x_low, x_high, ordinate_low, ordinate_high)
 
 
@@ -158,5 +155,5 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
     except TypeError:
         sides = ()
     if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
-        raise ValueError(f"resolution={resolution!r}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
+        raise ValueError(f"resolution={shown(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
     return sides

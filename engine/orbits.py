@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.checks import LARGEST_NUMBER, read_array, shown
 from engine.fates import Fate, Regularity, describe_fate, judge_regularity
 from engine.map_specs import checked_t_max
 from engine.orbit_batches import SerialExecutor
@@ -19,6 +20,9 @@ from engine.taylor.dense import carry_deviations, sample_path, trace_steps
 # Fixed, generic and orthonormal: the same orbit always gets the same answer, and no symmetry keeps a vector apart.
 DEVIATION_VECTORS = np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0)
 DEVIATION_VECTORS.flags.writeable = False
+
+LONGEST_ORBIT = 1e7
+"""Largest t_max of an orbit in full: its samples take 3 GB then."""
 
 _FINEST_INTERVAL = 0.02
 _FEWEST_SAMPLES = 400
@@ -106,9 +110,8 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     state
         (4,) x, y, px, py; finite, dimensionless. Its energy becomes that of the orbit and of the exits.
     t_max
-        How long to follow it, 0 < t_max ≤ 1e8. Beyond 1e5 or so samples are up to a step of the integrator apart and take
+        How long to follow it, 0 < t_max ≤ 1e7. Beyond 1e5 or so samples are up to a step of the integrator apart and take
         some 300 bytes a time unit.
-
     cancel
         When set, the work stops within about 0.1 s.
 
@@ -120,7 +123,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
         When `state` is not four finite numbers, or `t_max` is out of its range.
     """
     start = checked_state("state", state)
-    t_max = checked_t_max(t_max)
+    t_max = checked_t_max(t_max, LONGEST_ORBIT)
     energy = float(potential.energy(start))
     outcome = classify_orbits(potential, energy, start[None], t_max, executor=SerialExecutor(), cancel=cancel)
     fate = int(outcome.fate[0])
@@ -137,9 +140,9 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
 
 def checked_state(name: str, state: Any) -> np.ndarray:
     """The state as four floats; ValueError, with this name, unless it is four finite numbers."""
-    start = np.asarray(state, dtype=float)
-    if start.shape != (4,) or not np.isfinite(start).all():
-        raise ValueError(f"{name}={state!r}: must be four finite numbers x, y, px, py")
+    start = read_array(name, state)
+    if start.shape != (4,) or not np.all(np.abs(start) <= LARGEST_NUMBER):
+        raise ValueError(f"{name}={shown(state)}: must be four finite numbers x, y, px, py of at most {LARGEST_NUMBER:g}")
     return start
 
 
@@ -154,9 +157,11 @@ def _follow(
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     path = sample_path(kernels, steps, times, cancel)
     sali, growth = carry_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
-    with np.errstate(invalid="ignore"):
-        # 0/0, which is NaN, at the start.
-        return times, path, sali, growth / times
+    exponent = np.full_like(times, np.nan)
+    with np.errstate(over="ignore"):
+        # A time may be so short that it has no reciprocal.
+        np.divide(growth, times, out=exponent, where=times > 0.0)
+    return times, path, sali, exponent
 
 
 def _sample_count(t_end: float, steps: int) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.checks import LARGEST_NUMBER, read_array, read_number
 from engine.fates import Fate
 from engine.lyapunov_orbits import exit_curves
 from engine.map_specs import checked_t_max
@@ -94,13 +95,14 @@ def classify_orbits(
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
-    states_array: np.ndarray = np.ascontiguousarray(states, dtype=float)
-    if not np.isfinite(energy):
-        raise ValueError(f"energy={energy}: must be a finite number")
+    energy = read_number("energy", energy)
+    states_array: np.ndarray = np.ascontiguousarray(read_array("states", states))
     if states_array.ndim != 2 or states_array.shape[1] != 4:
         raise ValueError(f"states of shape {states_array.shape}: must be (n, 4) with columns x, y, px, py")
-    if not np.isfinite(states_array).all():
-        raise ValueError(f"states: row {int(np.argmin(np.isfinite(states_array).all(axis=1)))} holds a number that is not finite")
+    usable = (np.abs(states_array) <= LARGEST_NUMBER).all(axis=1)
+    if not usable.all():
+        row = int(np.argmin(usable))
+        raise ValueError(f"states: row {row} holds a number that is not finite, or beyond {LARGEST_NUMBER:g}")
     off = np.abs(potential.energy(states_array) - energy)
     if np.any(off > ENERGY_TOLERANCE):
         row = int(np.argmax(off))

@@ -12,17 +12,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import Never
 
 import contourpy
 import numpy as np
 
+from engine.checks import read_number, shown
 from engine.lyapunov_orbits import find_lyapunov_orbits, find_outside_exits
 from engine.potentials import Potential
 
 # The default window leaves this share of its side free around what it shows.
 _MARGIN = 0.03
 _SCAN = 801
+# How far from the origin the interior is looked for: in units of the potential's length, and of its furthest exit.
 _FURTHEST = 4.0
+_BEYOND_EXITS = 2.0
 _RAYS = 180
 _CONTOUR_SAMPLES = 201
 
@@ -39,12 +43,16 @@ class Plane(Enum):
         """Name of the vertical coordinate."""
         return {Plane.X_Y: "y", Plane.X_PX: "px", Plane.X_H: "h"}[self]
 
+    @classmethod
+    def _missing_(cls, value: object) -> Never:
+        raise ValueError(f"plane={shown(value)}: must be one of {', '.join(plane.value for plane in cls)}")
+
 
 @dataclass(frozen=True)
 class Window:
     """A rectangle of a plane, edges included, dimensionless.
 
-    Raises ValueError when an edge is not finite or a side is empty or reversed.
+    Raises ValueError when an edge is not finite or beyond ±1e9, or a side is empty or reversed.
     """
 
     x_low: float
@@ -57,7 +65,8 @@ class Window:
             ("x", self.x_low, self.x_high),
             ("ordinate", self.ordinate_low, self.ordinate_high),
         ):
-            if not (np.isfinite(low) and np.isfinite(high) and low < high):
+            edges = [read_number(f"window {name} edge", edge) for edge in (low, high)]
+            if not edges[0] < edges[1]:
                 raise ValueError(f"window {name} range {low} … {high}: needs two finite numbers, the lower one first")
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
@@ -80,7 +89,9 @@ def start_states(
     zero = np.zeros_like(x)
     y, px = (ordinate, zero) if plane is Plane.X_Y else (zero, ordinate if plane is Plane.X_PX else zero)
     h = ordinate if plane is Plane.X_H else energy
-    doubled = 2.0 * (h - potential.value(x, y)) - px * px
+    with np.errstate(over="ignore", invalid="ignore"):
+        # Far enough away, and at no energy, nothing starts.
+        doubled = 2.0 * (h - potential.value(x, y)) - px * px
     return np.column_stack([x, y, px, np.sqrt(np.where(doubled >= 0, doubled, np.nan))])
 
 
@@ -123,12 +134,13 @@ def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float,
 
 def trace_equipotentials(potential: Potential, plane: Plane, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
     """The limiting curves that several energies would have on (x, y) or (x, px): for each its (n, 2) pieces."""
+    levels = [read_number("energies", energy) for energy in energies]
     x, ordinate = (
         np.linspace(low, high, _CONTOUR_SAMPLES)
         for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
     )
-    contours = contourpy.contour_generator(x, ordinate, required_energy(potential, plane, *np.meshgrid(x, ordinate)))
-    return [[np.asarray(line) for line in contours.lines(energy)] for energy in energies]
+    contours = contourpy.contour_generator(x, ordinate, required_energy(potential, Plane(plane), *np.meshgrid(x, ordinate)))
+    return [[np.asarray(line) for line in contours.lines(level)] for level in levels]
 
 
 def default_window(potential: Potential, plane: Plane, energy: float | tuple[float, float]) -> Window:
@@ -136,8 +148,8 @@ def default_window(potential: Potential, plane: Plane, energy: float | tuple[flo
 
     For (x, y) and (x, px) it is a square; for (x, h) `energy` is the pair of lowest and highest h.
     """
-    highest = energy[1] if isinstance(energy, tuple) else energy
-    if plane is Plane.X_Y:
+    highest = _highest_energy(energy)
+    if Plane(plane) is Plane.X_Y:
         return _square(*_interior_extent(potential, highest))
     x_low, x_high = _interior_interval(potential, highest)
     if isinstance(energy, tuple):
@@ -146,6 +158,15 @@ def default_window(potential: Potential, plane: Plane, energy: float | tuple[flo
     x = np.linspace(x_low, x_high, _SCAN)
     px = np.sqrt(2.0 * max(highest - np.min(potential.value(x, np.zeros_like(x))), 0.0))
     return _square(x_low, x_high, -float(px), float(px))
+
+
+def _highest_energy(energy: float | tuple[float, float]) -> float:
+    if not isinstance(energy, tuple):
+        return read_number("energy", energy)
+    ends = [read_number("energy", one) for one in energy]
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise ValueError(f"energy={shown(energy)}: must be one finite number, or on (x, h) a pair (low, high)")
+    return ends[1]
 
 
 def _square(x_low: float, x_high: float, low: float, high: float) -> Window:
@@ -165,26 +186,41 @@ def _connected_run(allowed: np.ndarray) -> slice:
 
 def _interior_interval(potential: Potential, energy: float) -> tuple[float, float]:
     """The x between which the axis y = 0 lies in the interior, to about a thousandth."""
-    x = np.linspace(-_FURTHEST, _FURTHEST, 4 * _SCAN)
+    furthest = _furthest(potential)
+    x = np.linspace(-furthest, furthest, 4 * _SCAN)
     zero = np.zeros_like(x)
     outside = find_outside_exits(potential, energy, x, zero)
     run = _connected_run((potential.value(x, zero) <= energy) & (outside == 0))
-    return _rounded(x[run][0]), _rounded(x[run][-1])
+    _check_interior(energy, x[run])
+    return _rounded(x[run][0], potential), _rounded(x[run][-1], potential)
+
+
+def _furthest(potential: Potential) -> float:
+    """No point of the interior is further from the origin than this, unless the energy is many times the escape energy."""
+    return max(_FURTHEST * potential.length, _BEYOND_EXITS * float(np.hypot(*potential.saddles.T).max(initial=0.0)))
 
 
 def _interior_extent(potential: Potential, energy: float) -> tuple[float, float, float, float]:
     """The box around the interior of the (x, y) plane: rays from the well's bottom to its walls, and the exits."""
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
-    radius = np.linspace(0.0, _FURTHEST, _SCAN // 2)
+    radius = np.linspace(0.0, _furthest(potential), _SCAN // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
     outside = find_outside_exits(potential, energy, x, y)
     inside = np.logical_and.accumulate((potential.value(x, y) <= energy) & (outside == 0), axis=1)
     x, y = x[inside], y[inside]
+    _check_interior(energy, x)
     for orbit in find_lyapunov_orbits(potential, energy):
         x, y = np.append(x, orbit.x), np.append(y, orbit.y)
-    return _rounded(x.min()), _rounded(x.max()), _rounded(y.min()), _rounded(y.max())
+    x_low, x_high, y_low, y_high = (_rounded(edge, potential) for edge in (x.min(), x.max(), y.min(), y.max()))
+    return x_low, x_high, y_low, y_high
 
 
-def _rounded(edge: float) -> float:
-    """To twelve decimals, so that the window of a symmetric interior is symmetric to the bit."""
-    return round(float(edge), 12)
+def _check_interior(energy: float, x: np.ndarray) -> None:
+    """ValueError unless the interior reaches over more than one x."""
+    if x.size == 0 or not x.min() < x.max():
+        raise ValueError(f"energy={energy}: there is no interior to show; must be above that of the well's bottom by 1e-5 or so")
+
+
+def _rounded(edge: float, potential: Potential) -> float:
+    """To twelve decimals of the potential's length, so that the window of a symmetric interior is symmetric to the bit."""
+    return round(float(edge) / potential.length, 12) * potential.length

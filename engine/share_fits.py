@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy import optimize, stats
 
+from engine.checks import read_array, read_count, read_integers, shown
 from engine.paper_fits import HyperbolicTangent, Polynomial, ShareCurve, written
 
 LARGEST_DEGREE = 6
@@ -170,8 +171,7 @@ def fit_direct_shares(h: Any, direct: Any, starts: Any, degree: int = 3) -> Shar
     ValueError
         When a parameter is out of its range.
     """
-    if not 1 <= degree <= LARGEST_DEGREE:
-        raise ValueError(f"degree={degree}: must be from 1 to {LARGEST_DEGREE}")
+    degree = read_count("degree", degree, 1, LARGEST_DEGREE)
     energies, shares = _checked_shares(h, "direct", direct, starts, parameters=degree + 1)
     middle, width = energies.mean(), np.ptp(energies)
     powers = np.vander((energies - middle) / width, degree + 1, increasing=True)
@@ -232,19 +232,19 @@ def _gather(curve: ShareCurve, half_widths: np.ndarray, energies: np.ndarray, sh
 
 def _checked_shares(h: Any, name: str, counts: Any, starts: Any, *, parameters: int | None) -> tuple[np.ndarray, np.ndarray]:
     """Energies and shares (m,); enough of them to fit so many parameters, or at least one."""
-    energies = np.array(h, dtype=float)
+    energies = read_array("h", h).copy()
     fewest = 1 if parameters is None else parameters + _SPARE_ENERGIES
     usable = energies.ndim == 1 and energies.size >= fewest and np.isfinite(energies).all()
     if not usable or np.unique(energies).size < energies.size:
-        raise ValueError(f"h={h!r}: must be {fewest} or more different finite numbers in a row")
-    part, whole = np.asarray(counts), np.asarray(starts)
+        raise ValueError(f"h={shown(h)}: must be {fewest} or more different finite numbers in a row")
+    part, whole = read_integers(name, counts), read_integers("starts", starts)
     for label, array in ((name, part), ("starts", whole)):
-        if array.shape != energies.shape or array.dtype.kind not in "iu":
-            raise ValueError(f"{label}={array!r}: must be integers, as many as energies, {energies.size}")
+        if array.shape != energies.shape:
+            raise ValueError(f"{label}={shown(array)}: must be integers, as many as energies, {energies.size}")
     if np.any(whole < 1):
-        raise ValueError(f"starts={starts!r}: must be 1 or more")
+        raise ValueError(f"starts={shown(starts)}: must be 1 or more")
     if np.any((part < 0) | (part > whole)):
-        raise ValueError(f"{name}={counts!r}: must be from 0 to starts={starts!r}")
+        raise ValueError(f"{name}={shown(counts)}: must be from 0 to starts={shown(starts)}")
     shares = part / whole
     for array in (energies, shares):
         array.flags.writeable = False

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from engine.checks import read_count
 from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.planes import Plane, Window, default_window
 from engine.potentials import Potential
@@ -143,8 +144,7 @@ def find_stable_manifolds(
     -----
     Tubes and their part in escapes: Contopoulos 1990, Astron. Astrophys. 231, 41; Koon, Lo, Marsden & Ross 2000, Chaos 10, 427.
     """
-    if not 1 <= images <= MOST_IMAGES:
-        raise ValueError(f"images={images}: must be from 1 to {MOST_IMAGES}")
+    images = read_count("images", images, 1, MOST_IMAGES)
     arcs: dict[int, list[ManifoldArc]] = {}
     truncated = False
     grain = _Grain.of(default_window(potential, Plane.X_PX, energy), window)

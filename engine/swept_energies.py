@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.checks import LARGEST_NUMBER, shown
 from engine.planes import Plane
 
 
@@ -16,8 +17,8 @@ def checked_sweep(plane: Any, energies: Any, most: int) -> tuple[Plane, tuple[fl
         raise ValueError(f"plane={checked_plane.value}: energies are swept on (x, y) or (x, px); (x, h) holds all of them")
     try:
         checked = tuple(sorted({float(h) for h in energies}))
-    except (TypeError, ValueError):
-        raise ValueError(f"energies={energies!r}: must be finite numbers") from None
-    if not 1 <= len(checked) <= most or not np.isfinite(checked).all():
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"energies={shown(energies)}: must be finite numbers") from None
+    if not 1 <= len(checked) <= most or not np.all(np.abs(checked) <= LARGEST_NUMBER):
         raise ValueError(f"energies: {len(checked)} different ones; must be 1 to {most} finite numbers")
     return checked_plane, checked

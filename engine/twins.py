@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.checks import read_number
 from engine.fates import Fate
 from engine.map_specs import checked_t_max
 from engine.outcomes import classify_orbits
@@ -104,8 +105,9 @@ def find_twin(
         When a parameter is out of its range, or the start is forbidden or outside.
     """
     t_max = checked_t_max(t_max)
-    if not _NEAREST < furthest < np.inf:
+    if not read_number("furthest", furthest, f"a finite number above {_NEAREST:g}") > _NEAREST:
         raise ValueError(f"furthest={furthest}: must be a finite number above {_NEAREST:g}")
+    plane = Plane(plane)
     h = _checked_energy(plane, energy, x, ordinate)
     search = _Search(potential, plane, h, np.array([x, ordinate], dtype=float), executor, cancel)
     search.follow_the_first(t_max)
@@ -120,13 +122,10 @@ def find_twin(
 def _checked_energy(plane: Plane, energy: float | tuple[float, float], x: float, ordinate: float) -> float:
     """h of the start."""
     for name, value in (("x", x), (plane.ordinate, ordinate)):
-        if not np.isfinite(value):
-            raise ValueError(f"{name}={value}: must be a finite number")
+        read_number(name, value)
     if plane is Plane.X_H:
         return float(ordinate)
-    if isinstance(energy, tuple) or not np.isfinite(energy):
-        raise ValueError(f"energy={energy!r}: on {plane.value} it must be one finite number")
-    return float(energy)
+    return read_number("energy", energy, f"one finite number on {plane.value}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from engine.checks import read_count
 from engine.escape_maps import EscapeMap
 from engine.jobs import Jobs, JobSpec
 from engine.map_specs import MapSpec
@@ -13,6 +14,10 @@ from engine.tickets import Ticket
 
 MOST_REQUESTS = 32
 """Requests of one visitor under way at the same time, unless told otherwise: more than all switches of the page make together."""
+
+
+MOST_REQUESTS_EVER = 1000
+"""Largest limit: beyond it there is none to speak of."""
 
 
 class Requests(Protocol):
@@ -35,14 +40,12 @@ class Visitor:
     jobs
         The background work of the process.
     most_requests
-        How many may be under way at the same time, 1 or more.
+        How many may be under way at the same time, 1 to 1000.
     """
 
     def __init__(self, jobs: Jobs, most_requests: int = MOST_REQUESTS) -> None:
-        if most_requests < 1:
-            raise ValueError(f"most_requests={most_requests}: must be 1 or more")
         self._jobs = jobs
-        self._most_requests = most_requests
+        self._most_requests = read_count("most_requests", most_requests, 1, MOST_REQUESTS_EVER)
         self._tickets: list[Ticket] = []
 
     def request_map(self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]) -> Ticket:

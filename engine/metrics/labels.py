@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.checks import read_array
 from engine.escape_maps import EscapeMap
 from engine.fates import Fate
 
@@ -47,12 +48,12 @@ def exit_labels(frame: EscapeMap, *, bounded: bool) -> tuple[np.ndarray, np.ndar
 
 def checked_labels(labels: Any, valid: Any) -> tuple[np.ndarray, np.ndarray]:
     """The labels as an array of integers and which of them count; ValueError unless both are (rows, columns)."""
-    labels = np.asarray(labels)
+    labels = read_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
         raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")
     if valid is None:
         return labels, np.ones(labels.shape, np.bool_)
-    valid = np.asarray(valid)
+    valid = read_array("valid", valid, keep_type=True)
     if valid.shape != labels.shape or valid.dtype != np.bool_:
         raise ValueError(
             f"valid of shape {valid.shape} and type {valid.dtype}: must be bool, shaped like the labels {labels.shape}"

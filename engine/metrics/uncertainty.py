@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import operator
+import numbers
 import threading
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor
@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from engine.certificates import Certificate
+from engine.checks import read_count, shown
 from engine.fates import Fate
 from engine.lyapunov_orbits import closed_curves, exit_curves
 from engine.map_specs import MapSpec
@@ -105,11 +106,12 @@ def compute_uncertainty_exponent(
     ValueError
         When a parameter is out of its range, or the pixels are too small to put starts below them.
     """
-    pairs = _checked_count("pairs", pairs, 10, _MOST_PAIRS)
-    separations = _checked_count("separations", separations, 5, _MOST_SEPARATIONS)
-    seed = _checked_count("seed", seed, 0, 2**63 - 1)
-    if not work > 0.0:
-        raise ValueError(f"work={work}: must be above 0")
+    pairs = read_count("pairs", pairs, 10, _MOST_PAIRS)
+    separations = read_count("separations", separations, 5, _MOST_SEPARATIONS)
+    seed = read_count("seed", seed, 0, 2**63 - 1)
+    given: object = work
+    if not isinstance(given, numbers.Real) or not work > 0.0:
+        raise ValueError(f"work={shown(work)}: must be above 0")
     report = on_progress or (lambda share: None)
     survey = _Survey(spec, _separations(spec, separations), seed, executor, cancel)
     survey.follow(np.full(separations, pairs), lambda share: report(0.5 * share))
@@ -120,16 +122,6 @@ def compute_uncertainty_exponent(
 
 def _report_part(report: Callable[[float], None], done: int, parts: int, share: float) -> None:
     report((done + share) / parts)
-
-
-def _checked_count(name: str, value: int, least: int, most: int) -> int:
-    try:
-        count = operator.index(value)
-    except TypeError:
-        count = least - 1
-    if not least <= count <= most:
-        raise ValueError(f"{name}={value!r}: must be an integer from {least} to {most}")
-    return count
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:

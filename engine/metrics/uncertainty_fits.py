@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from engine.checks import read_array, read_integers, shown
+
 LEAST_EXPECTED = 5.0
 """A separation counts when the law expects this many uncertain pairs, and as many certain ones: χ² asks for it (Cochran 1954).
 
@@ -177,16 +179,16 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
 
 
 def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    epsilon = np.array(separations, dtype=float)
+    epsilon = read_array("separations", separations).copy()
     if epsilon.ndim != 1 or not np.all((epsilon > 0.0) & np.isfinite(epsilon)) or np.unique(epsilon).size < epsilon.size:
-        raise ValueError(f"separations={separations!r}: must be different finite numbers above 0 in a row")
-    counts = [np.asarray(pairs), np.asarray(uncertain)]
+        raise ValueError(f"separations={shown(separations)}: must be different finite numbers above 0 in a row")
+    counts = [read_integers("pairs", pairs), read_integers("uncertain", uncertain)]
     for name, count in zip(("pairs", "uncertain"), counts, strict=True):
-        if count.shape != epsilon.shape or not (count.dtype.kind in "iu" or count.size == 0):
-            raise ValueError(f"{name}={count!r}: must be integers, as many as separations, {epsilon.size}")
+        if count.shape != epsilon.shape:
+            raise ValueError(f"{name}={shown(count)}: must be integers, as many as separations, {epsilon.size}")
     n, k = (count.astype(np.int64) for count in counts)
     if np.any((k < 0) | (k > n)):
-        raise ValueError(f"uncertain={uncertain!r}: must be from 0 to pairs={pairs!r}")
+        raise ValueError(f"uncertain={shown(uncertain)}: must be from 0 to pairs={shown(pairs)}")
     return epsilon, n, k
 
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, LyapunovOrbit, find_lyapunov_orbits
-from engine.lyapunov_orbits import closed_curves, exit_curves, exit_gates
+from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
+from engine.known_potentials import POTENTIALS
+from engine.lyapunov_orbits import closed_curves, exit_curves, exit_gates, find_outside_exits
 from engine.taylor.events import find_outside
 from tests.peers.dop853 import equations
 
@@ -160,3 +161,39 @@ def test_a_closed_channel_ends_at_its_saddle(name: str) -> None:
     for channel, saddle in enumerate(CASES[name].saddles, start=1):
         x, y = np.outer(saddle, [0.999, 1.001])
         np.testing.assert_array_equal(find_outside(x, y, curves, np.zeros(2, np.int64)), [0, channel])
+
+
+@pytest.mark.parametrize("epsilon", [1 / 64, 32.0])
+def test_orbits_of_large_and_small_wells_are_those_of_case_2_enlarged(epsilon: float) -> None:
+    # V(x, y) of ε V1, of degree 3, is ε⁻² times that of V1 at (εx, εy); powers of 2 change no digit.
+    large = find_lyapunov_orbits(CASES["II"].with_parameters(epsilon=epsilon), 0.2 / epsilon**2)
+    for orbit, usual in zip(large, find_lyapunov_orbits(CASES["II"], 0.2), strict=True):
+        np.testing.assert_allclose(epsilon * orbit.x, usual.x, atol=1e-13)
+        np.testing.assert_allclose(epsilon * orbit.y, usual.y, atol=1e-13)
+        assert orbit.period == pytest.approx(usual.period, rel=1e-12)
+
+
+def test_exits_of_a_large_well_are_those_of_case_2_enlarged() -> None:
+    large, energy = CASES["II"].with_parameters(epsilon=1 / 64), 0.2 * 64**2
+    x, y = np.random.default_rng(1).uniform(-1.5, 1.5, (2, 300))
+    expected = find_outside_exits(CASES["II"], 0.2, x, y)
+    np.testing.assert_array_equal(find_outside_exits(large, energy, 64 * x, 64 * y), expected)
+
+
+def test_no_orbit_is_found_where_the_channels_have_joined() -> None:
+    # ½r² + xy² + x³/3 has a maximum of energy 1/6 between its two exits.
+    separable = POTENTIALS["Separable"].potential
+    assert len(find_lyapunov_orbits(separable, 0.99 / 6)) == 2
+    with pytest.raises(ValueError, match="Separable"):
+        find_lyapunov_orbits(separable, 1.01 / 6)
+
+
+def test_the_exits_of_a_separable_well_are_straight() -> None:
+    # Along x + y = −1 the motion is that of x − y alone, there and back between its turning points.
+    orbit = next(o for o in find_lyapunov_orbits(POTENTIALS["Separable"].potential, 0.12) if o.y.mean() < 0)
+    np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
+
+
+def test_without_channels_there_are_no_gates() -> None:
+    harmonic = Potential("harmonic", ((2, 0, 0.5), (0, 2, 0.5)))
+    assert exit_gates(exit_curves(harmonic, 1.0)[None]).shape == (0, 3)

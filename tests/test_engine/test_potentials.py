@@ -116,3 +116,70 @@ def test_name_makes_no_difference() -> None:
 def test_malformed_terms_are_refused(terms: tuple[tuple[int, int, float], ...]) -> None:
     with pytest.raises(ValueError, match="terms"):
         Potential("malformed", terms)
+
+
+def test_a_saddle_from_which_nothing_falls_into_the_well_is_no_channel() -> None:
+    # Along x the well ends at the saddle x = 0.434; past the minimum at 1.441 nothing leads back.
+    beyond = Potential("beyond", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, -1.0), (4, 0, 0.4), (2, 2, -1.0)))
+    assert len(beyond.critical_points) == 5
+    assert beyond.channels == 3
+
+
+def test_without_a_well_at_the_origin_there_is_no_channel() -> None:
+    assert Potential("saddle", ((2, 0, 0.5), (0, 2, -0.5))).channels == 0
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_parameters_of_one_are_the_potential_itself(name: str) -> None:
+    same = CASES[name].with_parameters()
+    assert (same, same.name) == (CASES[name], name)
+
+
+def test_parameters_stand_where_the_paper_has_them() -> None:
+    changed = CASES["II"].with_parameters(omega_1=1.2, omega_2=0.9, epsilon=0.8)
+    expression = (sympy.Float(1.44, 30) * X**2 + sympy.Float(0.81, 30) * Y**2) / 2 + sympy.Rational(4, 5) * PAPER["II"]
+    assert changed.value(0.3, -0.4) == pytest.approx(at(expression, 0.3, -0.4), rel=1e-14)
+
+
+def test_parameters_other_than_one_are_in_the_name() -> None:
+    assert CASES["I"].with_parameters(omega_1=1.2, epsilon=0.8).name == "I (ω1=1.2, ε=0.8)"
+
+
+@given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), st.floats(0.01, 100.0))
+def test_saddles_of_case_1_follow_the_parameters(a: float, b: float, epsilon: float) -> None:
+    # V_y = (b² − 2 ε x) y and V_x = a² x − ε y² vanish at x = b²/2ε, y = ± a b/(√2 ε); V there is a² b⁴/8ε².
+    potential = CASES["I"].with_parameters(a, b, epsilon)
+    x, y = b**2 / (2 * epsilon), a * b / (np.sqrt(2) * epsilon)
+    np.testing.assert_allclose(potential.saddles, [(x, y), (x, -y)], rtol=1e-9)
+    assert potential.escape_energy == pytest.approx(a**2 * b**4 / (8 * epsilon**2), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "value"),
+    [("omega_1", 0.0), ("omega_1", -1.0), ("omega_2", 11.0), ("epsilon", 0.0), ("epsilon", np.nan), ("epsilon", np.inf)],
+)
+def test_parameters_out_of_range_are_refused(parameter: str, value: float) -> None:
+    with pytest.raises(ValueError, match=f"{parameter}={value}"):
+        CASES["I"].with_parameters(**{parameter: value})
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_papers_wells_are_of_unit_length(name: str) -> None:
+    assert CASES[name].length == 1.0
+
+
+@pytest.mark.parametrize(("epsilon", "length"), [(1 / 64, 64.0), (1.0, 1.0), (64.0, 1 / 64)])
+def test_the_length_of_a_cubic_well_is_that_of_its_strength(epsilon: float, length: float) -> None:
+    assert CASES["II"].with_parameters(epsilon=epsilon).length == length
+
+
+def test_in_units_of_its_length_a_well_is_of_unit_length() -> None:
+    potential = CASES["II"].with_parameters(epsilon=1 / 64)
+    assert potential.in_units(64.0) == CASES["II"]
+
+
+@given(polynomials, places, places)
+def test_mirror_images_have_the_same_potential_to_the_bit(table: dict[tuple[int, int], float], x: float, y: float) -> None:
+    even = potential_of({(2 * i, 2 * j): c for (i, j), c in table.items()})
+    points = np.array([x, -x, x, -x]), np.array([y, y, -y, -y])
+    assert np.unique(even.value(*points)).size == 1

@@ -1,0 +1,40 @@
+"""The potentials that the contract is tested on: all that come with the engine, and a few that nobody chose."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.formulas import write_formula
+from engine.known_potentials import POTENTIALS
+from engine.potential_review import review_potential
+from engine.potentials import Potential
+
+# Kernels are compiled for each potential: these are in every run, the others, the paper's cases among them, which the other tests
+# are about, where time does not matter.
+ALWAYS = ("C5", "C8")
+
+
+def _random(seed: int) -> Potential:
+    """A well with random terms of third and fourth degree, the first of its seed that the review accepts."""
+    rng = np.random.default_rng(seed)
+    while True:
+        powers = [(i, n - i) for n in (3, 4) for i in range(n + 1)]
+        chosen = rng.choice(len(powers), 3, replace=False)
+        terms = tuple((*powers[k], float(np.round(rng.normal(), 3))) for k in chosen)
+        frequencies = ((2, 0, float(np.round(rng.uniform(0.3, 1.0), 3))), (0, 2, float(np.round(rng.uniform(0.3, 1.0), 3))))
+        potential = Potential(f"random {seed}", (*frequencies, *terms))
+        review = review_potential(potential)
+        if review.refusal is None and not any("other wells" in remark for remark in review.remarks):
+            return Potential(write_formula(potential), potential.terms)
+
+
+RANDOM = tuple(_random(seed) for seed in range(3))
+ALL = (*(entry.potential for entry in POTENTIALS.values()), *RANDOM)
+
+each_potential = pytest.mark.parametrize("potential", ALL, ids=lambda potential: potential.name)
+each_compiled = pytest.mark.parametrize(
+    "potential",
+    [pytest.param(p, marks=() if p.name in ALWAYS else pytest.mark.slow) for p in ALL],
+    ids=lambda potential: potential.name,
+)
