@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import replace
 from typing import Any
@@ -15,7 +15,7 @@ from engine.escape_maps import IMAGES, EscapeMap
 from engine.fates import Fate
 from engine.map_runs import MapRun, carry_through
 from engine.map_specs import MapSpec
-from engine.planes import Plane
+from engine.row_bands import row_bands
 from engine.trust_maps import compute_trust
 
 LARGEST_RUN = 2**20
@@ -128,7 +128,7 @@ def _compute_in_bands(
 ) -> EscapeMap:
     canvas = _blank(spec)
     done = 0
-    for rows in _bands(spec):
+    for rows in row_bands(spec, LARGEST_RUN):
         run = MapRun(spec, rows=rows)
         carry_through(run, executor, cancel)
         part = run.frame()
@@ -157,16 +157,3 @@ def _blank(spec: MapSpec) -> EscapeMap:
     x, ordinate = spec.pixel_centres()
     images: dict[str, Any] = {name: np.full((ordinate.size, x.size), value, dtype) for name, (dtype, value) in IMAGES.items()}
     return EscapeMap(spec, x, ordinate, stride=1, horizon=0.0, progress=0.0, complete=False, **images)
-
-
-def _bands(spec: MapSpec) -> Iterator[np.ndarray]:
-    """Numbers of rows that together hold every pixel; on (x, px) each band with its mirror image."""
-    columns, rows = spec.resolution
-    height = max(LARGEST_RUN // columns, 1)
-    if spec.plane is not Plane.X_PX:
-        yield from (np.arange(low, min(low + height, rows)) for low in range(0, rows, height))
-        return
-    half = max(height // 2, 1)
-    for low in range(0, (rows + 1) // 2, half):
-        lower = np.arange(low, min(low + half, (rows + 1) // 2))
-        yield np.union1d(lower, rows - 1 - lower)

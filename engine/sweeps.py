@@ -1,4 +1,4 @@
-"""Long runs: maps at many energies, kept in a store as they are finished, so that a run that was stopped goes on from there."""
+"""Long runs: maps at many energies, kept in a store band by band, so that a run that was stopped goes on from there."""
 
 from __future__ import annotations
 
@@ -8,95 +8,28 @@ from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from engine.checks import read_count
 from engine.escape_maps import IMAGES, EscapeMap
 from engine.lyapunov_orbits import exit_curves
-from engine.map_runs import MapRun
+from engine.map_runs import MapRun, carry_through
 from engine.map_specs import MapSpec
 from engine.maps import LARGEST_RUN, compute_map
 from engine.orbit_batches import SerialExecutor, count_workers, default_executor
-from engine.planes import Plane, Window
-from engine.potentials import Potential
 from engine.preparation import prepare_kernels
+from engine.row_bands import row_bands
+from engine.sweep_specs import SweepSpec as SweepSpec
 from engine.sweep_stores import SweepStore, create_store
-from engine.swept_energies import checked_sweep
-
-MOST_SWEPT_ENERGIES = 10_000
-"""Most energies of a stored sweep: each is some files in every array's folder."""
 
 # A plan is made from maps of these sides at this many energies. The smaller one is mostly what any map costs, whatever its size.
 _COARSE_SIDES = (48, 96)
 _PLANNED_ENERGIES = 12
 
-
-@dataclass(frozen=True)
-class SweepSpec:
-    """A sweep of maps over energies on one plane and in one window, so that all of it is one labelled block.
-
-    Parameters
-    ----------
-    potential
-        The `Potential`.
-    plane
-        (x, y) or (x, px).
-    energies
-        h, finite, dimensionless, 1 to 10 000 of them; sorted and made unique.
-    resolution
-        (columns, rows) of the map at each energy, each 1 to 4096.
-    window
-        As of `MapSpec`, for all energies; None for the default window of the highest one. The interior grows with h on both
-        planes of the three cases, so that this window contains those of the other energies.
-    t_max
-        How long orbits are followed, 0 < t_max ≤ 1e8.
-    certify
-        As of `MapSpec`.
-
-    Raises
-    ------
-    ValueError
-        Naming the parameter, its value and what is legal.
-    """
-
-    potential: Potential
-    plane: Plane
-    energies: tuple[float, ...]
-    resolution: tuple[int, int] = (225, 225)
-    window: Window | None = None
-    t_max: float = 1e5
-    certify: bool = True
-
-    def __post_init__(self) -> None:
-        plane, energies = checked_sweep(self.plane, self.energies, MOST_SWEPT_ENERGIES)
-        highest = MapSpec(
-            self.potential, plane, energies[-1], self.resolution, self.window, self.t_max, self.certify  # type: ignore[arg-type]
-        )  # fmt: skip
-        object.__setattr__(self, "energies", energies)
-        for name in ("plane", "resolution", "window", "t_max", "certify"):
-            object.__setattr__(self, name, getattr(highest, name))
-
-    def map_spec(self, energy: float) -> MapSpec:
-        """The request for the map at one energy."""
-        assert self.window is not None
-        return MapSpec(self.potential, self.plane, energy, self.resolution, self.window, self.t_max, self.certify)
-
-    def provenance(self) -> dict[str, Any]:
-        """What all maps have in common, in plain values; see `MapSpec.provenance`."""
-        common = self.map_spec(self.energies[-1]).provenance()
-        return {name: value for name, value in common.items() if name != "energy"}
-
-    def coordinates(self) -> dict[str, np.ndarray]:
-        """h (energies,), y or px (rows,), x (columns,): the dimensions of the block."""
-        x, ordinate = self.map_spec(self.energies[-1]).pixel_centres()
-        return {"h": np.array(self.energies), self.plane.ordinate: ordinate, "x": x}
-
-    @property
-    def orbits(self) -> int:
-        """How many starts there are at all energies together, forbidden and outside ones included."""
-        return len(self.energies) * self.resolution[0] * self.resolution[1]
+MOST_CORES = 1_000_000
+"""Most workers that a sweep is planned for."""
 
 
 def run_sweep(
@@ -110,7 +43,9 @@ def run_sweep(
     """Compute the maps of a sweep, or those that are missing, into a store.
 
     Energies are computed one after the other, the orbits of each on all workers. An energy is marked as done when all its arrays
-    are on the disk; one that was under way when the run was killed is computed again, one that is done never.
+    are on the disk, and is never computed again. A map of more than `SweepSpec.piece` starts is computed band by band; finished
+    bands are kept in the store, so that a run that was killed loses the band that was under way, and no other. Of orbits, no more
+    than those of one band are in memory.
 
     Parameters
     ----------
@@ -135,7 +70,7 @@ def run_sweep(
     ValueError
         When the store holds another sweep or something else, or no exit is defined at one of the energies.
     OSError
-        When the store cannot be written to; energies done stay valid.
+        When the store cannot be written to; energies and bands done stay valid.
     concurrent.futures.CancelledError
         When cancelled.
     """
@@ -145,13 +80,48 @@ def run_sweep(
     pending = sweep.pending()
     if pending:
         sweep.check_writable()
+    sweep.discard_leftovers()
     count = len(spec.energies)
     for already, place in enumerate(pending, start=count - len(pending)):
-        on_frame = _report_share(on_progress, already, count)
-        sweep.write(place, _compute_whole_map(spec.map_spec(spec.energies[place]), on_frame, cancel, executor).to_xarray())
+        _compute_energy(spec, sweep, place, _report_share(on_progress, already, count), cancel, executor)
     if on_progress is not None:
         on_progress(1.0)
     return sweep.open_dataset()
+
+
+def _compute_energy(
+    spec: SweepSpec,
+    sweep: SweepStore,
+    place: int,
+    report: Callable[[float], None] | None,
+    cancel: threading.Event | None,
+    executor: Executor | None,
+) -> None:
+    """Compute the map at one energy, or the bands of it that are missing, into the store."""
+    map_spec = spec.map_spec(spec.energies[place])
+    bands = list(row_bands(map_spec, spec.piece or LARGEST_RUN))
+    if len(bands) == 1:
+        on_frame = None if report is None else lambda frame: report(frame.progress)
+        sweep.write(place, _compute_whole_map(map_spec, on_frame, cancel, executor).to_xarray())
+        return
+    kept = sweep.kept_bands(place)
+    for number, rows in enumerate(bands):
+        if number not in kept:
+            part = _compute_band(map_spec, rows, cancel, executor)
+            kept.keep(number, {name: getattr(part, name) for name in sweep.image_names})
+        if report is not None:
+            report((number + 1) / len(bands))
+    sweep.write_bands(place, bands)
+
+
+def _compute_band(spec: MapSpec, rows: np.ndarray, cancel: threading.Event | None, executor: Executor | None) -> EscapeMap:
+    """Some rows of a map, finished; CancelledError when they are not."""
+    run = MapRun(spec, rows=rows)
+    carry_through(run, executor, cancel)
+    part = run.frame()
+    if not part.complete:
+        raise CancelledError
+    return part
 
 
 def _open_store(spec: SweepSpec, path: Path) -> SweepStore:
@@ -170,12 +140,12 @@ def _open_store(spec: SweepSpec, path: Path) -> SweepStore:
     return sweep
 
 
-def _report_share(on_progress: Callable[[float], None] | None, already: int, count: int) -> Callable[[EscapeMap], None] | None:
-    """Say how many energies are done, and what to call with the frames of the next; None when nobody listens."""
+def _report_share(on_progress: Callable[[float], None] | None, already: int, count: int) -> Callable[[float], None] | None:
+    """Say how many energies are done, and what to call with the share of the next that is; None when nobody listens."""
     if on_progress is None:
         return None
     on_progress(already / count)
-    return lambda frame: on_progress((already + frame.progress) / count)
+    return lambda share: on_progress((already + share) / count)
 
 
 def _compute_whole_map(
@@ -249,8 +219,8 @@ def plan_sweep(
     concurrent.futures.CancelledError
         When cancelled.
     """
-    if cores is not None and cores < 1:
-        raise ValueError(f"cores={cores}: must be 1 or more")
+    if cores is not None:
+        cores = read_count("cores", cores, 1, MOST_CORES)
     workers = cores or count_workers(executor or default_executor())
     prepare_kernels(spec.potential)
     count = len(spec.energies)

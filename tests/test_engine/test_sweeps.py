@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import tracemalloc
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor
 from dataclasses import replace
@@ -39,6 +40,40 @@ from engine.sweeps import SweepSpec, run_sweep
 store, *energies = sys.argv[1:]
 run_sweep(SweepSpec(CASES["III"], Plane.X_PX, tuple(map(float, energies)), (20, 20), t_max=2e4), Path(store))
 """
+# In bands, with certificates: 5 bands at each of two energies.
+BANDED_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80)
+BANDED_RUN = """
+import os, signal, sys, threading, time
+from pathlib import Path
+import engine.sweeps
+from engine import CASES, Plane
+from engine.sweeps import SweepSpec, run_sweep
+
+store, killed_in, compute_band, begun = Path(sys.argv[1]), int(sys.argv[2]), engine.sweeps._compute_band, 0
+
+def counted(spec, rows, *arguments):
+    global begun
+    begun += 1
+    print(spec.energy, rows[0], flush=True)
+    if begun == killed_in:
+        threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGKILL)).start()
+        compute_band(spec, rows, *arguments)
+        time.sleep(60)
+    return compute_band(spec, rows, *arguments)
+
+engine.sweeps._compute_band = counted
+run_sweep(SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80), store)
+"""
+
+
+def run_banded_elsewhere(store: Path, killed_in: int = 0) -> tuple[int, list[str]]:
+    """Run `BANDED_SPEC` in a process that is killed while it computes that band; its exit code, and the bands that it began."""
+    root = Path(engine.sweeps.__file__).parents[1]
+    run = subprocess.run(
+        [sys.executable, "-c", BANDED_RUN, str(store), str(killed_in)],
+        env={**os.environ, "PYTHONPATH": str(root)}, stdout=subprocess.PIPE, text=True, timeout=300, check=False,
+    )  # fmt: skip
+    return run.returncode, run.stdout.splitlines()
 
 
 def begin_elsewhere(store: Path, spec: SweepSpec) -> subprocess.Popen[bytes]:
@@ -70,6 +105,25 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
     monkeypatch.setattr(engine.sweeps, "compute_map", counted)
     return energies
+
+
+@pytest.fixture
+def computed_bands(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
+    """Energy and first row of the bands that a run computes, in order."""
+    bands: list[tuple[float, int]] = []
+    compute_band = engine.sweeps._compute_band
+
+    def counted(spec: MapSpec, rows: np.ndarray, *arguments: Any) -> EscapeMap:
+        assert not isinstance(spec.energy, tuple)
+        bands.append((spec.energy, int(rows[0])))
+        return compute_band(spec, rows, *arguments)
+
+    monkeypatch.setattr(engine.sweeps, "_compute_band", counted)
+    return bands
+
+
+def kept_bands(store: Path) -> list[str]:
+    return sorted(str(path.relative_to(store / "under_way")) for path in (store / "under_way").rglob("*.npz"))
 
 
 def bytes_of(dataset: xr.Dataset) -> dict[str, bytes]:
@@ -110,6 +164,9 @@ class TestRequest:
             ({"t_max": 0.0}, "t_max=0"),
             ({"resolution": (0, 5)}, "resolution"),
             ({"window": Window(0.0, 1e-14, 0.0, 1.0)}, "window"),
+            ({"piece": 0}, "piece=0"),
+            ({"piece": 2**20 + 1}, "piece=1048577"),
+            ({"piece": 80.5}, "piece=80.5"),
         ],
     )
     def test_what_is_not_legal_is_named(self, change: dict[str, Any], said: str) -> None:
@@ -179,6 +236,7 @@ class TestStore:
             ({"resolution": (12, 11)}, "resolution"),
             ({"window": Window(-1.0, 1.0, -1.0, 1.0)}, "window"),
             ({"certify": False}, "certify"),
+            ({"piece": 60}, "piece"),
             ({"energies": (0.3, 0.41, 0.5)}, "values of h"),
         ],
     )
@@ -252,6 +310,108 @@ class TestResuming:
         assert seen == sorted(seen)
         assert seen[0] == 0.0
         assert seen[-1] == 1.0
+
+
+class TestBands:
+    @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
+    def test_they_hold_the_map_that_compute_map_makes_in_bands(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, plane: Plane
+    ) -> None:
+        for module in ("maps", "sweeps"):
+            monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", 100)
+        spec = SweepSpec(CASES["III"], plane, (0.4,), (20, 19), t_max=2e4)
+        found, expected = run_sweep(spec, tmp_path / "store"), stacked_maps(spec)
+        for name in ARRAYS:
+            np.testing.assert_array_equal(found[name], expected[name])
+        assert np.unique(found["certificate"]).size >= 3
+
+    def test_smaller_pieces_change_nothing_of_what_escapes(self, tmp_path: Path) -> None:
+        found, expected = run_sweep(BANDED_SPEC, tmp_path / "store").load(), stacked_maps(replace(BANDED_SPEC, piece=None))
+        for name in ("fate", "escape_time", "outside"):
+            np.testing.assert_array_equal(found[name], expected[name])
+        left = expected["fate"].to_numpy() >= 1
+        assert 0 < np.count_nonzero(left) < left.size
+        for name in ("crossings", "energy_error"):
+            np.testing.assert_array_equal(found[name].to_numpy()[left], expected[name].to_numpy()[left])
+
+    def test_a_pieces_size_changes_nothing_where_nothing_is_certified(self, tmp_path: Path) -> None:
+        whole = bytes_of(run_sweep(SPEC, tmp_path / "whole"))
+        for piece in (1, 25, 119):
+            assert bytes_of(run_sweep(replace(SPEC, piece=piece), tmp_path / str(piece))) == whole
+
+    def test_finished_bands_of_an_energy_under_way_are_never_computed_again(
+        self, tmp_path: Path, computed_bands: list[tuple[float, int]]
+    ) -> None:
+        spec = replace(SPEC, piece=48)
+        cancel, on_progress = cancel_at(0.5)
+        with pytest.raises(CancelledError):
+            run_sweep(spec, tmp_path / "store", on_progress=on_progress, cancel=cancel)
+        assert kept_bands(tmp_path / "store") == ["1/0.npz", "1/1.npz"]
+        del computed_bands[:]
+        run_sweep(spec, tmp_path / "store")
+        assert computed_bands == [(0.4, 4), (0.5, 0), (0.5, 2), (0.5, 4)]
+        run_sweep(spec, tmp_path / "straight")
+        assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
+
+    @pytest.mark.slow
+    def test_a_run_killed_in_the_middle_of_an_energy_goes_on_to_the_same_bytes(self, tmp_path: Path) -> None:
+        store = tmp_path / "killed"
+        code, begun = run_banded_elsewhere(store, killed_in=3)
+        assert (code, begun) == (-signal.SIGKILL, ["0.36 0", "0.36 2", "0.36 4"])
+        assert kept_bands(store) == ["0/0.npz", "0/1.npz"]
+        code, begun = run_banded_elsewhere(store)
+        assert (code, begun) == (0, ["0.36 4", "0.36 6", "0.36 8", *(f"0.4 {row}" for row in range(0, 10, 2))])
+        assert run_banded_elsewhere(tmp_path / "straight")[0] == 0
+        assert files_of(store) == files_of(tmp_path / "straight")
+
+    def test_a_run_killed_while_its_bands_are_put_together_computes_none_of_them_again(
+        self, tmp_path: Path, computed_bands: list[tuple[float, int]], monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        spec, store = replace(SPEC, energies=(0.4,), piece=48), tmp_path / "store"
+
+        def killed(_store: object, name: str, place: int) -> None:
+            if name == "crossings":
+                (store / name / "c" / str(place) / "0" / "0.0123.partial").write_bytes(b"half")
+                raise KeyboardInterrupt
+
+        with monkeypatch.context() as patch:
+            patch.setattr("engine.sweep_stores.SweepStore._bring_to_disk", killed)
+            with pytest.raises(KeyboardInterrupt):
+                run_sweep(spec, store)
+        assert not marks(store)
+        del computed_bands[:]
+        run_sweep(spec, store)
+        assert not computed_bands
+        run_sweep(spec, tmp_path / "straight")
+        assert files_of(store) == files_of(tmp_path / "straight")
+
+    def test_bands_that_a_kill_left_of_an_energy_that_is_done_are_deleted(self, tmp_path: Path) -> None:
+        spec, store = replace(SPEC, piece=48), tmp_path / "store"
+        run_sweep(spec, store)
+        whole = files_of(store)
+        (store / "under_way" / "2").mkdir()
+        (store / "under_way" / "2" / "0.npz").write_bytes(b"kept")
+        run_sweep(spec, store)
+        assert files_of(store) == whole
+
+    def test_a_store_with_bands_under_way_is_zarr_to_others(self, tmp_path: Path) -> None:
+        cancel, on_progress = cancel_at(0.1)
+        with pytest.raises(CancelledError):
+            run_sweep(replace(SPEC, piece=48), tmp_path / "store", on_progress=on_progress, cancel=cancel)
+        assert kept_bands(tmp_path / "store") == ["0/0.npz"]
+        with xr.open_zarr(tmp_path / "store", chunks=None, consolidated=False) as found:
+            assert not found["done"].any()
+
+    def test_memory_is_bounded_by_a_band(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        for module in ("maps", "sweeps"):
+            monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", 4000)
+        spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4,), (400, 400), t_max=0.5)
+        run_sweep(replace(spec, resolution=(60, 60)), tmp_path / "first")
+        tracemalloc.start()
+        whole = run_sweep(spec, tmp_path / "store")
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert peak < 0.5 * sum(whole[name].nbytes for name in ARRAYS)
 
 
 class TestFailingDisk:

@@ -1,0 +1,94 @@
+"""Makes the library's pages from its docstrings and from docs/*.md. Run: python docs/make_api.py [folder]; without one, site/."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+import shutil
+import sys
+import warnings
+from pathlib import Path
+
+import pdoc.doc
+import pdoc.render
+import pdoc.render_helpers
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+import engine
+
+ROOT = Path(__file__).parents[1]
+HERE = Path(__file__).parent
+PICTURES = ("*.png", "*.webp")
+PAGE = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
+<style>
+body {{ max-width: 52rem; margin: 2rem auto; padding: 0 1rem; font: 1rem/1.5 system-ui, sans-serif; color-scheme: light dark }}
+img {{ max-width: 100% }} pre {{ overflow-x: auto }} td, th {{ padding: 0.2rem 0.6rem; text-align: left; vertical-align: top }}
+</style>
+<nav><a href="index.html">Escape Explorer</a> · <a href="engine.html">the library, name by name</a></nav>
+{body}
+<hr><nav>{pages}</nav>
+</html>
+"""
+
+
+def main(arguments: list[str]) -> None:
+    """Write the pages."""
+    make_site(Path(arguments[0]) if arguments else ROOT / "site")
+
+
+def make_site(folder: Path) -> None:
+    """README as index.html, each page of docs, and engine.html with every public name; `folder` is made, or written over."""
+    folder.mkdir(parents=True, exist_ok=True)
+    module = document_engine()
+    pdoc.render.configure(docformat="numpy", show_source=False)
+    with warnings.catch_warnings():
+        # Parameters of a generic function or class are names of no module; pdoc shows them as they are written.
+        warnings.filterwarnings("ignore", r"Error parsing type annotation .* Import of Result failed")
+        _write(folder / "engine.html", pdoc.render.html_module(module, {"engine": module}))
+    _write(folder / "search.js", pdoc.render.search_index({"engine": module}))
+    sources = {"index": ROOT / "README.md", "benchmarks": ROOT / "benchmarks" / "README.md"}
+    sources |= {path.stem: path for path in sorted(HERE.glob("*.md"))}
+    for stem, path in sources.items():
+        _write(folder / f"{stem}.html", _as_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
+    for picture in (path for pattern in PICTURES for path in HERE.glob(pattern)):
+        shutil.copy(picture, folder)
+
+
+def document_engine() -> pdoc.doc.Module:
+    """The public names; constants with the docstrings that stand below them in their own modules."""
+    module = pdoc.doc.Module(engine)
+    for name in engine.__all__:
+        member = module.get(name)
+        if isinstance(member, pdoc.doc.Variable):
+            home = pdoc.doc.Module(importlib.import_module(_find_home(name, "engine")))
+            member.docstring = home.get(name).docstring
+    return module
+
+
+def _find_home(name: str, module: str) -> str:
+    """The module that a name is defined in, through all that only pass it on."""
+    source = Path(str(importlib.import_module(module).__file__)).read_text(encoding="utf-8")
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.ImportFrom) and node.module and name in {alias.asname or alias.name for alias in node.names}:
+            return _find_home(name, node.module)
+    return module
+
+
+def _as_html(text: str, pages: list[str]) -> str:
+    """A page of Markdown, its links to other pages leading to theirs."""
+    title = text.split("\n", 1)[0].lstrip("# ")
+    text = text.replace("benchmarks/README.md)", "benchmarks.md)")
+    linked = re.sub(r"\]\((?:\.\./)?(?:docs/)?([\w-]+)\.md\)", r"](\1.html)", text).replace("](docs/", "](")
+    links = " · ".join(f'<a href="{page}.html">{page}</a>' for page in pages)
+    return PAGE.format(title=title, body=pdoc.render_helpers.to_html(linked), pages=links)
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
