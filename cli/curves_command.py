@@ -37,14 +37,15 @@ def draw_curves(
     as_json: options.AsJson = False,
 ) -> None:
     """Measure the exits at many energies: STEM.nc and STEM.csv."""
-    from cli.requests import find_plane, find_potential, read_resolution, space_energies
+    from cli.potentials import find_potential, name_in_files
+    from cli.requests import find_plane, read_resolution, space_energies
     from cli.work import working
     from cli.written_files import add_ending, check_folder, write_files
     from engine import EnergyCurvesSpec, compute_energy_curves
 
     energies = space_energies(low, high, count)
     spec = EnergyCurvesSpec(find_potential(case), find_plane(plane), energies, read_resolution(resolution), t_max, exponent)
-    stem = output or Path(f"curves-{case}-{plane}")
+    stem = output or Path(f"curves-{name_in_files(case)}-{plane}")
     check_folder(stem)
     with working(threads) as work:
         report = work.begin("energies")

@@ -30,7 +30,7 @@ def list_lyapunov_orbits(
     as_json: options.AsJson = False,
 ) -> None:
     """The Lyapunov orbit over each open exit: its period, and where it comes to rest on the zero-velocity curve."""
-    from cli.requests import find_potential
+    from cli.potentials import find_potential
     from cli.written_files import check_folder, write_files
     from engine import find_lyapunov_orbits
 

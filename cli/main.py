@@ -16,6 +16,8 @@ from cli import (
     map_command,
     measures_command,
     orbit_command,
+    potential_command,
+    reproduce_command,
     serve_command,
     sweep_command,
 )
@@ -32,6 +34,8 @@ program.command("lyapunov", epilog=lyapunov_command.EXAMPLES)(lyapunov_command.l
 program.command("measures", epilog=measures_command.EXAMPLES)(measures_command.measure_basins)
 program.command("curves", epilog=curves_command.EXAMPLES)(curves_command.draw_curves)
 program.command("sweep", epilog=sweep_command.EXAMPLES)(sweep_command.sweep_energies)
+program.command("reproduce", epilog=reproduce_command.EXAMPLES)(reproduce_command.reproduce_paper)
+program.command("potential", epilog=potential_command.EXAMPLES)(potential_command.describe_potential)
 program.command("serve", epilog=serve_command.EXAMPLES)(serve_command.serve_page)
 
 

@@ -21,6 +21,8 @@ EXAMPLES = """Examples:
 escape-explorer map I --energy 0.19 --output first
 
 escape-explorer map III --energies 0.25 1 --plane x_h --resolution 400x300 --format png --json
+
+escape-explorer map II --energy 0.2 --resolution 4000 --format nc --scheduler tcp://node1:8786
 """
 
 FIRST_PICTURES = ("basins", "times", "crossings")
@@ -71,6 +73,8 @@ def draw_map(
     ] = None,
     output: options.Output = None,
     threads: options.Threads = None,
+    scheduler: options.Scheduler = None,
+    local_cluster: options.LocalCluster = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Where orbits escape, when, and after how many crossings: STEM.nc and STEM.png, and the shares of the exits.
@@ -79,7 +83,9 @@ def draw_map(
     """
     from app.exports import file_stem
     from cli import map_files
+    from cli.clusters import cluster_executor
     from cli.map_work import SecondLooks, compute_with_second_looks
+    from cli.potentials import name_in_files
     from cli.requests import build_map_spec
     from cli.work import working
     from cli.written_files import check_folder, write_files
@@ -88,10 +94,12 @@ def draw_map(
     wanted = SecondLooks(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
     wanted.check(spec)
     drawing = map_files.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, side)
-    stem = output or Path(file_stem(spec, case))
+    stem = output or Path(file_stem(spec, name_in_files(case)))
     check_folder(stem)
-    with working(threads) as work:
+    with cluster_executor(scheduler, local_cluster, threads) as executor, working(threads, executor) as work:
         frame, findings = compute_with_second_looks(spec, wanted, work)
+    # Not before the cluster is left: with a Dask client about, xarray locks files by it, which no file in memory survives.
+    with working() as work:
         work.begin("writing")
         files = map_files.contents(stem, [one.value for one in formats or Format], frame, findings, drawing)
     _answer(frame, findings, write_files(files), count_outside, as_json)

@@ -20,7 +20,14 @@ class PlaneName(StrEnum):
 Edges = tuple[float, float, float, float]
 """x_low, x_high, ordinate_low, ordinate_high."""
 
-Case = Annotated[str, typer.Argument(metavar="CASE", help="Which potential: I, II or III, as in Zotos (2014).")]
+Case = Annotated[
+    str,
+    typer.Argument(
+        metavar="CASE",
+        help="Which potential: I, II or III, as in Zotos (2014), another name that `potential` lists, or a formula in x and y; "
+        "with parameters after it, as in III@omega_1=1.1,epsilon=0.5.",
+    ),
+]
 Energy = Annotated[float | None, typer.Option("--energy", help="h, dimensionless.")]
 Energies = Annotated[
     tuple[float, float] | None, typer.Option("--energies", metavar="LOW HIGH", help="Range of h, for the plane x_h.")
@@ -32,6 +39,7 @@ Window = Annotated[
 ]
 Resolution = Annotated[str, typer.Option("--resolution", metavar="N or NxM", help="Columns x rows, each 1 to 4096.")]
 TMax = Annotated[float, typer.Option("--t-max", help="How long orbits are followed, up to 1e8.")]
+OrbitTMax = Annotated[float, typer.Option("--t-max", help="How long the orbit is followed, up to 1e7.")]
 Certify = Annotated[
     bool,
     typer.Option(
@@ -42,6 +50,12 @@ Certify = Annotated[
 Backward = Annotated[bool, typer.Option("--backward", help="Follow orbits into the past.")]
 Threads = Annotated[
     int | None, typer.Option("--threads", min=1, metavar="N", help="Threads to compute on; without it, one for each core.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
+]
+LocalCluster = Annotated[
+    int | None, typer.Option("--local-cluster", min=1, metavar="N", help="Start a Dask cluster of N workers on this machine.")
 ]
 AsJson = Annotated[
     bool, typer.Option("--json", help="Print JSON instead of tables and sentences; numbers that are not there are null.")

@@ -33,7 +33,7 @@ def follow_orbit(
         tuple[float, float, float, float] | None,
         typer.Option("--state", metavar="X Y PX PY", help="The whole state instead; its energy is the orbit's."),
     ] = None,
-    t_max: options.TMax = 1e5,
+    t_max: options.OrbitTMax = 1e5,
     most_rows: Annotated[int, typer.Option("--most-rows", min=1, help="Of the table; a longer orbit is thinned.")] = 100_000,
     palette: Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")] = "paper",
     output: options.Output = None,
@@ -45,7 +45,8 @@ def follow_orbit(
     """
     from app.exports import orbits_csv
     from cli.orbit_pictures import orbit_png
-    from cli.requests import find_palette, find_potential, find_start
+    from cli.potentials import find_potential
+    from cli.requests import find_palette, find_start
     from cli.work import working
     from cli.written_files import add_ending, check_folder, write_files
     from engine import Fate, compute_birkhoff_digits, integrate_orbit, judge_indicators

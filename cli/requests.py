@@ -9,14 +9,8 @@ import numpy as np
 
 from app.palette import PALETTES, Palette
 from cli.options import Edges, PlaneName
-from engine import CASES, MapSpec, Plane, Potential, start_states
-
-
-def find_potential(case: str) -> Potential:
-    """The potential of a case; ValueError unless there is one of this name."""
-    if case not in CASES:
-        raise ValueError(f"case={case!r}: must be one of {', '.join(CASES)}")
-    return CASES[case]
+from cli.potentials import find_potential
+from engine import MapSpec, Plane, start_states
 
 
 def find_palette(name: str) -> Palette:

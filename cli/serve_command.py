@@ -11,6 +11,8 @@ from typing import Annotated
 
 import typer
 
+from app.settings import Settings, read_settings
+
 EXAMPLES = """Examples:
 
 escape-explorer serve --show
@@ -30,8 +32,10 @@ def serve_page(
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
-    """Serve the page until Ctrl-C."""
-    command = serve_arguments(port, address, origin or [], show)
+    """Serve the page until Ctrl-C or SIGTERM; environment variables with the prefix ESCAPE_EXPLORER_ set its limits."""
+    # Refused here already, before the seconds that a server takes to start.
+    settings = read_settings(os.environ)
+    command = serve_arguments(port, address, origin or [], show, settings)
     environment = server_environment()
     if os.name == "posix":
         # The server takes this process' place, so that whoever stops it stops the server.
@@ -39,13 +43,15 @@ def serve_page(
     raise typer.Exit(subprocess.call(command, env=environment))
 
 
-def serve_arguments(port: int, address: str, origins: list[str], show: bool) -> list[str]:
+def serve_arguments(port: int, address: str, origins: list[str], show: bool, settings: Settings) -> list[str]:
     """The command that serves the page.
 
     Without -P a folder called app wherever it is started would be in the way.
     """
     command = [sys.executable, "-P", "-m", "panel", "serve", str(app_folder()), "--port", str(port), "--address", address]
     command += [f"--allow-websocket-origin={origin}" for origin in origins]
+    command += [f"--unused-session-lifetime={1000 * settings.session_seconds}"]
+    command += [f"--keep-alive={1000 * settings.keep_alive_seconds}"]
     return [*command, "--show"] if show else command
 
 

@@ -37,29 +37,33 @@ def sweep_energies(
     resolution: options.Resolution = "225",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
+    piece: Annotated[
+        int | None,
+        typer.Option(
+            "--piece", metavar="STARTS", help="Most starts that are computed, or lost by a kill, together: 1 to 1048576."
+        ),
+    ] = None,
     plan: Annotated[bool, typer.Option("--plan", help="Only say what it will cost.")] = False,
     threads: options.Threads = None,
-    scheduler: Annotated[
-        str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
-    ] = None,
-    local_cluster: Annotated[
-        int | None, typer.Option("--local-cluster", min=1, metavar="N", help="Start a Dask cluster of N workers on this machine.")
-    ] = None,
+    scheduler: options.Scheduler = None,
+    local_cluster: options.LocalCluster = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Compute maps at many energies into one labelled Zarr store; a run that was stopped goes on from the energies that are done.
+    """Compute maps at many energies into one labelled Zarr store; a run that was stopped goes on from what is done.
 
     Without --window all maps have that of the highest energy. With xarray: open_zarr(FOLDER, consolidated=False).
     """
     from cli.answers import print_sentences
     from cli.clusters import cluster_executor
-    from cli.requests import find_plane, find_potential, read_resolution, space_energies
+    from cli.potentials import find_potential
+    from cli.requests import find_plane, read_resolution, space_energies
     from cli.work import working
     from engine import SweepSpec, Window, plan_sweep, run_sweep
 
     energies = space_energies(low, high, count, energy)
     frame = None if window is None else Window(*window)
-    spec = SweepSpec(find_potential(case), find_plane(plane), energies, read_resolution(resolution), frame, t_max, certify)
+    sides = read_resolution(resolution)
+    spec = SweepSpec(find_potential(case), find_plane(plane), energies, sides, frame, t_max, certify, piece)
     try:
         with cluster_executor(scheduler, local_cluster, threads) as executor, working(threads, executor) as work:
             if plan:
@@ -69,7 +73,7 @@ def sweep_energies(
             dataset = run_sweep(spec, store, on_progress=report, cancel=work.cancel, executor=work.executor)
     except CancelledError:
         raise CancelledError(
-            f"stopped; the energies that are done stay in {store}, and the same command goes on from there"
+            f"stopped; the energies and bands that are done stay in {store}, and the same command goes on from there"
         ) from None
     _answer(dataset, store, as_json)
 

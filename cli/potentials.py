@@ -1,0 +1,64 @@
+"""Which potential is meant: one of the known ones by name, or a formula, and the parameters of either."""
+
+from __future__ import annotations
+
+import re
+import reprlib
+from typing import Any
+
+from app.systems import TYPED, System, refusal, review
+from engine import POTENTIALS, Potential
+
+PARAMETERS = ("omega_1", "omega_2", "epsilon")
+
+
+def find_potential(case: str) -> Potential:
+    """The potential that is meant by ``NAME`` or a formula in x and y, with ``@omega_1=1.2,epsilon=0.8`` after it where wanted.
+
+    Raises
+    ------
+    ValueError
+        When there is none of this name and it is no formula, a parameter is of no use, or nothing can be computed with it.
+    """
+    potential = _find_system(case).potential
+    problem = refusal(review(potential))
+    if problem is not None:
+        raise ValueError(f"case={reprlib.repr(case)}: {problem}")
+    return potential
+
+
+def name_in_files(case: str) -> str:
+    """What stands for a potential in the names of files."""
+    name, _, parameters = case.partition("@")
+    return re.sub(r"[^A-Za-z0-9_.+-]", "_", "-".join([name if name in POTENTIALS else TYPED, *filter(None, [parameters])]))
+
+
+def _find_system(case: str) -> System:
+    name, _, parameters = case.partition("@")
+    chosen: dict[str, Any] = _read_parameters(case, parameters) if parameters else {}
+    if name in POTENTIALS:
+        return System(name, **chosen)
+    system = System(TYPED, name, **chosen)
+    try:
+        _ = system.potential
+    except ValueError as error:
+        raise ValueError(
+            f"case={reprlib.repr(case)}: must be one of {', '.join(POTENTIALS)}, or a formula in x and y ({error})"
+        ) from None
+    return system
+
+
+def _read_parameters(case: str, text: str) -> dict[str, float]:
+    chosen: dict[str, float] = {}
+    for part in text.split(","):
+        name, _, value = part.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = None
+        if name.strip() not in PARAMETERS or number is None:
+            raise ValueError(
+                f"case={reprlib.repr(case)}: after @ stand {', '.join(PARAMETERS)}, as in III@omega_1=1.1,epsilon=0.5"
+            )
+        chosen[name.strip()] = number
+    return chosen

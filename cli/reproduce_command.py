@@ -1,0 +1,121 @@
+"""``reproduce``: the figures and numbers of the paper, made again."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from concurrent.futures import CancelledError
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from cli import options
+
+if TYPE_CHECKING:
+    from reproduction.map_shelf import MapShelf
+    from reproduction.quality import Quality
+
+EXAMPLES = """Examples:
+
+escape-explorer reproduce --quick --output figures
+
+escape-explorer reproduce I-basins-xpx III-super-sticky
+
+escape-explorer reproduce --list
+"""
+
+FOLDER = Path("zotos-2014")
+"""Where files go unless another folder is named."""
+
+
+@dataclass(frozen=True)
+class _Made:
+    """What has been written, and in how long."""
+
+    name: str
+    files: list[str]
+    seconds: float
+
+
+def reproduce_paper(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME]...", help="Figures to make, as --list names them; without any, everything."),
+    ] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A ninth of the starts: a few minutes in place of half an hour.")
+    ] = False,
+    only_list: Annotated[bool, typer.Option("--list", help="Only say what there is to make.")] = False,
+    output: Annotated[
+        Path,
+        typer.Option("--output", metavar="FOLDER", help="Where files go; made when it is missing, existing files are replaced."),
+    ] = FOLDER,
+    threads: options.Threads = None,
+    as_json: options.AsJson = False,
+) -> None:
+    """Make the figures of Zotos (2014) again: NAME.png and NAME.pdf of each, and `tables`, its numbers beside ours.
+
+    Each file is written as soon as it is made, and stays when the rest is stopped.
+    """
+    from reproduction.map_shelf import MapShelf
+    from reproduction.members import CAPTIONS, choose_members
+    from reproduction.quality import FULL, QUICK
+
+    chosen = choose_members(names or ())
+    if only_list:
+        _answer_list({name: CAPTIONS[name] for name in chosen}, as_json)
+        return
+    from cli.work import working
+
+    quality = QUICK if quick else FULL
+    _make_folder(output)
+    began, made = time.perf_counter(), list[_Made]()
+    try:
+        with working(threads) as work:
+            shelf = MapShelf(quality, work.executor, work.cancel)
+            for name in chosen:
+                work.begin(name)
+                made.append(_make(name, shelf, output))
+    except CancelledError:
+        raise CancelledError(f"stopped; {len(made)} of {len(chosen)} are made and stay in {output}") from None
+    _answer(made, quality, time.perf_counter() - began, as_json)
+
+
+def _make_folder(folder: Path) -> None:
+    """ValueError when it can be none."""
+    if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
+        raise ValueError(f"output='{folder}': must be a folder, or the name of a new one in a folder that exists")
+    folder.mkdir(exist_ok=True)
+
+
+def _make(name: str, shelf: MapShelf, folder: Path) -> _Made:
+    from cli.written_files import write_files
+    from reproduction.members import make_files
+
+    began = time.perf_counter()
+    files = write_files({folder / file: content for file, content in make_files(name, shelf).items()})
+    return _Made(name, files, time.perf_counter() - began)
+
+
+def _answer_list(captions: dict[str, str], as_json: bool) -> None:
+    from cli.answers import print_json, print_table
+
+    if as_json:
+        print_json({"figures": captions})
+    else:
+        print_table(("name", "shows"), list(captions.items()))
+
+
+def _answer(made: Sequence[_Made], quality: Quality, seconds: float, as_json: bool) -> None:
+    from cli.answers import print_json, print_sentences, print_table
+
+    if as_json:
+        figures = [{"name": one.name, "files": one.files, "seconds": one.seconds} for one in made]
+        print_json({"quality": quality.name, "seconds": seconds, "figures": figures})
+        return
+    rows = [(one.name, f"{one.seconds:.1f} s", ", ".join(one.files)) for one in made]
+    print_table(("made", "in", "files"), rows)
+    side = quality.resolution
+    print_sentences(f"In all {seconds:.0f} s, {quality.name} quality: {side} x {side} starts a map.")

@@ -1,0 +1,107 @@
+"""All that is remade of the paper, by name: an entry each, with what it shows and how it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
+
+from matplotlib.figure import Figure
+
+from engine import CASES, Plane
+from reproduction.map_figures import draw_energy_plane, draw_nine_maps
+from reproduction.map_shelf import MapShelf
+from reproduction.paper_ranges import CHANNEL_ENERGIES, STICKY_ENERGY, plane_energies
+from reproduction.potential_figures import draw_potential
+from reproduction.printing import print_figure
+from reproduction.share_figures import draw_percentages
+from reproduction.statistics_figures import draw_statistics
+from reproduction.sticky_figures import draw_characters, draw_super_sticky
+from reproduction.survival_figures import draw_survival
+
+ENDINGS = ("png", "pdf")
+"""Each figure becomes a file of each kind."""
+
+
+@dataclass(frozen=True)
+class FigureEntry:
+    """A figure of the paper.
+
+    Attributes
+    ----------
+    name
+        What it is asked for by, and the stem of its files.
+    caption
+        What it shows.
+    draw
+        Makes it from the maps of a shelf; may take minutes.
+    """
+
+    name: str
+    caption: str
+    draw: Callable[[MapShelf], Figure]
+
+    def files(self, shelf: MapShelf) -> dict[str, bytes]:
+        """Draw it: the content of each file by its name, which tells also how finely it was made."""
+        figure, quality = self.draw(shelf), shelf.quality
+        keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
+        about = {"Title": self.name, "Subject": self.caption, "Keywords": keywords}
+        return {f"{self.name}.{ending}": print_figure(figure, ending, about) for ending in ENDINGS}
+
+
+def _of_case(case: str) -> Sequence[FigureEntry]:
+    low, high = plane_energies(case)
+    channels = ("green", "red", "blue", "orange")[: CASES[case].channels]
+    colours = ", ".join(["bounded grey", *(f"channel {k} {colour}" for k, colour in enumerate(channels, 1))])
+    speed = "the darker, the later; bounded grey"
+    rows: tuple[tuple[str, str, Callable[[str, MapShelf], Figure]], ...] = (
+        (
+            "potential",
+            f"equipotentials with that of the escape energy in red, the Lyapunov orbits over the open channels at "
+            f"h = {CHANNEL_ENERGIES[case]}, and an orbit through each",
+            draw_potential,
+        ),
+        ("basins-xy", f"basins of escape on (x, y) at nine energies: {colours}", _nine(Plane.X_Y, "basins")),
+        ("times-xy", f"escape times on (x, y) at nine energies: {speed}", _nine(Plane.X_Y, "times")),
+        ("basins-xpx", f"basins of escape on (x, px) at nine energies: {colours}", _nine(Plane.X_PX, "basins")),
+        ("times-xpx", f"escape times on (x, px) at nine energies: {speed}", _nine(Plane.X_PX, "times")),
+        (
+            "crossings-xpx",
+            "upward crossings of y = 0 before the escape, on (x, px) at nine energies: 0 red, 1 blue, 2 magenta, 3 to 10 "
+            "orange, more green, bounded grey",
+            _nine(Plane.X_PX, "crossings"),
+        ),
+        ("percentages", "shares of the bounded starts and of each channel's against h, on (x, y) and (x, px)", draw_percentages),
+        ("xh", f"basins of escape on (x, h), h from {low:.4g} to {high:g}: {colours}", draw_energy_plane),
+        (
+            "statistics",
+            "escaping and direct starts against h with the paper's fits and ours; escapes after n crossings, and p_n",
+            draw_statistics,
+        ),
+        ("survival", "share of the starts not yet escaped, at three energies, with the laws fitted to it", draw_survival),
+    )
+    return [FigureEntry(f"{case}-{family}", f"Case {case}: {caption}", partial(draw, case)) for family, caption, draw in rows]
+
+
+def _nine(plane: Plane, picture: str) -> Callable[[str, MapShelf], Figure]:
+    return partial(draw_nine_maps, plane=plane, picture=picture)
+
+
+_STICKY = (
+    FigureEntry(
+        "III-regular-chaotic",
+        f"Case III, h = {STICKY_ENERGY}, on (x, px): regular bounded orbits cyan, chaotic ones magenta, escaping ones white",
+        draw_characters,
+    ),
+    FigureEntry(
+        "III-super-sticky",
+        f"Case III, h = {STICKY_ENERGY}: R² = x² + y² against time of a chaotic orbit that leaves long after t = 1e5",
+        draw_super_sticky,
+    ),
+)
+
+FIGURES: Mapping[str, FigureEntry] = MappingProxyType(
+    {entry.name: entry for entry in (*(entry for case in CASES for entry in _of_case(case)), *_STICKY)}
+)
+"""Every figure by its name, in the order in which maps are best shared."""

@@ -1,0 +1,107 @@
+"""The potential: equipotentials, the way out over the Lyapunov orbits, and an orbit through each channel."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from app.palette import LIGHT, PAPER
+from engine import (
+    CASES,
+    LyapunovOrbit,
+    Plane,
+    Potential,
+    Window,
+    default_window,
+    find_lyapunov_orbits,
+    integrate_orbit,
+    trace_equipotentials,
+    trace_zero_velocity_curve,
+)
+from reproduction.map_shelf import MapShelf
+from reproduction.paper_ranges import CHANNEL_ENERGIES
+from reproduction.printing import ORDINATES, label_axes, name_panels, new_figure, tidy_axes
+from reproduction.sample_orbits import find_sample_starts
+
+# Of the escape energy: dense below it, so that the well shows, and wider apart on the walls and down the channels.
+_LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
+# How much larger than the interior the panels are: all of them, so that they can be compared.
+_ENLARGED = 1.35
+_SAMPLES = 301
+# Letters stand this far beyond the saddle, in distances from the bottom of the well to it.
+_LABEL_PLACE = 1.22
+
+
+def draw_potential(case: str, shelf: MapShelf) -> Figure:
+    """Three panels for one case, all of one window."""
+    potential, energy = CASES[case], CHANNEL_ENERGIES[case]
+    window = _enlarged(default_window(potential, Plane.X_Y, energy))
+    figure = new_figure(12.6, 4.85, f"Case {case}: the potential and its {potential.channels} channels", equal=True)
+    panels = list(figure.subplots(1, 3, sharex=True, sharey=True))
+    orbits = find_lyapunov_orbits(potential, energy)
+    _draw_equipotentials(panels[0], potential, window)
+    _draw_channels(panels[1], potential, energy, orbits, window)
+    _draw_escapes(panels[2], shelf, case, window)
+    for axes in panels:
+        axes.set_xlim(window.x_low, window.x_high)
+        axes.set_ylim(window.ordinate_low, window.ordinate_high)
+        axes.set_aspect("equal")
+        tidy_axes(axes)
+        label_axes(axes, "$x$", ORDINATES[Plane.X_Y] if axes is panels[0] else "")
+    escape = f"equipotentials, that of the escape energy ${potential.escape_energy:.4g}$ in red"
+    name_panels(panels, [escape, f"the way out at $h = {energy}$", f"one orbit through each channel, $h = {energy}$"])
+    return figure
+
+
+def _enlarged(window: Window) -> Window:
+    across, up = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
+    half = 0.5 * _ENLARGED * (window.x_high - window.x_low)
+    return Window(across - half, across + half, up - half, up + half)
+
+
+def _draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
+    escape = potential.escape_energy
+    for pieces in trace_equipotentials(potential, Plane.X_Y, [escape * level for level in _LEVELS], window):
+        _draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
+    (critical,) = trace_equipotentials(potential, Plane.X_Y, [escape], window)
+    _draw_pieces(axes, critical, LIGHT.critical_equipotential, 1.6)
+
+
+def _draw_channels(axes: Axes, potential: Potential, energy: float, orbits: tuple[LyapunovOrbit, ...], window: Window) -> None:
+    _draw_forbidden(axes, potential, energy, window)
+    _draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), PAPER.channels[0], 1.6)
+    for orbit in orbits:
+        axes.plot(*orbit.half_path.T, color=LIGHT.critical_equipotential, linewidth=2.0, solid_capstyle="round")
+        x, y = potential.saddles[orbit.channel - 1] * _LABEL_PLACE
+        axes.text(x, y, f"$L_{orbit.channel}$", ha="center", va="center", fontsize=14.0, color=LIGHT.text)
+
+
+def _draw_escapes(axes: Axes, shelf: MapShelf, case: str, window: Window) -> None:
+    potential, energy = CASES[case], CHANNEL_ENERGIES[case]
+    _draw_forbidden(axes, potential, energy, window)
+    _draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), LIGHT.limiting_curve, 1.0)
+    for channel, start in find_sample_starts(shelf.map(case, Plane.X_PX, energy)).items():
+        orbit, colour = integrate_orbit(potential, start, shelf.quality.t_max, cancel=shelf.cancel), PAPER.channels[channel - 1]
+        axes.plot(orbit.x, orbit.y, color=colour, linewidth=1.1)
+        axes.plot(orbit.x[0], orbit.y[0], "o", color=colour, markersize=4.5, markeredgecolor=LIGHT.halo, zorder=3)
+        _draw_arrow(axes, orbit.x[-1], orbit.y[-1], orbit.px[-1], orbit.py[-1], colour, window)
+
+
+def _draw_arrow(axes: Axes, x: float, y: float, px: float, py: float, colour: str, window: Window) -> None:
+    """Where an orbit leaves, and which way it goes on."""
+    length = 0.05 * (window.x_high - window.x_low) / np.hypot(px, py)
+    arrow = {"arrowstyle": "-|>,head_width=0.25,head_length=0.5", "color": colour, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (x + length * px, y + length * py), (x, y), arrowprops=arrow)
+
+
+def _draw_forbidden(axes: Axes, potential: Potential, energy: float, window: Window) -> None:
+    x = np.linspace(window.x_low, window.x_high, _SAMPLES)
+    y = np.linspace(window.ordinate_low, window.ordinate_high, _SAMPLES)
+    height = potential.value(*np.meshgrid(x, y))
+    axes.contourf(x, y, height, levels=[energy, np.inf], colors=[LIGHT.equipotential], alpha=0.45)
+
+
+def _draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:
+    for piece in pieces:
+        axes.plot(*piece.T, color=colour, linewidth=width)

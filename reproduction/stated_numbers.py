@@ -1,0 +1,197 @@
+"""Every number that Zotos (2014) states of escapes, as data: Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from engine import Plane
+
+
+class Quantity(Enum):
+    """What is measured; the value is its name on paper."""
+
+    ESCAPED_BY = "leave through"
+    BOUNDED = "bounded"
+    ESCAPED = "leave"
+    DIRECT = "leave directly"
+    CHAOTIC = "chaotic, of the bounded"
+    LAST_BOUNDED_ENERGY = "highest h with a bounded start"
+    MEDIAN_ESCAPE_TIME = "median escape time"
+    ENERGY_ERROR = "largest relative energy error"
+    ESCAPE_ENERGY = "escape energy"
+    LYAPUNOV_R2 = "R² of the Lyapunov orbits"
+    LAST_LEAVER = "escape time of the last chaotic bounded orbit"
+    NEAREST_LEAVER = "escape time of one that leaves through"
+
+
+class Relation(Enum):
+    """How the paper words a number; the value is that word."""
+
+    EXACTLY = ""
+    ABOUT = "about"
+    MORE_THAN = "more than"
+    LESS_THAN = "less than"
+
+
+class Counting(Enum):
+    """Which starts a share is out of."""
+
+    ANY = "of any starts"
+    """The same whichever starts are counted: none are outside on this plane, or the share is nothing."""
+    INTERIOR = "of the starts inside"
+    """Shares of orbits that are launched, which outside starts are not."""
+    WINDOW = "of a window that is not stated"
+    """Outside starts exist on this plane, and the paper seems to count them."""
+
+
+@dataclass(frozen=True)
+class StatedNumber:
+    """One number of the paper.
+
+    Attributes
+    ----------
+    case
+        Of `engine.CASES`.
+    plane
+        Plane of the starts; None where there is none.
+    energies
+        h at which we measure; several where the paper speaks of a range. On (x, h) the ends of the plane.
+    at
+        h in the paper's words.
+    quantity
+        What is measured.
+    relation, value
+        What is stated: in percent for shares, else dimensionless.
+    channels
+        The channels that the quantity is about, together; empty for those that are about none.
+    counting
+        Which starts a share is out of.
+    remark
+        Why ours differs, where it differs.
+    """
+
+    case: str
+    plane: Plane | None
+    energies: tuple[float, ...]
+    at: str
+    quantity: Quantity
+    relation: Relation
+    value: float
+    channels: tuple[int, ...] = ()
+    counting: Counting = Counting.ANY
+    remark: str = ""
+
+    @property
+    def is_share(self) -> bool:
+        """Whether the number is a percentage."""
+        return self.quantity in _SHARES
+
+    @property
+    def needs_window(self) -> bool:
+        """Whether the number depends on a window that the paper does not state."""
+        return self.counting is Counting.WINDOW
+
+
+_SHARES = (Quantity.ESCAPED_BY, Quantity.BOUNDED, Quantity.ESCAPED, Quantity.DIRECT, Quantity.CHAOTIC)
+
+_ABOUT, _MORE, _LESS, _EXACTLY = Relation.ABOUT, Relation.MORE_THAN, Relation.LESS_THAN, Relation.EXACTLY
+_THROUGH, _BOUNDED, _ESCAPED, _DIRECT = Quantity.ESCAPED_BY, Quantity.BOUNDED, Quantity.ESCAPED, Quantity.DIRECT
+_INTERIOR, _WINDOW = Counting.INTERIOR, Counting.WINDOW
+_X_Y, _X_PX, _X_H = Plane.X_Y, Plane.X_PX, Plane.X_H
+
+_MEDIAN = "Of those that leave half have left before t = 1000, and some hundredth alone takes longer than 10 000."
+_HALF = "Half are still inside at t = 5000 or so; by 20 000 nearly all that ever leave have left, and more starts change nothing."
+_CONFINED = (
+    "The paper says that all bounded orbits of I and II are regular; SALI of many of these falls below its threshold: "
+    "chaos that invariant tori shut in."
+)
+_OVER_100 = "The four stated shares sum to 102."
+_OVER_106 = "The five stated shares sum to 106."
+_SQUARE = "No square about the origin has so much of channel 1 and so little of the others outside."
+_OWN_FIT = "The paper's own fit gives 84.8 at h = 0.5, as we find; its words are lower than its curve."
+_FALLING = "Ours still fall there, to 6 each at h = 0.6."
+_LAST_ISLANDS = "Of the last islands, near h = 0.56, the paper says once that they end at 0.55 and once that they do at 0.6."
+_NINE_TENTHS = "A share of 88 that is called about 90."
+_ACCIDENT = "So late an escape is an accident of rounding; of ours far fewer leave at all."
+_LYAPUNOV = "On the Lyapunov orbits themselves R² is hardly above 1, that of the saddles; 1.26 lies well outside."
+
+_CASE_I = (
+    StatedNumber("I", None, (), "", Quantity.ESCAPE_ENERGY, _EXACTLY, 1 / 8),
+    StatedNumber("I", _X_PX, (), "all", Quantity.ENERGY_ERROR, _LESS, 1e-10),
+    StatedNumber("I", _X_Y, (0.13,), "0.13", _BOUNDED, _ABOUT, 100 / 3, (), _WINDOW),
+    StatedNumber("I", _X_Y, (0.13,), "0.13", _THROUGH, _ABOUT, 100 / 3, (1,), _WINDOW),
+    StatedNumber("I", _X_Y, (0.13,), "0.13", _THROUGH, _ABOUT, 100 / 3, (2,), _WINDOW),
+    StatedNumber("I", _X_Y, (0.13,), "0.13", Quantity.MEDIAN_ESCAPE_TIME, _MORE, 1e4, remark=_MEDIAN),
+    StatedNumber("I", _X_Y, (0.285, 0.3, 0.4), "> 0.28", _BOUNDED, _ABOUT, 0.0),
+    StatedNumber("I", _X_Y, (0.38, 0.44, 0.5), "> 0.35", _THROUGH, _ABOUT, 65.0, (1,), _WINDOW),
+    StatedNumber("I", _X_Y, (0.38, 0.44, 0.5), "> 0.37", _THROUGH, _ABOUT, 35.0, (2,), _WINDOW),
+    StatedNumber("I", _X_PX, (0.13,), "0.13", _BOUNDED, _ABOUT, 50.0, remark=_HALF),
+    StatedNumber("I", _X_PX, (0.13,), "0.13", _THROUGH, _ABOUT, 25.0, (1,), remark=_HALF),
+    StatedNumber("I", _X_PX, (0.13,), "0.13", _THROUGH, _ABOUT, 25.0, (2,), remark=_HALF),
+    StatedNumber("I", _X_PX, (0.13,), "any", Quantity.CHAOTIC, _ABOUT, 0.0, remark=_CONFINED),
+    StatedNumber("I", _X_PX, (0.305, 0.4, 0.5), "> 0.3", _BOUNDED, _ABOUT, 0.0),
+    StatedNumber("I", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 60.0, (1,)),
+    StatedNumber("I", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 40.0, (2,)),
+    StatedNumber("I", _X_PX, (0.5,), "high", _DIRECT, _ABOUT, 90.0),
+    StatedNumber("I", _X_PX, (0.52, 0.55, 0.6), "> 0.5", _DIRECT, _MORE, 90.0),
+)
+
+_CASE_II = (
+    StatedNumber("II", None, (), "", Quantity.ESCAPE_ENERGY, _EXACTLY, 1 / 6),
+    StatedNumber("II", _X_PX, (), "all", Quantity.ENERGY_ERROR, _LESS, 1e-10),
+    StatedNumber("II", _X_Y, (0.17,), "0.17", _BOUNDED, _ABOUT, 4.0, (), _WINDOW, _OVER_100),
+    StatedNumber("II", _X_Y, (0.17,), "0.17", _THROUGH, _ABOUT, 34.0, (1,), _WINDOW, _OVER_100),
+    StatedNumber("II", _X_Y, (0.17,), "0.17", _THROUGH, _ABOUT, 32.0, (2,), _WINDOW, _OVER_100),
+    StatedNumber("II", _X_Y, (0.17,), "0.17", _THROUGH, _ABOUT, 32.0, (3,), _WINDOW, _OVER_100),
+    StatedNumber("II", _X_Y, (0.205, 0.22, 0.3), "> 0.2", _BOUNDED, _ABOUT, 0.0),
+    StatedNumber("II", _X_Y, (0.42, 0.46, 0.5), "> 0.4", _THROUGH, _ABOUT, 32.0, (1,), _WINDOW, _SQUARE),
+    StatedNumber("II", _X_Y, (0.42, 0.46, 0.5), "> 0.4", _THROUGH, _ABOUT, 44.0, (2,), _WINDOW, _SQUARE),
+    StatedNumber("II", _X_Y, (0.42, 0.46, 0.5), "> 0.4", _THROUGH, _ABOUT, 24.0, (3,), _WINDOW, _SQUARE),
+    StatedNumber("II", _X_PX, (0.17,), "0.17", _THROUGH, _ABOUT, 55.0, (1,), _WINDOW),
+    StatedNumber("II", _X_PX, (0.17,), "0.17", _THROUGH, _ABOUT, 44.0, (2, 3), _WINDOW),
+    StatedNumber("II", _X_PX, (0.17, 0.18, 0.2, 0.3, 0.5), "> 1/6", _ESCAPED, _MORE, 95.0, (), _INTERIOR),
+    StatedNumber("II", _X_PX, (0.17,), "any", Quantity.CHAOTIC, _ABOUT, 0.0),
+    StatedNumber("II", _X_PX, (0.205, 0.22, 0.3), "> 0.2", _BOUNDED, _ABOUT, 0.0),
+    StatedNumber("II", _X_PX, (0.255, 0.3, 0.4), "> 0.25", _BOUNDED, _ABOUT, 0.0),
+    StatedNumber("II", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 70.0, (1,), _WINDOW),
+    StatedNumber("II", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 20.0, (2,), _WINDOW),
+    StatedNumber("II", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 10.0, (3,), _WINDOW),
+    StatedNumber("II", _X_PX, (0.45, 0.5), "high", _DIRECT, _MORE, 70.0, (), _INTERIOR),
+    StatedNumber("II", _X_PX, (0.5, 0.52, 0.55), "> 0.5", _DIRECT, _ABOUT, 80.0, (), _INTERIOR, _OWN_FIT),
+    StatedNumber("II", _X_H, (1 / 6, 0.5), "(1/6, 1/2]", Quantity.LAST_BOUNDED_ENERGY, _LESS, 0.22),
+)
+
+_CASE_III = (
+    StatedNumber("III", None, (), "", Quantity.ESCAPE_ENERGY, _EXACTLY, 1 / 4),
+    StatedNumber("III", _X_PX, (), "all", Quantity.ENERGY_ERROR, _LESS, 1e-10),
+    StatedNumber("III", _X_Y, (0.26,), "0.26", _BOUNDED, _ABOUT, 50.0, (), _WINDOW, _OVER_106),
+    StatedNumber("III", _X_Y, (0.26,), "0.26", _THROUGH, _ABOUT, 14.0, (1,), _WINDOW, _OVER_106),
+    StatedNumber("III", _X_Y, (0.26,), "0.26", _THROUGH, _ABOUT, 14.0, (2,), _WINDOW, _OVER_106),
+    StatedNumber("III", _X_Y, (0.26,), "0.26", _THROUGH, _ABOUT, 14.0, (3,), _WINDOW, _OVER_106),
+    StatedNumber("III", _X_Y, (0.26,), "0.26", _THROUGH, _ABOUT, 14.0, (4,), _WINDOW, _OVER_106),
+    StatedNumber("III", _X_Y, (0.6,), "0.6", _BOUNDED, _ABOUT, 0.0),
+    StatedNumber("III", _X_Y, (0.6,), "0.6", _THROUGH, _ABOUT, 65.0, (1, 2), _WINDOW),
+    StatedNumber("III", _X_Y, (0.6,), "0.6", _THROUGH, _ABOUT, 35.0, (3, 4), _WINDOW),
+    StatedNumber("III", _X_PX, (0.26,), "0.26", _BOUNDED, _ABOUT, 90.0),
+    StatedNumber("III", _X_PX, (0.36, 0.4, 0.5), "> 0.35", _ESCAPED, _MORE, 50.0),
+    StatedNumber("III", _X_PX, (0.46, 0.5, 0.6), "> 0.45", _ESCAPED, _MORE, 90.0),
+    StatedNumber("III", _X_PX, (0.42, 0.5), "> 0.4", _THROUGH, _ABOUT, 5.0, (3,), remark=_FALLING),
+    StatedNumber("III", _X_PX, (0.42, 0.5), "> 0.4", _THROUGH, _ABOUT, 5.0, (4,), remark=_FALLING),
+    StatedNumber("III", _X_PX, (0.56, 0.6), "> 0.55", _BOUNDED, _ABOUT, 0.0, remark=_LAST_ISLANDS),
+    StatedNumber("III", _X_PX, (0.6,), "0.6", _THROUGH, _ABOUT, 90.0, (1, 2), remark=_NINE_TENTHS),
+    StatedNumber("III", _X_PX, (0.6,), "0.6", _THROUGH, _ABOUT, 5.0, (3,)),
+    StatedNumber("III", _X_PX, (0.6,), "0.6", _THROUGH, _ABOUT, 5.0, (4,)),
+    StatedNumber("III", _X_PX, (0.62, 0.65, 0.7), "> 0.6", _DIRECT, _MORE, 90.0),
+    StatedNumber("III", _X_H, (0.25, 1.0), "(0.25, 1]", Quantity.LAST_BOUNDED_ENERGY, _ABOUT, 0.6, remark=_LAST_ISLANDS),
+    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.CHAOTIC, _LESS, 10.0),
+    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.LAST_LEAVER, _ABOUT, 3.5e6, remark=_ACCIDENT),
+    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.NEAREST_LEAVER, _ABOUT, 851e3, (2,), remark=_ACCIDENT),
+    StatedNumber("III", _X_Y, (0.26,), "0.26", Quantity.LYAPUNOV_R2, _ABOUT, 1.26, remark=_LYAPUNOV),
+)
+
+STATED_NUMBERS: tuple[StatedNumber, ...] = (*_CASE_I, *_CASE_II, *_CASE_III)
+"""All of them, case by case; shares of a third are written in full, and "the rest" as what is left of 100.
+
+The fits of Ne/N0 and Nde/N0 are `engine.PAPER_FITS`. Of dN_n and p_n the text states no number.
+"""

@@ -1,0 +1,83 @@
+"""The statistics of the paper, in four panels: who escapes, who does so directly, and after how many crossings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from app.palette import LIGHT, MEASURED, PAPER, THRESHOLD
+from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares, tabulate_crossing_statistics
+from reproduction.map_shelf import MapShelf
+from reproduction.paper_ranges import nine_energies
+from reproduction.printing import PLANES, add_panel_key, label_axes, name_panels, new_figure, tidy_axes
+
+Curve = Callable[[Any], Any]
+"""A share against energy."""
+
+MOST_CROSSINGS = 40
+"""Where the axis of crossings ends; what leaves later is a tail of single orbits."""
+
+FEWEST_REMAINING = 50
+"""Starts that must remain for p_n to be drawn: with fewer it is an accident of the grid."""
+
+# The part of the scale of escape times that can be told from white and from black.
+_LIGHTEST, _DARKEST = 50, 255
+_SAMPLES = 400
+
+
+def draw_statistics(case: str, shelf: MapShelf) -> Figure:
+    """Ne/N0 and Nde/N0 against h with the paper's fits and ours; dN_n/N0 and p_n against n."""
+    figure = new_figure(11.4, 8.6, f"Case {case}, {PLANES[Plane.X_PX]} plane: statistics of the escapes")
+    panels = figure.subplots(2, 2).ravel().tolist()
+    table = shelf.curves(case, Plane.X_PX)
+    h, starts, paper = table["h"].values, table["starts"].values, PAPER_FITS[case]
+    degree = len(paper.direct.coefficients) - 1
+    escaped = fit_escape_shares(h, table["escaped"].values, starts)
+    direct = fit_direct_shares(h, table["direct"].values, starts, degree)
+    _draw_fits(panels[0], h, table["escaped_share"].values, paper.escaped, escaped.curve if escaped.determined else None)
+    _draw_fits(panels[1], h, table["direct_share"].values, paper.direct, direct.curve if direct.determined else None)
+    label_axes(panels[0], "$h$", "$N_e/N_0$")
+    label_axes(panels[1], "$h$", "$N_{de}/N_0$")
+    frames = (shelf.map(case, Plane.X_PX, energy) for energy in nine_energies(case))
+    _draw_crossings(panels[2], panels[3], tabulate_crossing_statistics(frames, most_crossings=MOST_CROSSINGS))
+    after = "after $n$ crossings"
+    name_panels(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
+    return figure
+
+
+def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: Curve, own: Curve | None) -> None:
+    fine = np.linspace(h[0], h[-1], _SAMPLES)
+    axes.plot(h, shares, "o", color=MEASURED, markersize=3.6, label="computed")
+    axes.plot(fine, paper(fine), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
+    if own is not None:
+        axes.plot(fine, own(fine), color=LIGHT.text, linewidth=1.2, label="our fit")
+    axes.set_xlim(h[0], h[-1])
+    axes.grid(alpha=0.25, linewidth=0.5)
+    tidy_axes(axes)
+    add_panel_key(axes, "lower right")
+
+
+def _draw_crossings(shares: Axes, chances: Axes, table: xr.Dataset) -> None:
+    """Both panels against n, one line an energy: the slower, the darker."""
+    energies, n = table["h"].values.tolist(), table["n"].values
+    places = np.linspace(_DARKEST, _LIGHTEST, len(energies)).astype(int)
+    for energy, place in zip(energies, places, strict=True):
+        row = table.sel(h=energy)
+        style: dict[str, Any] = {"color": PAPER.escape_time[place], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
+        share, chance = row["crossing_share"].values, row["escape_probability"].values
+        with np.errstate(divide="ignore"):
+            logarithm = np.where(share > 0.0, np.log10(share), np.nan)
+        shares.plot(n, logarithm, label=f"$h = {energy:.2f}$", **style)
+        chances.plot(n, np.where(row["remaining"].values >= FEWEST_REMAINING, chance, np.nan), **style)
+    label_axes(shares, "$n$", r"$\log_{10}(dN_n/N_0)$")
+    label_axes(chances, "$n$", "$p_n$")
+    for axes in (shares, chances):
+        axes.set_xlim(-0.5, MOST_CROSSINGS + 0.5)
+        axes.grid(alpha=0.25, linewidth=0.5)
+        tidy_axes(axes)
+    add_panel_key(shares, "upper right", columns=3)

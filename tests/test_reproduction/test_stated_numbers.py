@@ -1,0 +1,72 @@
+"""What the paper states, against what must hold of any such number."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import CASES, Fate, MapSpec, Plane, Window, compute_map
+from reproduction.stated_numbers import STATED_NUMBERS, Counting, Quantity, Relation, StatedNumber
+
+SHARES = [number for number in STATED_NUMBERS if number.is_share]
+
+
+def share_outside(number: StatedNumber, energy: float) -> float:
+    """Of the starts of a wide square, those that lie outside."""
+    assert number.plane is not None
+    wide = compute_map(
+        MapSpec(CASES[number.case], number.plane, energy, (60, 60), Window(-3.0, 3.0, -3.0, 3.0), 1e-9, certify=False)
+    )
+    return float(np.mean(wide.fate[wide.fate != Fate.FORBIDDEN] == Fate.OUTSIDE))
+
+
+def test_no_number_is_there_twice() -> None:
+    assert len(set(STATED_NUMBERS)) == len(STATED_NUMBERS)
+
+
+def test_shares_are_percentages_of_channels_that_exist_at_energies_where_they_are_open() -> None:
+    for number in SHARES:
+        assert 0.0 <= number.value <= 100.0
+        assert set(number.channels) <= set(range(1, CASES[number.case].channels + 1))
+        assert min(number.energies) > CASES[number.case].escape_energy
+
+
+@pytest.mark.parametrize("number", [number for number in SHARES if number.needs_window], ids=str)
+def test_a_share_that_needs_a_window_is_of_a_plane_with_starts_outside(number: StatedNumber) -> None:
+    assert all(share_outside(number, energy) > 0.0 for energy in number.energies)
+
+
+@pytest.mark.parametrize("number", [n for n in SHARES if n.counting is Counting.ANY and n.value > 0.0], ids=str)
+def test_a_share_of_any_starts_is_of_a_plane_without_starts_outside(number: StatedNumber) -> None:
+    assert all(share_outside(number, energy) == 0.0 for energy in number.energies)
+
+
+def test_shares_said_to_be_of_channels_name_them_and_no_others_do() -> None:
+    for number in SHARES:
+        assert bool(number.channels) is (number.quantity is Quantity.ESCAPED_BY)
+
+
+# As printed, page by page: the case, the plane, h in its words, the channels or what else, and the percentage.
+@pytest.mark.parametrize(
+    ("case", "plane", "at", "quantity", "channels", "relation", "value"),
+    [
+        ("I", Plane.X_Y, "> 0.35", Quantity.ESCAPED_BY, (1,), Relation.ABOUT, 65.0),
+        ("I", Plane.X_PX, "0.5", Quantity.ESCAPED_BY, (2,), Relation.ABOUT, 40.0),
+        ("I", Plane.X_PX, "> 0.5", Quantity.DIRECT, (), Relation.MORE_THAN, 90.0),
+        ("II", Plane.X_Y, "0.17", Quantity.BOUNDED, (), Relation.ABOUT, 4.0),
+        ("II", Plane.X_PX, "0.17", Quantity.ESCAPED_BY, (2, 3), Relation.ABOUT, 44.0),
+        ("II", Plane.X_PX, "> 0.5", Quantity.DIRECT, (), Relation.ABOUT, 80.0),
+        ("III", Plane.X_Y, "0.26", Quantity.ESCAPED_BY, (4,), Relation.ABOUT, 14.0),
+        ("III", Plane.X_PX, "0.6", Quantity.ESCAPED_BY, (1, 2), Relation.ABOUT, 90.0),
+        ("III", Plane.X_PX, "0.26", Quantity.CHAOTIC, (), Relation.LESS_THAN, 10.0),
+    ],
+)  # fmt: skip
+def test_a_printed_percentage_is_there(
+    case: str, plane: Plane, at: str, quantity: Quantity, channels: tuple[int, ...], relation: Relation, value: float
+) -> None:
+    found = [
+        number
+        for number in STATED_NUMBERS
+        if (number.case, number.plane, number.at, number.quantity, number.channels) == (case, plane, at, quantity, channels)
+    ]
+    assert [(number.relation, number.value) for number in found] == [(relation, value)]
