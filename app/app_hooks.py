@@ -1,29 +1,59 @@
-"""Before the first visitor: compile the kernels, or load them from the cache."""
+"""What Bokeh's server calls at turning points of its life and of its sessions' lives, however it was started.
+
+The server runs this file more than once, so nothing is kept here.
+"""
 
 from __future__ import annotations
 
 import logging
 from typing import Any
 
-from tornado.websocket import WebSocketClosedError
+from bokeh.server import urls
+from tornado.ioloop import PeriodicCallback
 
-from app.views import orbit_panes
-from engine import CASES, prepare_kernels
+from app.explorer import shared_jobs
+from app.server.admission import admit
+from app.server.bokeh_application import find_web_application
+from app.server.figures import FaultCounter, these_figures
+from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
+from app.server.logs import set_up_logs
+from app.server.pages import add_routes
+from app.server.preparation import prepare_in_background
+from app.server.security_headers import SecurityTransform
+from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
+from app.server.site import this_site
 
-# Below Bokeh's logger, so that `panel serve` shows it: the first start takes long enough to want a word.
-log = logging.getLogger(f"bokeh.{__name__}")
+# Before Bokeh builds its web application from the list, as Panel puts its own pages there.
+add_routes(urls.toplevel_patterns)
 
 
-def is_worth_a_word(record: logging.LogRecord) -> bool:
-    """False for the report that a visitor left while a message was on its way to them: that is no fault."""
-    return record.exc_info is None or not isinstance(record.exc_info[1], WebSocketClosedError)
+def on_server_loaded(server_context: Any) -> None:
+    """Begin to compile, or to load what is compiled; the server answers meanwhile."""
+    site, context = this_site(), server_context.application_context
+    set_up_logs(site.settings.log, FaultCounter(these_figures()), [logging.getLogger(), logging.getLogger("panel")])
+    find_web_application(server_context).add_transform(SecurityTransform)
+    site.sessions, site.jobs = lambda: context.sessions, shared_jobs()
+    PeriodicCallback(LeftPages(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
+    stop_gracefully_on_sigterm(site, context.io_loop.stop)
+    prepare_in_background(site)
 
 
-def on_server_loaded(_context: Any) -> None:
-    """Run every kernel of every case once; the first time on a machine that takes some seconds a case."""
-    logging.getLogger("asyncio").addFilter(is_worth_a_word)
-    for name, potential in CASES.items():
-        log.info("preparing the kernels of case %s", name)
-        prepare_kernels(potential)
-    orbit_panes.prepare()
-    log.info("ready")
+def on_server_unloaded(server_context: Any) -> None:
+    """The last that Bokeh calls."""
+    end_stop(this_site())
+
+
+def on_session_created(session_context: Any) -> None:
+    """Count it."""
+    these_figures().created.inc()
+
+
+def on_session_destroyed(session_context: Any) -> None:
+    """Count it."""
+    these_figures().destroyed.inc()
+
+
+def process_request(request: Any) -> dict[str, Any]:
+    """Let a visitor in, or send them away with a sentence; nothing is noted of them."""
+    admit(request)
+    return {}

@@ -10,6 +10,7 @@ from app.map_columns import map_columns
 from app.preview_requests import PreviewRequests
 from app.second_looks import SecondLook, SecondLooks
 from app.sentences import sentence
+from app.systems import SYSTEM
 from app.view_state import ViewState
 from engine import EscapeMap, Requests, Ticket
 
@@ -51,7 +52,7 @@ class Controller:
         self._show_map_problem = locked(self._map_failed)
         self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked)
         self._second_looks = SecondLooks(state, jobs, looks, listener.map_failed, locked)
-        state.param.watch(lambda *events: self.request_map(), ["case", "plane", "energy", "t_max", "resolution", "window"])
+        state.param.watch(lambda *events: self.request_map(), [*SYSTEM, "plane", "energy", "t_max", "resolution", "window"])
 
     def request_map(self) -> None:
         """Ask for the map in view; whatever was on its way for this session is cancelled."""

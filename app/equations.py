@@ -1,4 +1,4 @@
-"""The system of a case in formulas, as MathML for the browser to set; all of it follows from the potential's terms."""
+"""A system in formulas, as MathML for the browser to set; all of it follows from the potential's terms."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from html import escape
 from math import isqrt
 from xml.etree import ElementTree
 
-from engine import CASES, Potential
+from engine import Potential
 
 # Numbers are shown exactly where they are this close to a fraction, or the root of one, of small denominator.
 _ROUNDING = 1e-10
@@ -19,9 +19,8 @@ _SPOKEN = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "
 _POWERS = {"2": "squared", "3": "cubed"}
 
 
-def equations(case: str) -> str:
-    """HTML: Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles of a case."""
-    potential = CASES[case]
+def equations(potential: Potential) -> str:
+    """HTML: Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles of a system."""
     rows = {
         "Hamiltonian": [_var("H") + _op("=") + _energy(_momentum_squared("x"), _momentum_squared("y"))],
         "Potential": [_V_AT_POINT + _op("=") + _polynomial({(i, j): c for i, j, c in potential.terms})],

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from functools import cache, partial
 from typing import Any
 
@@ -15,11 +17,16 @@ from app.indicators_request import IndicatorsRequest
 from app.link import LINKED, read_link, write_link
 from app.navigation import Navigation
 from app.orbit_requests import ChosenOrbit, OrbitRequests
-from app.paper_energies import ENERGIES
+from app.potential_choice import PotentialChoice
 from app.separation_request import SeparationRequest
+from app.server.figures import observe_first_frame
+from app.server.left_pages import when_left
+from app.server.site import this_site
+from app.settings import current_settings
+from app.systems import SYSTEM, System
 from app.twin_request import TwinRequest
 from app.view_state import ViewState
-from app.views.controls import ENERGY_DECIMALS, Controls, EnergyActions
+from app.views.controls import ControlActions, Controls
 from app.views.gallery import Gallery
 from app.views.keyboard import Keyboard
 from app.views.maps import MapsView
@@ -42,7 +49,8 @@ from engine import EscapeMap, Jobs, Plane, Visitor, Window
 @cache
 def shared_jobs() -> Jobs:
     """The background work of this process, shared by all sessions."""
-    return Jobs()
+    settings = current_settings()
+    return Jobs(cache_bytes=settings.cache_bytes, most_orbits=settings.most_orbits, threads=settings.threads)
 
 
 class Explorer:
@@ -57,7 +65,9 @@ class Explorer:
         # Clicks come without the session's lock, which bare Bokeh models need.
         self._locked: Callable[..., Any] = document.locked_callback
         self._make_views()
-        jobs = self._visitor = Visitor(shared_jobs())
+        jobs = self._visitor = Visitor(shared_jobs(), current_settings().jobs_per_session)
+        when_left(document, self._visitor.close)
+        self.potential = PotentialChoice(self.state, jobs, self._locked)
         self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
         self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks())
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
@@ -67,6 +77,7 @@ class Explorer:
         self.progress = ProgressView(self._locked(self.controller.stop_map), self._locked(self.controller.request_map))
         self.sweep = EnergySweep(document, lambda: self.controller.previews.under_way, self._pass_by, self._end_sweep)
         self._known: tuple[ChosenOrbit, ...] = ()
+        self._asked_at: float | None = None
         self._connect()
         pn.state.on_session_destroyed(self.close)
         pn.state.onload(self._begin)
@@ -98,20 +109,21 @@ class Explorer:
         self.take_along: TakeAlong = TakeAlong(state, self.keyboard.copy_link)
         self.gallery = Gallery(locked(self._show_preset))
         self.tour: Tour = Tour()
-        actions = EnergyActions(
+        actions = ControlActions(
             look=lambda energy: self.controller.request_preview(energy),
             settle=lambda: self.controller.request_map(),
             play=locked(self._play),
+            choose_potential=locked(lambda: self.potential.open()),
         )
         self.controls = Controls(state, actions)
 
     def _connect(self) -> None:
         watch, state = self.state.param.watch, self.state
-        watch(lambda *events: self.zoom_buttons.follow(self.navigation.history), ["window", "case", "plane"])
+        watch(lambda *events: self.zoom_buttons.follow(self.navigation.history), ["window", *SYSTEM, "plane"])
         watch(lambda event: self.desk.follow_plane(event.new), "plane")
         watch(lambda event: self._show_orbits(self._known), "chosen")
         watch(lambda event: self._set_palette(), "palette")
-        watch(lambda *events: self._count_in(None), ["case", "plane", "window"])
+        watch(lambda *events: self._count_in(None), [*SYSTEM, "plane", "window"])
         watch(lambda event: self._show_box(event.new), "box")
         watch(lambda *events: self._write_link(), list(LINKED))
         self.desk.follow_plane(state.plane)
@@ -120,7 +132,7 @@ class Explorer:
 
     def close(self, *_: Any) -> None:
         """The session is over."""
-        for requests in (self.controller, self.orbits, self.twin, self.separation, self.indicators, self.why):
+        for requests in (self.controller, self.orbits, self.twin, self.separation, self.indicators, self.why, self.potential):
             requests.close()
         self._visitor.close()
 
@@ -169,7 +181,7 @@ class Explorer:
 
     def _show_preset(self, preset: Preset) -> None:
         self.sweep.stop()
-        self.state.param.update(chosen=0, **preset.values())
+        self.state.param.update(chosen=0, **(asdict(System(preset.case)) | preset.values()))
         self.navigation.visit(preset.window)
 
     def _copied(self, success: bool) -> None:
@@ -195,7 +207,7 @@ class Explorer:
         if self.sweep.playing:
             self.sweep.stop()
         elif self.state.plane is not Plane.X_H:
-            energies = ENERGIES[self.state.case]
+            energies = self.state.system.energies
             self.sweep.start(self.state.energy, energies.low, energies.high)
             self.controls.show_playing(True)
 
@@ -205,13 +217,15 @@ class Explorer:
 
     def _end_sweep(self, energy: float) -> None:
         self.controls.show_playing(False)
-        self.state.energy = round(energy, ENERGY_DECIMALS)
+        self.state.energy = round(energy, self.state.system.energies.decimals)
 
     # What the engine answers.
 
     def map_requested(self) -> None:
         """Show that work has begun."""
-        self.progress.start()
+        self._asked_at = time.monotonic()
+        site = this_site()
+        self.progress.start(compiling=site.jobs is not None and not site.prepared.is_set())
 
     def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a quick look."""
@@ -222,6 +236,9 @@ class Explorer:
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame."""
+        if self._asked_at is not None:
+            observe_first_frame(time.monotonic() - self._asked_at)
+            self._asked_at = None
         with pn.io.hold():
             self.why.begin(frame.spec)
             self.maps.show(frame, columns)

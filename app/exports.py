@@ -15,7 +15,8 @@ from app.findings import NOTHING_FOUND, Findings
 from app.palette import Palette
 from app.pictures import TITLES
 from app.printed_pictures import draw_picture
-from engine import EscapeMap, MapSpec, Orbit
+from app.systems import TYPED, System
+from engine import CASES, EscapeMap, MapSpec, Orbit
 
 MOST_ROWS = 100_000
 """As many rows of numbers a table of orbits has, unless somebody asks for more."""
@@ -110,15 +111,15 @@ def _rows(number: int, orbit: Orbit, stride: int) -> Iterator[str]:
     return (f"{number}," + ",".join(map(repr, row)) for row in zip(*columns, strict=True))
 
 
-def python_lines(spec: MapSpec, case: str, starts: Sequence[Sequence[float]] = ()) -> str:
+def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
     """A script that makes the same map, and the same orbits, with the engine alone, to the bit.
 
     Parameters
     ----------
     spec
         The map.
-    case
-        The key in `CASES` of its potential.
+    system
+        Where its potential is from.
     starts
         (x, y, px, py) of each orbit, finite.
 
@@ -127,14 +128,15 @@ def python_lines(spec: MapSpec, case: str, starts: Sequence[Sequence[float]] = (
     ValueError
         When a start is not four finite numbers.
     """
-    names = ["CASES", "MapSpec", "Plane", "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
+    source, made = _potential_line(system)
+    names = [source, "MapSpec", "Plane", "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
     window = spec.window
     edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
     energy = _numbers(spec.energy) if isinstance(spec.energy, tuple) else repr(float(spec.energy))
     lines = [
         f"from engine import {', '.join(names)}",
         "",
-        f"potential = CASES[{case!r}]",
+        f"potential = {made}",
         "spec = MapSpec(",
         "    potential,",
         f"    Plane.{spec.plane.name},",
@@ -150,6 +152,17 @@ def python_lines(spec: MapSpec, case: str, starts: Sequence[Sequence[float]] = (
         lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
         lines += ["orbits = [integrate_orbit(potential, start, spec.t_max) for start in starts]"]
     return "\n".join(lines) + "\n"
+
+
+def _potential_line(system: System) -> tuple[str, str]:
+    """The name that makes the potential, and the expression."""
+    parameters = ", ".join(f"{name}={value!r}" for name, value in system.changed.items())
+    changed = f".with_parameters({parameters})" if parameters else ""
+    if system.case == TYPED:
+        return "parse_formula", f"parse_formula({system.formula!r}){changed}"
+    if system.case in CASES:
+        return "CASES", f"CASES[{system.case!r}]{changed}"
+    return "POTENTIALS", f"POTENTIALS[{system.case!r}].potential{changed}"
 
 
 def _state(start: Sequence[float]) -> str:

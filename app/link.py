@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import astuple
+from dataclasses import asdict, astuple
 from typing import Any
 from urllib.parse import urlencode
 
 import numpy as np
 
 from app.palette import MOST_ORBITS, PALETTES
-from app.paper_energies import ENERGIES
+from app.systems import SYSTEM, TYPED, System, refusal, review
 from app.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, ViewState
-from engine import CASES, Plane, Window
+from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window
 
-LONGEST_VALUE = 300
+LONGEST_VALUE = LONGEST_TEXT
 """Most characters that a value in a link may have."""
 
 _SHOWN = 40
@@ -24,6 +24,8 @@ def write_link(state: ViewState) -> str:
     """The query string, with its question mark, that opens the page on this view."""
     chosen: dict[str, Any] = {
         "case": state.case,
+        **({"V": state.formula} if state.case == TYPED else {}),
+        **{name: repr(value) for name, value in state.system.changed.items()},
         "plane": state.plane.name.lower(),
         "h": repr(float(state.energy)),
         "t_max": f"{state.t_max:g}",
@@ -57,11 +59,29 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
             values[attribute] = read(text)
         except (ValueError, KeyError):
             problems.append(f"In the link, {name}={_shown(text)} is of no use: it must be {legal}.")
-    if "case" in values and "energy" not in values:
-        values["energy"] = ENERGIES[values["case"]].first
+    values, refused = _with_system(values)
+    problems += [refused] if refused else []
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     return values, problems
+
+
+def _with_system(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
+    """The values with a system that can be shown and an energy for it, and the reason where the one asked for cannot."""
+    asked = {name: values[name] for name in SYSTEM if name in values}
+    if not asked:
+        return values, ""
+    plain: dict[str, Any] = {"case": TYPED if "formula" in asked else ViewState.param.case.default}
+    system = System(**(plain | asked))
+    try:
+        why = None if system.case in CASES and not system.changed else refusal(review(system.potential))
+    except ValueError as error:
+        why = str(error)
+    if why is None:
+        return {"energy": system.energies.first} | values | asdict(system), ""
+    # Where another system takes its place, its energy, window and orbits mean nothing.
+    others = {name: value for name, value in values.items() if name not in (*SYSTEM, "energy", "window", "starts", "chosen")}
+    return others, f"The potential in the link is of no use: {why}"
 
 
 def _shown(text: str) -> str:
@@ -95,11 +115,21 @@ def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
     return starts
 
 
+def _between(low: float, high: float) -> Callable[[str], float]:
+    def read(text: str) -> float:
+        number = _read_number(text)
+        if not low <= number <= high:
+            raise ValueError
+        return number
+
+    return read
+
+
 def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
     return lambda text: choices[text]
 
 
-_CASES = {name: name for name in CASES}
+_CASES = {name: name for name in (*POTENTIALS, TYPED)}
 _PLANES = {plane.name.lower(): plane for plane in Plane}
 _TIMES = {f"{t_max:g}": t_max for t_max in T_MAX_CHOICES.values()}
 _RESOLUTIONS = {str(side): side for side in RESOLUTION_CHOICES.values()}
@@ -110,6 +140,10 @@ _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 # For each parameter: what it sets, how it is read, and what is legal.
 _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "case": ("case", _one_of(_CASES), f"one of {', '.join(_CASES)}"),
+    "V": ("formula", str, f"a polynomial in x and y of at most {LONGEST_TEXT} characters"),
+    "omega_1": ("omega_1", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
+    "omega_2": ("omega_2", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
+    "epsilon": ("epsilon", _between(*STRENGTHS), f"a number from {STRENGTHS[0]:g} to {STRENGTHS[1]:g}"),
     "plane": ("plane", _one_of(_PLANES), f"one of {', '.join(_PLANES)}"),
     "h": ("energy", _read_number, "a finite number"),
     "t_max": ("t_max", _one_of(_TIMES), f"one of {', '.join(_TIMES)}"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from app.systems import SYSTEM
 from app.view_state import ViewState
 from app.zoom_history import ZoomHistory
 from engine import Window
@@ -42,7 +43,7 @@ class Navigation:
         self.history = ZoomHistory()
         if state.window is not None:
             self.history.visit(state.window)
-        state.param.watch(lambda *events: self.history.clear(), ["case", "plane"])
+        state.param.watch(lambda *events: self.history.clear(), [*SYSTEM, "plane"])
 
     def visit(self, window: Window | None) -> None:
         """Look at a window; None is the whole plane."""

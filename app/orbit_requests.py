@@ -9,6 +9,7 @@ from typing import Any
 from app.locking import Locked
 from app.orbit_drawing import OrbitDrawing, draw_orbit
 from app.sentences import sentence
+from app.systems import SYSTEM
 from app.view_state import Start, ViewState
 from engine import Fate, Orbit, OrbitSpec, Requests, Ticket, describe_fate
 
@@ -36,7 +37,7 @@ class OrbitRequests:
         self._answers: dict[OrbitSpec, OrbitDrawing | str] = {}
         self._told: tuple[ChosenOrbit, ...] = ()
         self._answer = locked(self._answered)
-        state.param.watch(lambda *events: self.follow(), ["starts", "case", "plane", "energy", "t_max"])
+        state.param.watch(lambda *events: self.follow(), ["starts", *SYSTEM, "plane", "energy", "t_max"])
 
     def follow(self) -> None:
         """Ask for what is wanted and not known, and give up what is not wanted any more."""

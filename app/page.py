@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from html import escape
+
 import panel as pn
 import panel_material_ui as pmui
 import param
@@ -9,6 +11,7 @@ from panel.util import edit_readonly
 
 from app.equations import equations
 from app.explorer import Explorer
+from app.systems import SYSTEM
 from app.views.keyboard import key_legend
 from app.views.wrapping import wrapping_row
 
@@ -30,6 +33,7 @@ def explorer_page(explorer: Explorer) -> pmui.Page:
     main = pn.Column(
         gallery,
         explorer.controls.layout(),
+        explorer.potential.panel.layout(),
         explorer.why.switches.layout(),
         explorer.progress.layout(),
         explorer.zoom_buttons.layout(),
@@ -76,8 +80,8 @@ def _equations(explorer: Explorer) -> pn.pane.HTML:
     state = explorer.state
 
     def written() -> str:
-        return f"<details><summary>Equations of case {state.case}</summary>{equations(state.case)}</details>"
+        return f"<details><summary>Equations: {escape(state.system.title)}</summary>{equations(state.potential)}</details>"
 
     pane = pn.pane.HTML(written(), margin=(4, 10), sizing_mode="stretch_width")
-    state.param.watch(lambda event: pane.param.update(object=written()), "case")
+    state.param.watch(lambda *events: pane.param.update(object=written()), list(SYSTEM))
     return pane

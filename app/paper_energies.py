@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class EnergyRange:
-    """For one case: the slider's ends, the (x, h) plane's range, the nine energies of the paper, and where to begin."""
+    """The slider's ends, the (x, h) plane's range, the energies to mark, such as the nine of the paper, and where to begin."""
 
     low: float
     high: float
     marked: tuple[float, ...]
     first: float
+    decimals: int = 3
+    """Of the energies that the slider stops at."""
 
 
 ENERGIES = {

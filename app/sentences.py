@@ -13,3 +13,8 @@ def sentence(error: Exception) -> str:
         return str(error)
     log.error("a job failed", exc_info=error)
     return "This could not be computed; the server's log says why."
+
+
+def as_markdown(text: str) -> str:
+    """A text as Markdown that shows it as it is: whatever might be markup, of Markdown or of HTML, is written as a number."""
+    return "".join(one if one.isalnum() or one in " .,:;=…" else f"&#{ord(one)};" for one in text)

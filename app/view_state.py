@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
+import reprlib
+from typing import Any
+
 import numpy as np
 import param
 
 from app.palette import MOST_ORBITS, PALETTES, Palette
 from app.paper_energies import ENERGIES
-from engine import CASES, MapSpec, OrbitSpec, Plane, Potential, Window, start_states
+from app.settings import current_settings
+from app.systems import SYSTEM, TYPED, System
+from engine import FREQUENCIES, POTENTIALS, STRENGTHS, MapSpec, OrbitSpec, Plane, Potential, Window, start_states
 
-T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
-RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
+
+def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
+    """The choices that a limit allows, and in any case the least."""
+    least = min(choices.values())
+    return {name: value for name, value in choices.items() if value <= max(limit, least)}
+
+
+T_MAX_CHOICES = _up_to(
+    current_settings().longest_t_max, {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
+)
+RESOLUTION_CHOICES = _up_to(
+    current_settings().largest_resolution, {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
+)
 
 SWITCHES = ("judge", "trust", "manifolds", "origins", "measures", "energies")
 """What of a view state is shown on demand."""
@@ -19,14 +35,31 @@ Start = tuple[float, float]
 """x and ordinate of a start on the plane."""
 
 
+class _Starts(param.Parameter):
+    """Up to MOST_ORBITS starts, each a pair of finite numbers."""
+
+    def _validate(self, val: Any) -> None:
+        if not isinstance(val, tuple) or len(val) > MOST_ORBITS or not all(map(_is_start, val)):
+            raise ValueError(f"starts={reprlib.repr(val)}: must be up to {MOST_ORBITS} pairs of finite numbers x, ordinate")
+
+
+def _is_start(value: Any) -> bool:
+    is_pair = isinstance(value, tuple) and len(value) == 2
+    return is_pair and all(isinstance(number, int | float) and abs(number) < np.inf for number in value)
+
+
 class ViewState(param.Parameterized):
     """The view: which map, in which colours, and the starts of the orbits beside it."""
 
-    case = param.Selector(default="I", objects=list(CASES))
+    case = param.Selector(default="I", objects=[*POTENTIALS, TYPED])
+    formula = param.String(default="", doc="V(x, y) as it was typed, where the case is TYPED")
+    omega_1 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along x")
+    omega_2 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along y")
+    epsilon = param.Number(default=1.0, bounds=STRENGTHS, doc="strength of what perturbs the well")
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
     energy = param.Number(default=ENERGIES["I"].first, doc="h; on (x, h) it is the ordinate instead")
-    t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
-    resolution = param.Selector(default=225, objects=list(RESOLUTION_CHOICES.values()))
+    t_max = param.Selector(default=min(1e5, max(T_MAX_CHOICES.values())), objects=list(T_MAX_CHOICES.values()))
+    resolution = param.Selector(default=min(225, max(RESOLUTION_CHOICES.values())), objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
@@ -40,13 +73,18 @@ class ViewState(param.Parameterized):
     measures = param.Boolean(default=False, doc="whether the basins are measured")
     energies = param.Boolean(default=False, doc="whether curves against energy are shown")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the set of colours")
-    starts = param.ClassSelector(class_=tuple, default=(), doc="of the orbits, up to MOST_ORBITS; each has its place and colour")
+    starts = _Starts(default=(), doc="of the orbits, up to MOST_ORBITS; each has its place and colour")
     chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="place of the orbit that is looked at")
 
     @property
+    def system(self) -> System:
+        """The chosen case with its parameters."""
+        return System(self.case, self.formula, float(self.omega_1), float(self.omega_2), float(self.epsilon))
+
+    @property
     def potential(self) -> Potential:
-        """The potential of the chosen case."""
-        return CASES[self.case]
+        """The potential of the chosen system."""
+        return self.system.potential
 
     @property
     def colours(self) -> Palette:
@@ -66,7 +104,7 @@ class ViewState(param.Parameterized):
         """The same at another energy."""
         energy: float | tuple[float, float] = h
         if self.plane is Plane.X_H:
-            energy = (self.potential.escape_energy, ENERGIES[self.case].high)
+            energy = (self.potential.escape_energy, self.system.energies.high)
         return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def orbit_spec(self, start: Start) -> OrbitSpec | None:
@@ -84,6 +122,12 @@ class ViewState(param.Parameterized):
         starts = list(self.starts)
         starts[place : place + 1] = [start]
         self.param.update(starts=tuple(starts), chosen=place)
+
+    def show_system(self, system: System, energy: float | None = None) -> None:
+        """Another system, all of it, at its first energy unless told otherwise, without the orbits of the last one."""
+        chosen = {name: getattr(system, name) for name in SYSTEM}
+        energy = system.energies.first if energy is None else energy
+        self.param.update(**chosen, energy=energy, window=None, starts=(), chosen=0)
 
     def remove_start(self, place: int) -> None:
         """Forget an orbit; those after it move up."""

@@ -13,10 +13,10 @@ import panel as pn
 from app.findings import NOTHING_FOUND, Findings
 from app.locking import Locked
 from app.palette import Palette
-from app.paper_energies import ENERGIES
 from app.pictures import ON_DEMAND
 from app.second_looks import SecondLook
 from app.single_request import SingleRequest
+from app.systems import SYSTEM
 from app.view_state import ViewState
 from app.views.energy_curves import EnergyCurvesView
 from app.views.maps import MapsView
@@ -124,8 +124,8 @@ class Why:
         watch(lambda event: self._open_sections(), ["measures", "energies"])
         watch(lambda event: None if event.new else self._forget(event.name), list(_FINDING_OF))
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
-        watch(lambda *events: self._stop_sweep(), ["case", "plane", "t_max"])
-        watch(lambda event: self.curves.show(None), "case")
+        watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
+        watch(lambda *events: self.curves.show(None), list(SYSTEM))
         self._show_pictures()
         self._open_sections()
         self.curves.follow_energy(state.energy)
@@ -210,7 +210,7 @@ class Why:
         if self.curves.running:
             self._stop_sweep()
             return
-        state, energies = self._state, ENERGIES[self._state.case]
+        state, energies = self._state, self._state.system.energies
         plane = Plane.X_PX if state.plane is Plane.X_H else state.plane
         swept = np.round(np.linspace(energies.low, energies.high, SWEPT_ENERGIES), 4).tolist()
         self.curves.show_running(True)

@@ -8,7 +8,10 @@ import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 
+from app.sentences import as_markdown
 from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
+
+_COMPILING = "The integrators are being compiled, which is done once on each machine; the map follows."
 
 
 class ProgressView:
@@ -30,9 +33,9 @@ class ProgressView:
         line = pn.Row(self.button, self.bar, sizing_mode="stretch_width")
         return pn.Column(line, self.text, self.problem, sizing_mode="stretch_width")
 
-    def start(self) -> None:
-        """A new map has been asked for."""
-        self._set(running=True, label="Cancel", text="Starting …")
+    def start(self, *, compiling: bool = False) -> None:
+        """A new map has been asked for, perhaps before the integrators are there."""
+        self._set(running=True, label="Cancel", text=_COMPILING if compiling else "Starting …")
         self.problem.visible = False
 
     def show(self, frame: EscapeMap) -> None:
@@ -64,7 +67,8 @@ class ProgressView:
 
     def warn(self, sentence: str) -> None:
         """Something was asked for that cannot be had; the map is none the worse for it."""
-        self.problem.param.update(object=sentence, visible=True)
+        # The alert reads Markdown, and with it HTML.
+        self.problem.param.update(object=as_markdown(sentence), visible=True)
 
     def fail(self, sentence: str) -> None:
         """The map cannot be had; the last good picture stays."""

@@ -94,7 +94,7 @@ class TakeAlong:
         self.lines.filename = self._named(".py")
         specs = [self._state.orbit_spec(one.start) for one in self._orbits]
         states = [spec.state for spec in specs if spec is not None]
-        return BytesIO(python_lines(self._whole().spec, self._state.case, states).encode())
+        return BytesIO(python_lines(self._whole().spec, self._state.system, states).encode())
 
 
 def _download(label: str, make: Callable[[], BytesIO]) -> pmui.FileDownload:

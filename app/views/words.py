@@ -46,8 +46,9 @@ class WordsView:
         self.text.object = f"<details><summary>This page as a table</summary>{table}</details>"
 
     def _view(self) -> list[tuple[str, str]]:
-        state = self._state
-        rows = [("case", state.case), ("plane", state.plane.value), ("t_max", f"{state.t_max:g}")]
+        state, system = self._state, self._state.system
+        rows = [("system", system.title), ("potential V(x, y)", system.formula_shown)]
+        rows += [("plane", state.plane.value), ("t_max", f"{state.t_max:g}")]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:
             w = state.window

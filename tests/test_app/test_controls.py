@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.view_state import ViewState
-from app.views.controls import Controls, EnergyActions
+from app.views.controls import ControlActions, Controls
 from engine import Plane
 
 
@@ -16,7 +16,10 @@ class Page:
         self.state = ViewState(case="I", energy=0.19)
         self.looks: list[float] = []
         self.settled = 0
-        self.controls = Controls(self.state, EnergyActions(look=self.looks.append, settle=self.settle, play=lambda: None))
+        self.controls = Controls(
+            self.state,
+            ControlActions(look=self.looks.append, settle=self.settle, play=lambda: None, choose_potential=lambda: None),
+        )
 
     def settle(self) -> None:
         self.settled += 1

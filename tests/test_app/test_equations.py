@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 import sympy
 
-from app import equations as module
 from app.equations import equations
-from engine import CASES, Potential
+from engine import CASES, POTENTIALS, Potential
 
 X, Y = sympy.symbols("x y")
 
 
-def rows(case: str) -> dict[str, list[ElementTree.Element]]:
+def rows(potential: Potential) -> dict[str, list[ElementTree.Element]]:
     """The formulas, by the words beside them."""
-    page = ElementTree.fromstring(equations(case))
+    page = ElementTree.fromstring(equations(potential))
     return {str(name.text): list(row) for name, row in zip(page.iter("dt"), page.iter("dd"), strict=True)}
 
 
@@ -54,30 +53,26 @@ def potential_of(potential: Potential) -> sympy.Expr:
     return sum(sympy.nsimplify(c, rational=True, tolerance=1e-12) * X**i * Y**j for i, j, c in potential.terms)
 
 
-@pytest.fixture
-def odd_case(monkeypatch: pytest.MonkeyPatch) -> str:
-    """A potential with terms that no case of the paper has: roots, decimals, a bare x, no saddle of a round place."""
-    terms = ((2, 0, 0.5), (0, 2, 0.75), (1, 0, -0.123456), (3, 0, 1.0), (2, 1, -(2.0**0.5)), (0, 4, -0.3))
-    monkeypatch.setattr(module, "CASES", {**CASES, "odd": Potential("odd", terms)})
-    return "odd"
+# Terms that no potential with a name has: roots, decimals, x y, no saddle of a round place.
+ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.75), (1, 1, -0.123456), (3, 0, 1.0), (2, 1, -(2.0**0.5)), (0, 4, -0.3)))
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_the_potential_is_that_of_the_case(case: str) -> None:
-    (formula,) = rows(case)["Potential"]
-    assert sympy.expand(after_last_equals(formula) - potential_of(CASES[case])) == 0
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_the_potential_is_that_of_its_name(name: str) -> None:
+    (formula,) = rows(POTENTIALS[name].potential)["Potential"]
+    assert sympy.expand(after_last_equals(formula) - potential_of(POTENTIALS[name].potential)) == 0
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_accelerations_are_the_slopes_of_the_potential(case: str) -> None:
-    for formula, variable in zip(rows(case)["Equations of motion"], (X, Y), strict=True):
+    for formula, variable in zip(rows(CASES[case])["Equations of motion"], (X, Y), strict=True):
         expected = -sympy.diff(potential_of(CASES[case]), variable)
         assert sympy.expand(after_last_equals(formula) - expected) == 0
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_escape_energy_and_the_saddles_are_exact(case: str) -> None:
-    potential, formulas = CASES[case], rows(case)
+    potential, formulas = CASES[case], rows(CASES[case])
     (escape_energy,) = formulas["Escape energy"]
     V = potential_of(potential)
     assert float(after_last_equals(escape_energy)) == pytest.approx(potential.escape_energy, rel=1e-15)
@@ -94,29 +89,28 @@ def coordinates(formula: ElementTree.Element) -> tuple[sympy.Expr, sympy.Expr]:
     return read(nodes[2:comma]), read(nodes[comma + 1 : -1])
 
 
-def test_any_polynomial_can_be_shown(odd_case: str) -> None:
-    formulas = rows(odd_case)
-    terms = ((i, j, c) for i, j, c in module.CASES[odd_case].terms)
+def test_any_polynomial_can_be_shown() -> None:
+    formulas = rows(ODD)
     exact = {-(2.0**0.5): -sympy.sqrt(2)}
-    V = sum(exact.get(c, sympy.nsimplify(c, rational=True)) * X**i * Y**j for i, j, c in terms)
+    V = sum(exact.get(c, sympy.nsimplify(c, rational=True)) * X**i * Y**j for i, j, c in ODD.terms)
     (shown,) = formulas["Potential"]
     assert sympy.expand(after_last_equals(shown) - V) == 0
     for formula, variable in zip(formulas["Equations of motion"], (X, Y), strict=True):
         assert sympy.expand(after_last_equals(formula) + sympy.diff(V, variable)) == 0
-    for formula, point in zip(formulas["Saddles (x, y) of the potential"], module.CASES[odd_case].saddles, strict=True):
+    for formula, point in zip(formulas["Saddles (x, y) of the potential"], ODD.saddles, strict=True):
         np.testing.assert_allclose([float(value) for value in coordinates(formula)], point, rtol=1e-3, atol=1e-12)
 
 
-def test_a_potential_without_saddles_has_no_escape_energy(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "CASES", {"well": Potential("well", ((2, 0, 0.5), (0, 2, 0.5)))})
-    assert not {"Escape energy", "Saddles (x, y) of the potential"} & set(rows("well"))
+def test_a_potential_without_saddles_has_no_escape_energy() -> None:
+    well = Potential("well", ((2, 0, 0.5), (0, 2, 0.5)))
+    assert not {"Escape energy", "Saddles (x, y) of the potential"} & set(rows(well))
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_every_formula_can_be_read_aloud(case: str) -> None:
-    for formula in (formula for row in rows(case).values() for formula in row):
+    for formula in (formula for row in rows(CASES[case]).values() for formula in row):
         assert formula.get("display") == "block"
         assert formula.get("aria-label") == formula.get("alttext")
         assert not set("−=∂+<√˙¨") & set(str(formula.get("aria-label")))
-    (potential,) = rows("I")["Potential"]
+    (potential,) = rows(CASES["I"])["Potential"]
     assert str(potential.get("alttext")).endswith("equals 1/2 x squared plus 1/2 y squared minus x y squared")

@@ -16,6 +16,7 @@ from app.findings import Findings
 from app.palette import COLOUR_BLIND_SAFE, PAPER
 from app.pictures import TITLES
 from app.printed_pictures import draw_picture
+from app.systems import TYPED, System
 from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, compute_map, compute_origin_fates, compute_trust, integrate_orbit
 
 START = (0.1, 0.0, 0.05, 0.6)
@@ -127,7 +128,7 @@ def test_no_orbits_make_an_empty_table() -> None:
 def test_the_python_lines_make_the_same_map_and_orbits(name: str) -> None:
     spec = SPECS[name]
     made: dict[str, Any] = {}
-    exec(python_lines(spec, "II", [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
+    exec(python_lines(spec, System("II"), [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
     assert made["spec"] == spec
     whole = compute_map(spec)
     for image in ("fate", "escape_time", "crossings", "x", "ordinate"):
@@ -138,8 +139,19 @@ def test_the_python_lines_make_the_same_map_and_orbits(name: str) -> None:
         np.testing.assert_array_equal(one.x, expected.x)
 
 
+@pytest.mark.parametrize(
+    "system",
+    [System("C5"), System("One exit", epsilon=0.5), System("III", omega_1=1.1), System(TYPED, "x²/2 + y²/2 − x²y", 1.0, 0.9)],
+)
+def test_the_python_lines_make_the_same_potential(system: System) -> None:
+    head = python_lines(SPECS["a window"], system).split("spec = ")[0]
+    made: dict[str, Any] = {}
+    exec(head, made)
+    assert made["potential"] == system.potential
+
+
 def test_the_python_lines_without_orbits_ask_for_none() -> None:
-    lines = python_lines(SPECS["a window"], "II")
+    lines = python_lines(SPECS["a window"], System("II"))
     assert "integrate_orbit" not in lines
     assert "orbits" not in lines
 
@@ -147,7 +159,7 @@ def test_the_python_lines_without_orbits_ask_for_none() -> None:
 @pytest.mark.parametrize("start", [(0.1, 0.0, 0.0), (0.1, 0.0, 0.0, float("nan"))])
 def test_python_lines_for_a_start_that_is_none_are_refused(start: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="must be four finite numbers x, y, px, py"):
-        python_lines(SPECS["a window"], "II", [start])
+        python_lines(SPECS["a window"], System("II"), [start])
 
 
 @pytest.mark.parametrize(
