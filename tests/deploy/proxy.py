@@ -1,0 +1,125 @@
+"""The proxy's configuration as it is printed, on loopback: its places replaced, and nothing else."""
+
+from __future__ import annotations
+
+import base64
+import os
+import shutil
+import socket
+import ssl
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+NAME, PASSWORD = "visitor", "open sesame"
+_CONFIGURATION = """
+daemon off;
+{user}
+pid {folder}/pid;
+error_log {folder}/error.log;
+events {{}}
+http {{
+    access_log off;
+    client_body_temp_path {folder}/body;
+    proxy_temp_path {folder}/proxy;
+    fastcgi_temp_path {folder}/fastcgi;
+    uwsgi_temp_path {folder}/uwsgi;
+    scgi_temp_path {folder}/scgi;
+    include {folder}/site.conf;
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Proxy:
+    """Where it listens, and what its clients need."""
+
+    plain_port: int
+    port: int
+    certificate: Path
+
+    @property
+    def origin(self) -> str:
+        return f"https://127.0.0.1:{self.port}"
+
+    def trusting(self) -> ssl.SSLContext:
+        """What a client checks the certificate with."""
+        return ssl.create_default_context(cafile=str(self.certificate))
+
+
+def nginx() -> str | None:
+    """The program; Debian keeps it where only root's PATH leads."""
+    return shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin:/usr/local/sbin")
+
+
+def authorization(password: str = PASSWORD) -> dict[str, str]:
+    return {"Authorization": "Basic " + base64.b64encode(f"{NAME}:{password}".encode()).decode()}
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@contextmanager
+def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) -> Iterator[Proxy]:
+    """nginx before two backends, with a certificate and a password of its own."""
+    proxy = Proxy(free_port(), port, folder / "certificate.pem")
+    _make_certificate(folder)
+    hashed = subprocess.run(["openssl", "passwd", "-apr1", PASSWORD], check=True, capture_output=True, text=True).stdout
+    (folder / "passwords").write_text(f"{NAME}:{hashed}")
+    (folder / "site.conf").write_text(_placed(proxy, folder, backends))
+    (folder / "nginx.conf").write_text(_CONFIGURATION.format(folder=folder, user=_user()))
+    process = subprocess.Popen([program, "-e", str(folder / "error.log"), "-c", str(folder / "nginx.conf")])
+    try:
+        _wait_for_port(port, process)
+        yield proxy
+    finally:
+        process.terminate()
+        process.wait(10)
+
+
+def _user() -> str:
+    """Root's nginx would read the password's file as nobody, who may not enter the folders of tests."""
+    return "user root root;" if os.getuid() == 0 else ""
+
+
+def _make_certificate(folder: Path) -> None:
+    command = "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=127.0.0.1"
+    command += f" -addext subjectAltName=IP:127.0.0.1 -keyout {folder}/key.pem -out {folder}/certificate.pem"
+    subprocess.run(command.split(), check=True, capture_output=True)
+
+
+def _placed(proxy: Proxy, folder: Path, backends: tuple[int, int]) -> str:
+    text = (ROOT / "deploy" / "nginx.conf").read_text()
+    places = {
+        "listen 80;": f"listen 127.0.0.1:{proxy.plain_port};",
+        "listen 443 ssl;": f"listen 127.0.0.1:{proxy.port} ssl;",
+        "server_name maps.example.org;": "server_name 127.0.0.1;",
+        "/etc/ssl/explorer/fullchain.pem": str(folder / "certificate.pem"),
+        "/etc/ssl/explorer/privkey.pem": str(folder / "key.pem"),
+        "/etc/nginx/explorer.htpasswd": str(folder / "passwords"),
+        "server 127.0.0.1:5006;": f"server 127.0.0.1:{backends[0]};",
+        "server 127.0.0.1:5007;": f"server 127.0.0.1:{backends[1]};",
+    }
+    for printed, here in places.items():
+        assert printed in text, f"deploy/nginx.conf has no {printed!r} any more"
+        text = text.replace(printed, here)
+    return text
+
+
+def _wait_for_port(port: int, process: subprocess.Popen[bytes]) -> None:
+    last = time.monotonic() + 20.0
+    while process.poll() is None and time.monotonic() < last:
+        try:
+            socket.create_connection(("127.0.0.1", port), 1.0).close()
+            return
+        except OSError:
+            time.sleep(0.05)
+    raise RuntimeError(f"nginx does not listen at {port}: {process.poll()}")

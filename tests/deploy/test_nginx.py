@@ -1,0 +1,192 @@
+"""The explorer behind nginx with TLS and a password, configured as `deploy/nginx.conf` has it."""
+
+from __future__ import annotations
+
+import asyncio
+import http.client
+import http.server
+import json
+import re
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import pytest
+from tornado.httpclient import HTTPClientError, HTTPRequest
+from tornado.websocket import websocket_connect
+
+from tests.deploy.proxy import ROOT, Proxy, authorization, free_port, nginx, proxied
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(nginx() is None, reason="nginx is not installed")]
+START_SECONDS = 240.0
+
+
+@pytest.fixture(scope="module")
+def proxy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
+    """Before the explorer."""
+    folder, port, place = tmp_path_factory.mktemp("nginx"), free_port(), free_port()
+    with explorer(folder / "log", place, f"127.0.0.1:{port}"), proxied(nginx() or "", folder, port, (place, place)) as proxy:
+        yield proxy
+
+
+@pytest.fixture(scope="module")
+def proxy_before_two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
+    """Before two servers that say which of them they are."""
+    with ExitStack() as stack:
+        places = stack.enter_context(self_naming()), stack.enter_context(self_naming())
+        yield stack.enter_context(proxied(nginx() or "", tmp_path_factory.mktemp("two"), free_port(), places))
+
+
+@contextmanager
+def explorer(log: Path, port: int, origin: str) -> Iterator[None]:
+    command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={port}", "--use-xheaders"]
+    with log.open("w") as output:
+        process = subprocess.Popen([*command, f"--allow-websocket-origin={origin}"], cwd=ROOT, stdout=output, stderr=output)
+    try:
+        wait_until_ready(port, process)
+        yield
+    finally:
+        process.terminate()
+        process.wait(60)
+
+
+def wait_until_ready(port: int, process: subprocess.Popen[bytes]) -> None:
+    last = time.monotonic() + START_SECONDS
+    while process.poll() is None and time.monotonic() < last:
+        try:
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}/readiness", timeout=30):
+                return
+        except OSError:
+            time.sleep(0.3)
+    raise RuntimeError(f"the server was not ready within {START_SECONDS:g} s, or ended: {process.poll()}")
+
+
+class NamePage(http.server.BaseHTTPRequestHandler):
+    """Says where it is."""
+
+    def do_GET(self) -> None:
+        text = str(self.connection.getsockname()[1]).encode()
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(text)))
+        self.end_headers()
+        self.wfile.write(text)
+
+    def log_message(self, format: str, *words: object) -> None:
+        pass
+
+
+@contextmanager
+def self_naming() -> Iterator[int]:
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), NamePage)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    try:
+        yield server.server_address[1]
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+def ask(proxy: Proxy, path: str, headers: dict[str, str]) -> tuple[int, http.client.HTTPMessage, bytes]:
+    connection = http.client.HTTPSConnection("127.0.0.1", proxy.port, timeout=60, context=proxy.trusting())
+    try:
+        connection.request("GET", path, headers=headers)
+        answer = connection.getresponse()
+        return answer.status, answer.headers, answer.read()
+    finally:
+        connection.close()
+
+
+def opened(proxy: Proxy) -> tuple[str, str]:
+    """The page's token and the visitor's cookie."""
+    status, headers, page = ask(proxy, "/app", authorization())
+    assert status == 200
+    token = re.search(rb'"token":"([^"]+)"', page)
+    assert token is not None
+    return token[1].decode(), headers["Set-Cookie"].split(";")[0]
+
+
+async def first_words(proxy: Proxy, origin: str, password: dict[str, str]) -> dict[str, str]:
+    """The header of the first message that a socket of the page gets."""
+    token, cookie = await asyncio.to_thread(opened, proxy)
+    request = HTTPRequest(
+        f"wss://127.0.0.1:{proxy.port}/app/ws",
+        headers={"Origin": origin, "Cookie": cookie, **password},
+        ssl_options=proxy.trusting(),
+    )
+    socket = await websocket_connect(request, subprotocols=["bokeh", token])
+    first = await socket.read_message()
+    assert isinstance(first, str)
+    socket.close()
+    # Until it is closed; an open one would be complained of at the end of the loop.
+    while await socket.read_message() is not None:
+        pass
+    header: dict[str, str] = json.loads(first)
+    return header
+
+
+@pytest.mark.parametrize("headers", [{}, authorization("guessed")], ids=["none", "wrong"])
+@pytest.mark.parametrize("path", ["/app", "/app/ws", "/static/js/bokeh.min.js"])
+def test_without_the_password_there_is_nothing(proxy: Proxy, path: str, headers: dict[str, str]) -> None:
+    assert ask(proxy, path, headers)[0] == 401
+
+
+def test_with_the_password_the_page_and_its_scripts_are_there(proxy: Proxy) -> None:
+    status, _, page = ask(proxy, "/app", authorization())
+    assert status == 200
+    assert b"Escape Explorer" in page
+    assert ask(proxy, "/static/js/bokeh.min.js", authorization())[0] == 200
+
+
+def test_a_session_runs_over_a_web_socket_through_tls(proxy: Proxy) -> None:
+    assert asyncio.run(first_words(proxy, proxy.origin, authorization()))["msgtype"] == "ACK"
+
+
+def test_a_foreign_page_gets_no_socket_even_with_the_password(proxy: Proxy) -> None:
+    with pytest.raises(HTTPClientError) as refused:
+        asyncio.run(first_words(proxy, "https://elsewhere.example.org", authorization()))
+    assert refused.value.code == 403
+
+
+def test_a_socket_wants_the_password_too(proxy: Proxy) -> None:
+    with pytest.raises(HTTPClientError) as refused:
+        asyncio.run(first_words(proxy, proxy.origin, {}))
+    assert refused.value.code == 401
+
+
+def test_plain_http_leads_to_https(proxy: Proxy) -> None:
+    connection = http.client.HTTPConnection("127.0.0.1", proxy.plain_port, timeout=10)
+    connection.request("GET", "/app?case=II")
+    answer = connection.getresponse()
+    answer.read()
+    connection.close()
+    assert (answer.status, answer.getheader("Location")) == (301, "https://127.0.0.1/app?case=II")
+
+
+def test_pages_for_whoever_runs_the_server_are_not_shown_outside(proxy: Proxy) -> None:
+    assert {ask(proxy, f"/{name}", authorization())[0] for name in ("liveness", "readiness", "metrics", "status")} == {404}
+
+
+def test_visitors_keep_their_process_and_processes_share_the_visitors(proxy_before_two: Proxy) -> None:
+    places = []
+    for _ in range(16):
+        status, headers, first = ask(proxy_before_two, "/app", authorization())
+        assert status == 200
+        cookie = {"Cookie": headers["Set-Cookie"].split(";")[0]}
+        answers = [ask(proxy_before_two, path, {**authorization(), **cookie}) for path in ("/app/ws", "/static/a.js")]
+        assert {answer for _, _, answer in answers} == {first}
+        places.append(first)
+    # All sixteen at one of two: once in 33 000 runs.
+    assert len(set(places)) == 2
+
+
+def test_nobody_opens_pages_without_end(proxy_before_two: Proxy) -> None:
+    # Last in this file: it uses up what one address may ask for.
+    statuses = [ask(proxy_before_two, "/app", authorization())[0] for _ in range(25)]
+    assert statuses[-1] == 429
