@@ -24,7 +24,6 @@ ENV PATH=/opt/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     PYTHONDONTWRITEBYTECODE=1 \
     ESCAPE_EXPLORER_CACHE=/var/cache/escape-explorer \
-    NUMBA_CACHE_DIR=/var/cache/escape-explorer/numba \
     MPLCONFIGDIR=/var/cache/escape-explorer/matplotlib
 # Whose pages may talk to this server besides its own, as behind a proxy that renames it: host:port, with commas between.
 ENV BOKEH_ALLOW_WS_ORIGIN=localhost:5006,127.0.0.1:5006

@@ -80,7 +80,7 @@ def reproduce_paper(
                 made.append(_make(name, shelf, output))
     except CancelledError:
         raise CancelledError(f"stopped; {len(made)} of {len(chosen)} are made and stay in {output}") from None
-    _answer(made, quality, time.perf_counter() - began, as_json)
+    _answer(made, output, quality, time.perf_counter() - began, as_json)
 
 
 def _make_folder(folder: Path) -> None:
@@ -108,14 +108,14 @@ def _answer_list(captions: dict[str, str], as_json: bool) -> None:
         print_table(("name", "shows"), list(captions.items()))
 
 
-def _answer(made: Sequence[_Made], quality: Quality, seconds: float, as_json: bool) -> None:
+def _answer(made: Sequence[_Made], folder: Path, quality: Quality, seconds: float, as_json: bool) -> None:
     from cli.answers import print_json, print_sentences, print_table
 
     if as_json:
         figures = [{"name": one.name, "files": one.files, "seconds": one.seconds} for one in made]
         print_json({"quality": quality.name, "seconds": seconds, "figures": figures})
         return
-    rows = [(one.name, f"{one.seconds:.1f} s", ", ".join(one.files)) for one in made]
+    rows = [(one.name, f"{one.seconds:.1f} s", ", ".join(Path(file).name for file in one.files)) for one in made]
     print_table(("made", "in", "files"), rows)
     side = quality.resolution
-    print_sentences(f"In all {seconds:.0f} s, {quality.name} quality: {side} x {side} starts a map.")
+    print_sentences(f"Written to {folder} in {seconds:.0f} s, {quality.name} quality: {side} x {side} starts a map.")

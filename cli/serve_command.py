@@ -7,11 +7,12 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.settings import Settings, read_settings
+if TYPE_CHECKING:
+    from app.settings import Settings
 
 EXAMPLES = """Examples:
 
@@ -33,6 +34,8 @@ def serve_page(
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
     """Serve the page until Ctrl-C or SIGTERM; environment variables with the prefix ESCAPE_EXPLORER_ set its limits."""
+    from app.settings import read_settings
+
     # Refused here already, before the seconds that a server takes to start.
     settings = read_settings(os.environ)
     command = serve_arguments(port, address, origin or [], show, settings)

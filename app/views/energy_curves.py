@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 
 import numpy as np
 import panel as pn
@@ -100,7 +101,7 @@ class EnergyCurvesView:
 
     def say(self, sentence: str) -> None:
         """What went wrong."""
-        self.text.object = f"<span style='font-size:14px'>{sentence}</span>"
+        self.text.object = f"<span style='font-size:14px'>{escape(sentence)}</span>"
 
     def open_near(self, energy: float) -> None:
         """Open the map of the measured energy next to this one."""

@@ -76,7 +76,7 @@ class OrbitDesk:
 
     def say(self, sentence: str) -> None:
         """A word on what is going on."""
-        self.note.object = f"<p style='margin:4px 0'>{sentence}</p>"
+        self.note.object = f"<p style='margin:4px 0'>{escape(sentence)}</p>"
 
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
         """What each indicator of chaos says of the orbit that is looked at."""
@@ -107,7 +107,7 @@ class OrbitDesk:
 
     def _verdict(self, one: ChosenOrbit) -> str:
         words = one.orbit.describe() if one.orbit is not None else one.problem or "Integrating …"
-        return f"<p style='margin:6px 0'><b>{words}</b></p>"
+        return f"<p style='margin:6px 0'><b>{escape(words)}</b></p>"
 
     def _table(self, orbits: Sequence[ChosenOrbit], chosen: int) -> str:
         if len(orbits) < 2:

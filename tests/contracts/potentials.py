@@ -35,6 +35,6 @@ ALL = (*(entry.potential for entry in POTENTIALS.values()), *RANDOM)
 each_potential = pytest.mark.parametrize("potential", ALL, ids=lambda potential: potential.name)
 each_compiled = pytest.mark.parametrize(
     "potential",
-    [pytest.param(p, marks=() if p.name in ALWAYS else pytest.mark.slow) for p in ALL],
+    [pytest.param(p, marks=() if p.name in ALWAYS else pytest.mark.exhaustive) for p in ALL],
     ids=lambda potential: potential.name,
 )

@@ -18,7 +18,7 @@ from engine import CASES, EscapeMap, compute_map
 
 Run = Callable[..., tuple[int, str, str]]
 
-COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "sweep", "serve")
+COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "sweep", "potential", "reproduce", "serve")
 MAP = ("map", "I", "--energy", 0.19, "--resolution", 9, "--t-max", 100)
 WRONG = {
     "no command": (),

@@ -1,0 +1,44 @@
+"""Any potential, as a visitor meets it."""
+
+from __future__ import annotations
+
+import urllib.parse
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import expect
+
+from app.palette import OUTCOMES
+from tests.browser.explorer_page import ExplorerPage
+
+pytestmark = pytest.mark.browser
+
+# Another number than any other test has: its code is compiled already, as it is that of the same terms.
+WEAKER = "½(x² + y²) − 0.5xy²"
+
+
+def test_a_typed_potential_is_looked_over_taken_and_kept_in_the_link(explorer: ExplorerPage) -> None:
+    explorer.press("Other …")
+    box = explorer.page.get_by_label("V(x, y) =")
+    box.fill("½(x² + y²) − x<y")
+    expect(explorer.text("'<' is not understood")).to_be_visible()
+    box.fill(WEAKER)
+    expect(explorer.text("2 channels above the escape energy h = 0.5")).to_be_visible()
+    explorer.forget_pixels()
+    box.press("Enter")
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    query = urllib.parse.parse_qs(urllib.parse.urlsplit(explorer.page.url).query)
+    assert (query["case"], query["V"]) == (["typed"], [WEAKER])
+
+
+def test_a_link_opens_a_potential_with_its_parameters(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link="?case=I&epsilon=0.5&h=0.75&resolution=113&t_max=1000")
+    expect(explorer.text("2 exit channels above the escape energy h = 0.5")).to_be_visible()
+    assert {1, 2} <= set((explorer.column("fate") - len(OUTCOMES) + 1).ravel().tolist())
+
+
+def test_a_link_with_a_potential_of_no_use_says_so_and_shows_case_one(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link="?V=" + urllib.parse.quote("x²y² <img src=x onerror=alert(1)>"))
+    expect(explorer.text("The potential in the link is of no use")).to_be_visible()
+    expect(explorer.text("Case I")).to_be_visible()
