@@ -12,14 +12,14 @@ from app.second_looks import SecondLook, SecondLooks
 from app.sentences import sentence
 from app.systems import SYSTEM
 from app.view_state import ViewState
-from engine import EscapeMap, Requests, Ticket
+from engine import EscapeMap, PreparationSpec, Requests, Ticket, is_ready_for_maps
 
 
 class MapListener(Protocol):
     """What shows a map on its way."""
 
-    def map_requested(self) -> None:
-        """A map has been asked for."""
+    def map_requested(self, *, compiling: bool = False) -> None:
+        """A map has been asked for; `compiling`: its integrator is not there yet."""
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """A frame of it is here; the last one is complete."""
@@ -46,6 +46,7 @@ class Controller:
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None
+        self._go_on = locked(self._prepared)
         self._whole_map: EscapeMap | None = None
         self._generation = 0
         self._show_map = locked(self._map_arrived)
@@ -60,6 +61,9 @@ class Controller:
         self.cancel_map()
         self._generation += 1
         generation = self._generation
+        if not is_ready_for_maps(self._state.potential):
+            self._prepare(generation)
+            return
         try:
             spec = self._state.map_spec()
         except ValueError as error:
@@ -72,8 +76,23 @@ class Controller:
             lambda error: self._show_map_problem(generation, error),
         )
 
+    def _prepare(self, generation: int) -> None:
+        """First compile, in the background: even a map's window hangs on the exits, which take an integrator to find."""
+        self._listener.map_requested(compiling=True)
+        self._map_ticket = self._jobs.request(
+            PreparationSpec(self._state.potential),
+            lambda _: self._go_on(generation),
+            lambda error: self._show_map_problem(generation, error),
+        )
+
+    def _prepared(self, generation: int) -> None:
+        if generation == self._generation:
+            self.request_map()
+
     def request_preview(self, energy: float) -> None:
         """Look quickly at another energy; the map on its way is cancelled, as its energy is not looked at any more."""
+        if not is_ready_for_maps(self._state.potential):
+            return
         self.cancel_map()
         self._generation += 1
         self.previews.request(energy)

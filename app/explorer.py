@@ -21,7 +21,6 @@ from app.potential_choice import PotentialChoice
 from app.separation_request import SeparationRequest
 from app.server.figures import observe_first_frame
 from app.server.left_pages import when_left
-from app.server.site import this_site
 from app.settings import current_settings
 from app.systems import SYSTEM, System
 from app.twin_request import TwinRequest
@@ -221,11 +220,10 @@ class Explorer:
 
     # What the engine answers.
 
-    def map_requested(self) -> None:
+    def map_requested(self, *, compiling: bool = False) -> None:
         """Show that work has begun."""
         self._asked_at = time.monotonic()
-        site = this_site()
-        self.progress.start(compiling=site.jobs is not None and not site.prepared.is_set())
+        self.progress.start(compiling=compiling)
 
     def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a quick look."""

@@ -10,9 +10,9 @@ from urllib.parse import urlencode
 import numpy as np
 
 from app.palette import MOST_ORBITS, PALETTES
-from app.systems import SYSTEM, TYPED, System, refusal, review
-from app.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, ViewState
-from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window
+from app.systems import SYSTEM, TYPED, System, refusal
+from app.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, Start, ViewState
+from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window, review_potential
 
 LONGEST_VALUE = LONGEST_TEXT
 """Most characters that a value in a link may have."""
@@ -36,8 +36,9 @@ def write_link(state: ViewState) -> str:
     chosen |= {name: "yes" for name in SWITCHES if getattr(state, name)}
     if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette
-    if state.starts:
-        chosen["orbits"] = ";".join(map(_joined, state.starts))
+    starts: tuple[Start, ...] = state.starts
+    if starts:
+        chosen["orbits"] = ";".join(map(_joined, starts))
         chosen["look"] = state.chosen + 1
     return "?" + urlencode(chosen, safe=",;")
 
@@ -74,7 +75,7 @@ def _with_system(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
     plain: dict[str, Any] = {"case": TYPED if "formula" in asked else ViewState.param.case.default}
     system = System(**(plain | asked))
     try:
-        why = None if system.case in CASES and not system.changed else refusal(review(system.potential))
+        why = None if system.case in CASES and not system.changed else refusal(review_potential(system.potential))
     except ValueError as error:
         why = str(error)
     if why is None:

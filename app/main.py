@@ -5,5 +5,7 @@ import panel as pn
 from app.explorer import Explorer
 from app.page import explorer_page
 
-pn.extension(notifications=True)
+LOST = "The connection to the server is lost. Reload this page: its address holds the view."
+
+pn.extension(notifications=True, disconnect_notification=LOST)
 explorer_page(Explorer()).servable()

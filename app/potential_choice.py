@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from app.locking import Locked
 from app.single_request import SingleRequest
-from app.systems import SYSTEM, TYPED, System, refusal, review
+from app.systems import SYSTEM, TYPED, System, refusal
 from app.view_state import ViewState
 from app.views.potential_panel import PotentialPanel
-from engine import CASES, Potential, PotentialReview, Requests, ReviewAnswer, ReviewSpec
+from engine import CASES, Potential, PotentialReview, Requests, ReviewAnswer, ReviewSpec, review_potential
 
 
 class PotentialChoice:
@@ -81,5 +81,5 @@ class PotentialChoice:
         system = self._state.system
         self.panel.follow(system)
         if system.case == TYPED or system.case not in CASES or system.changed:
-            found = review(system.potential)
+            found = review_potential(system.potential)
             self.panel.show(found, refusal(found))

@@ -18,8 +18,10 @@ SYSTEM = ("case", "formula", "omega_1", "omega_2", "epsilon")
 
 # Of the escape energy: where the slider begins, where a look begins, and where the slider ends.
 _LOW, _FIRST, _HIGH = 0.8, 1.5, 4.0
-# Of the energy above which the exits do not stay apart.
+# Of the way from the escape energy to that above which the exits do not stay apart.
 _BELOW_HIGHEST = 0.99
+# Of the escape energy: a span as narrow as this is all rounding.
+_NARROWEST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -82,17 +84,12 @@ def _potential(system: System) -> Potential:
 @lru_cache(maxsize=64)
 def _energies(potential: Potential) -> EnergyRange:
     escape = potential.escape_energy
-    decimals = 2 - math.floor(math.log10(escape))
-    highest = _BELOW_HIGHEST * review(potential).highest_energy
-    first, high = min(_FIRST * escape, 0.5 * (escape + highest)), min(_HIGH * escape, highest)
+    span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * escape)
+    first, high = min(_FIRST * escape, escape + 0.5 * span), min(_HIGH * escape, escape + span)
+    # So many that rounding keeps all of these apart.
+    decimals = max(2 - math.floor(math.log10(escape)), 1 - math.floor(math.log10(high - escape)))
     low, first, high = (round(energy, decimals) for energy in (_LOW * escape, first, high))
     return EnergyRange(low, high, (), first, decimals)
-
-
-@lru_cache(maxsize=64)
-def review(potential: Potential) -> PotentialReview:
-    """What a potential is like; kept, as it takes up to half a second."""
-    return review_potential(potential)
 
 
 def refusal(found: PotentialReview) -> str | None:

@@ -50,7 +50,7 @@ def fastest_heyoka(case: str) -> tuple[float, float, float]:
 
 def multiplications(potential: Potential) -> int:
     """In the source of one step."""
-    step = generate_source(potential.terms, potential.channels).split("@kernel\n")[1]
+    step = generate_source(potential.terms, potential.channels).split("@kernel\n")[0]
     return sum(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) for node in ast.walk(ast.parse(step)))
 
 

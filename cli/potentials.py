@@ -6,8 +6,8 @@ import re
 import reprlib
 from typing import Any
 
-from app.systems import TYPED, System, refusal, review
-from engine import POTENTIALS, Potential
+from app.systems import TYPED, System, refusal
+from engine import POTENTIALS, Potential, review_potential
 
 PARAMETERS = ("omega_1", "omega_2", "epsilon")
 
@@ -21,7 +21,7 @@ def find_potential(case: str) -> Potential:
         When there is none of this name and it is no formula, a parameter is of no use, or nothing can be computed with it.
     """
     potential = _find_system(case).potential
-    problem = refusal(review(potential))
+    problem = refusal(review_potential(potential))
     if problem is not None:
         raise ValueError(f"case={reprlib.repr(case)}: {problem}")
     return potential

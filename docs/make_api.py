@@ -55,6 +55,7 @@ def make_site(folder: Path) -> None:
         _write(folder / f"{stem}.html", _as_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
     for picture in (path for pattern in PICTURES for path in HERE.glob(pattern)):
         shutil.copy(picture, folder)
+    shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
 
 
 def document_engine() -> pdoc.doc.Module:

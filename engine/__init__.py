@@ -26,6 +26,7 @@ from engine.job_specs import (
     ManifoldsSpec,
     OrbitSpec,
     OriginSpec,
+    PreparationSpec,
     Preview,
     PreviewSpec,
     RegularitySpec,
@@ -53,7 +54,7 @@ from engine.paper_fits import PAPER_FITS, HyperbolicTangent, PaperFits, Polynomi
 from engine.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.potential_review import CriticalPoint, PointKind, PotentialReview, review_potential
 from engine.potentials import CASES, FREQUENCIES, STRENGTHS, Potential
-from engine.preparation import prepare_kernels
+from engine.preparation import is_ready_for_maps, prepare_kernels
 from engine.previews import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
 from engine.radius_envelopes import RadiusEnvelope, sample_r2
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
@@ -127,6 +128,7 @@ __all__ = [
     "Potential",
     "PotentialEntry",
     "PotentialReview",
+    "PreparationSpec",
     "Preview",
     "PreviewSpec",
     "RadiusEnvelope",
@@ -184,6 +186,7 @@ __all__ = [
     "fit_uncertainty",
     "hunt_super_sticky_orbits",
     "integrate_orbit",
+    "is_ready_for_maps",
     "join_origin_fates",
     "judge_bounded_orbits",
     "judge_indicators",

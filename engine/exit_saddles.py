@@ -35,7 +35,9 @@ def lead_out(potential: Potential, points: np.ndarray) -> np.ndarray:
     away = np.hypot(*points.T)
     origin = np.flatnonzero(away == 0.0)
     vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in potential.hessian(points[:, 0], points[:, 1]))
-    determinant = vxx * vyy - vxy**2
+    with np.errstate(over="ignore", invalid="ignore"):
+        # So steep a place is no saddle that anything passes.
+        determinant = vxx * vyy - vxy**2
     flags = np.zeros(len(points), bool)
     if not origin.size or determinant[origin[0]] <= 0.0 or vxx[origin[0]] <= 0.0 or len(points) < 2:
         return flags

@@ -17,11 +17,13 @@ MOST_ISLANDS = 24
 """Longest chain of islands that is looked for."""
 
 _FEWEST_POINTS = 40
-# How far from the chord of its neighbours a point may lie, in units of the square root of the enclosed area.
-_ROUGHEST = 0.05
-# How near to the polygon the curve is taken to be, in units of the farthest that a point lies from the chord of its neighbours:
-# where the curvature is resolved, a quarter would do.
-_MARGIN = 2.0
+# How near to the polygon the curve is taken to be, in units of the height g θ/8 of an arc that turns by θ over a gap g between
+# points. Where gaps are even the polygon turns by θ at a point. Near a resonance p/q the points gather in q bunches with wide
+# gaps between them; at the edge of a bunch it turns by θ/2, the angle between the curve and the gap. So the curve is within a
+# quarter of the margin.
+_MARGIN = 8.0
+# Largest margin, in units of the square root of the enclosed area.
+_WIDEST = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,10 +113,11 @@ def _close(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
     order = _order_along(points)
     if order is None:
         return None
-    rough = float(_distance_from_chord(points[order]).max())
-    polygon = shapely.Polygon(points[order])
-    fits = rough <= _ROUGHEST * np.sqrt(polygon.area) and polygon.is_valid
-    return (polygon, _MARGIN * rough) if fits else None
+    loop = points[order]
+    margin = _MARGIN * float(_arc_heights(loop).max())
+    polygon = shapely.Polygon(loop)
+    fits = margin <= _WIDEST * np.sqrt(polygon.area) and polygon.is_valid
+    return (polygon, margin) if fits else None
 
 
 def _order_along(points: np.ndarray) -> np.ndarray | None:
@@ -135,10 +138,11 @@ def _order_along(points: np.ndarray) -> np.ndarray | None:
     return np.argsort(np.arange(len(points)) * pow(a, -1, a + b) % (a + b))
 
 
-def _distance_from_chord(loop: np.ndarray) -> np.ndarray:
-    """How far each point of a closed loop lies from the line through its neighbours."""
-    before, after = np.roll(loop, 1, axis=0), np.roll(loop, -1, axis=0)
-    along, across = after - before, loop - before
-    cross = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
-    distance: np.ndarray = np.abs(cross) / np.maximum(np.hypot(*along.T), np.finfo(float).tiny)
-    return distance
+def _arc_heights(loop: np.ndarray) -> np.ndarray:
+    """How high a curve arches over the gap after each point of a closed loop, by the sharper of the turns at its ends."""
+    step = np.roll(loop, -1, axis=0) - loop
+    before = np.roll(step, 1, axis=0)
+    cross = before[:, 0] * step[:, 1] - before[:, 1] * step[:, 0]
+    turn = np.abs(np.arctan2(cross, np.sum(before * step, axis=1)))
+    heights: np.ndarray = np.hypot(*step.T) * np.maximum(turn, np.roll(turn, -1)) / 8.0
+    return heights

@@ -24,6 +24,7 @@ from engine.origin_fates import OriginFateMap, join_origin_fates
 from engine.planes import Plane, Window
 from engine.potential_review import PotentialReview, review_potential
 from engine.potentials import Potential
+from engine.preparation import prepare_for_maps
 from engine.previews import compute_preview
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 from engine.separations import Separation, compute_separation
@@ -76,6 +77,26 @@ class ReviewSpec:
     def run(self, bench: Bench) -> ReviewAnswer:
         """Look it over."""
         return ReviewAnswer(bench.executor.submit(review_potential, self.potential).result())
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """The knowledge that a potential is ready for maps."""
+
+    potential: Potential
+    nbytes: int = 1024
+
+
+@dataclass(frozen=True)
+class PreparationSpec:
+    """The request to compile what maps of a potential need."""
+
+    potential: Potential
+
+    def run(self, bench: Bench) -> Preparation:
+        """Compile it."""
+        bench.call_executor.submit(prepare_for_maps, self.potential).result()
+        return Preparation(self.potential)
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import lru_cache
 from math import comb
 
 import numpy as np
 
 from engine.critical_points import NotIsolatedError, count_turns
-from engine.formulas import MOST_TERMS, write_formula
+from engine.formulas import COEFFICIENTS, LONGEST_TEXT, MOST_TERMS, write_formula
 from engine.polynomials import HIGHEST_DEGREE
 from engine.potentials import SAME_ENERGY, Potential
 from engine.rotations import count_rotations
@@ -18,6 +19,8 @@ from engine.well_shapes import find_bulging_channel, opens_below
 MOST_CHANNELS = 16
 """Exits that the kernels of the search for Lyapunov orbits have room for."""
 
+# Reviews of so many potentials are at hand.
+_KEPT = 256
 # A Hessian whose eigenvalues differ by more than this is singular for all that floating point can tell.
 _SINGULAR = 1e-6
 # The circle on which critical points are counted, in units of the distance of the outermost.
@@ -86,8 +89,9 @@ class PotentialReview:
     remarks: tuple[str, ...]
 
 
+@lru_cache(maxsize=_KEPT)
 def review_potential(potential: Potential) -> PotentialReview:
-    """Look a potential over, in about a second at the most: nothing is compiled or integrated.
+    """Look a potential over, in about a second at the most, and at once when asked again: nothing is compiled or integrated.
 
     Parameters
     ----------
@@ -153,6 +157,9 @@ def _limits_refusal(potential: Potential) -> str | None:
         return f"It is of degree {degree}; the highest degree is {HIGHEST_DEGREE}."
     if len(potential.terms) > MOST_TERMS:
         return f"It has {len(potential.terms)} terms; at most {MOST_TERMS} are possible."
+    least, most = COEFFICIENTS
+    if not all(least <= abs(c) <= most for _, _, c in potential.terms):
+        return f"It has a coefficient whose size is outside {least:g} to {most:g}."
     return None
 
 
@@ -177,9 +184,9 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
     if len(minima) != 1:
         return f"{problem} Quadratic terms that make it a minimum are missing."
     x, y = minima[0].x, minima[0].y
-    return (
-        f"{problem} The one minimum lies at ({x:.6g}, {y:.6g}); seen from there V is {write_formula(shifted(potential, x, y))}."
-    )
+    seen = write_formula(shifted(potential, x, y))
+    hint = f"; seen from there V is {seen}" if len(seen) <= LONGEST_TEXT else ""
+    return f"{problem} The one minimum lies at ({x:.6g}, {y:.6g}){hint}."
 
 
 def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.lyapunov_orbits import find_lyapunov_orbits
 from engine.map_specs import MapSpec
 from engine.maps import compute_map
 from engine.orbits import integrate_orbit
@@ -13,8 +14,33 @@ from engine.quasi_periodicity import count_agreeing_digits
 from engine.regularity_maps import judge_bounded_orbits
 from engine.sections import find_section_points
 from engine.stable_manifolds import find_stable_manifolds
+from engine.taylor.build import load_kernels
 
 _SHORT = 10.0
+
+
+# What the first picture of a map, and the exits that it needs, are computed by.
+_FOR_MAPS = ("step", "jets", "potential_value", "advance", "swing")
+
+
+def is_ready_for_maps(potential: Potential) -> bool:
+    """Whether a map can begin at once: nothing needs to be compiled, as for other coefficients of a potential computed before."""
+    kernels = load_kernels(potential.terms, potential.channels)
+    return all(getattr(kernels, name).signatures for name in _FOR_MAPS)
+
+
+def prepare_for_maps(potential: Potential) -> None:
+    """Compile what the first picture of a map needs, or load it from the cache.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit; a structure not met before takes some seconds.
+    """
+    if is_ready_for_maps(potential):
+        return
+    find_lyapunov_orbits(potential, 1.01 * potential.escape_energy)
+    compute_map(MapSpec(potential, Plane.X_PX, 1.01 * potential.escape_energy, (2, 2), t_max=_SHORT))
 
 
 def prepare_kernels(potential: Potential) -> None:
@@ -23,8 +49,9 @@ def prepare_kernels(potential: Potential) -> None:
     Parameters
     ----------
     potential
-        Any `Potential` with a saddle; the first time on a machine this takes some 20 s.
+        Any `Potential` with a saddle; the first time on a machine this takes some seconds.
     """
+    prepare_for_maps(potential)
     find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1)
     # Nothing leaves, so that there are bounded orbits to judge.
     energy = 0.5 * potential.escape_energy

@@ -11,7 +11,7 @@ import panel_material_ui as pmui
 from app.sentences import as_markdown
 from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
 
-_COMPILING = "The integrators are being compiled, which is done once on each machine; the map follows."
+_COMPILING = "The integrator is being compiled, once for each kind of potential; the map follows."
 
 
 class ProgressView:

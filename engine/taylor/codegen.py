@@ -136,7 +136,7 @@ def _linear_combination(table: _Table, origins: Origins, scales: Mapping[Monomia
 def _recurrence(table: _Table, products: list[Product], also: Sequence[Origins] = ()) -> list[str]:
     """Statements for x0 … x_ORDER, y0 … y_ORDER and the products that they, and the derivatives `also`, need."""
     vx, vy = table.differentiated(0), table.differentiated(1)
-    lines = ["x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]"]
+    lines: list[str] = []
     scales = find_scales(products)
     difference = find_difference(products, [table.evaluated(origins) for origins in (vx, vy, *also)])
     if difference is not None:
@@ -166,8 +166,8 @@ def _step_size() -> list[str]:
     last, before, earlier = (f"(abs(x{k}) + abs(y{k}))" for k in (ORDER, ORDER - 1, ORDER - 2))
     return [
         f"size = {last} + {before} + {_EARLIER_WEIGHT!r}*{earlier}",
-        "bits = np.float64(size*(1.0/tolerance)).view(np.int64)",
-        f"h = np.int64({one + one // 16} - (bits >> 4)).view(np.float64)",
+        "bits = bits_of(size*(1.0/tolerance))",
+        f"h = double_of({one + one // 16} - (bits >> 4))",
         f"h = h if h < {LONGEST_STEP!r} else {LONGEST_STEP!r}",
         f"h = h if size < {_BROKEN_DOWN!r} else np.nan",
     ]
@@ -218,17 +218,42 @@ def _gates(channels: int) -> list[str]:
     return ["gate = 0", *(test.format(flag=GATE, k=k) for k in range(channels))]
 
 
-def _loads(body: Iterable[str]) -> list[str]:
-    """Statements that fetch the entries of the table that `body` names, once for all lanes."""
+def _entries(body: Iterable[str]) -> list[str]:
+    """Statements that take the entries that `body` names out of the table."""
     used = {int(n) for n in re.findall(r"\bc(\d+)_\b", "\n".join(body))}
-    return [f"c{n}_ = coefficients[{n}]" for n in sorted(used)]
+    return [f"c{n}_ = table[{n}]" for n in sorted(used)]
 
 
-def _function(name: str, arguments: str, body: list[str], before: Iterable[str] = ()) -> str:
-    lines = ["", "", "@kernel", f"def {name}(coefficients, n, {arguments}):"]
+def _split(statement: str) -> tuple[str, str]:
+    left, right = re.split(r" \+?= ", statement, maxsplit=1)
+    return left, right
+
+
+_Statements = Sequence[str]
+
+
+def _function(
+    name: str, arguments: str, reads: _Statements, body: _Statements, writes: _Statements, before: _Statements = ()
+) -> str:
+    """A loop over lanes: each reads its numbers, computes in straight lines, writes."""
+    body = [*_entries(body), *body]
+    made = {_split(line)[0] for line in body}
+    named = [n for line in body for n in re.findall(r"(?<![\w.])[a-z]\w*\b(?![(.])", _split(line)[1])]
+    taken = list(dict.fromkeys(n for n in named if n not in made and n not in _WORDS))
+    given = list(dict.fromkeys(n for line in writes for n in re.findall(r"\b[a-z]\w*\b", _split(line)[1]) if n in made))
+    lines = ["", "", "@straight_line", f"def _{name}({', '.join(taken)}):"]
+    lines += [f"    {line}" for line in (*body, f"return ({', '.join(given)},)")]
+    lines += ["", "", "@kernel", f"def {name}(coefficients, n, {arguments}):"]
     # Read in the loop, each would be checked against all that the loop writes; past some 100 checks nothing is vector code.
-    lines += [f"    {line}" for line in (*_loads(body), *before)]
-    return "\n".join([*lines, "    for i in range(n):", *(f"        {line}" for line in body)]) + "\n"
+    lines += [f"    {line}" for line in ("table = read_table(coefficients)", *before, "for i in range(n):")]
+    lines += [f"        {line}" for line in (*reads, f"({', '.join(given)},) = _{name}({', '.join(taken)})", *writes)]
+    return "\n".join(lines) + "\n"
+
+
+# What an expression of straight lines may name beside its numbers.
+_WORDS = frozenset({"if", "else", "and", "np"})
+
+_START = ("x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]")
 
 
 def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
@@ -239,10 +264,13 @@ def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
         *_horner("y", "yh", "pyh"),
         *hidden,
         *_gates(channels),
-        "th = t[i] + h",
+        "th = t0 + h",
         f"late = 0 if th <= horizon else {OVERSHOOT}",
         "flagged = hidden + gate + late",
-        "crossed[i] += 1 if (y0 < 0.0 and yh >= 0.0 and flagged == 0) else 0",
+        "upward = 1 if ((y0 < 0.0 and yh >= 0.0) and flagged == 0) else 0",
+    ]
+    writes = [
+        "crossed[i] += upward",
         "flag[i] = flagged",
         "h_taken[i] = h",
         "x_new[i] = xh",
@@ -253,7 +281,7 @@ def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
     ]
     arguments = "tolerance, horizon, gates, x, y, px, py, t, x_new, y_new, px_new, py_new, t_new, h_taken, flag, crossed"
     gates = [f"g{k}{w} = gates[{k}, {c}]" for k in range(channels) for c, w in enumerate(("x", "y", ""))]
-    return _function("step", arguments, body, gates)
+    return _function("step", arguments, [*_START, "t0 = t[i]"], body, writes, gates)
 
 
 def _glide(recurrence: list[str]) -> str:
@@ -261,6 +289,8 @@ def _glide(recurrence: list[str]) -> str:
         *recurrence,
         *_horner("x", "xh", "pxh"),
         *_horner("y", "yh", "pyh"),
+    ]
+    writes = [
         "x_square[i] += weight*(x0*x0)",
         "y_square[i] += weight*(y0*y0)",
         "x[i] = xh",
@@ -268,12 +298,12 @@ def _glide(recurrence: list[str]) -> str:
         "px[i] = pxh",
         "py[i] = pyh",
     ]
-    return _function("glide", "h, weight, x, y, px, py, x_square, y_square", body)
+    return _function("glide", "h, weight, x, y, px, py, x_square, y_square", _START, body, writes)
 
 
 def _jets(recurrence: list[str]) -> str:
     stores = [f"{name}_jet[{k}, i] = {name}{k}" for name in "xy" for k in range(ORDER + 1)]
-    return _function("jets", "x, y, px, py, x_jet, y_jet", [*recurrence, *stores])
+    return _function("jets", "x, y, px, py, x_jet, y_jet", _START, recurrence, stores)
 
 
 def _tangent(table: _Table) -> str:
@@ -283,22 +313,23 @@ def _tangent(table: _Table) -> str:
     needed = (table.differentiated(0), table.differentiated(1), *hessian.values())
     products = plan_products(frozenset(m for origins in needed for m in origins))
     scales = find_scales(products)
-    body = [*_recurrence(table, products, tuple(hessian.values())), "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]"]
+    reads = [*_START, "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]", "h = duration[i]"]
+    body = _recurrence(table, products, tuple(hessian.values()))
     for k in range(ORDER - 1):
         body += [f"{name}{k} = {_linear_combination(table, origins, scales, k, -1.0)}" for name, origins in hessian.items()]
         for name, pairs in forces.items():
             parts = [_cauchy(h, w, k) for h, w in pairs if hessian[h]]
             body.append(f"{name}{k + 2} = ({' + '.join(parts) or '0.0'})*({1.0 / ((k + 1) * (k + 2))!r})")
-    body += ["h = duration[i]", *_horner("u", "uh", "wpx_new"), *_horner("v", "vh", "wpy_new")]
-    body += ["wx[i] = uh", "wy[i] = vh", "wpx[i] = wpx_new", "wpy[i] = wpy_new"]
-    return _function("tangent", "duration, x, y, px, py, wx, wy, wpx, wpy", body)
+    body += [*_horner("u", "uh", "wpx_new"), *_horner("v", "vh", "wpy_new")]
+    writes = ["wx[i] = uh", "wy[i] = vh", "wpx[i] = wpx_new", "wpy[i] = wpy_new"]
+    return _function("tangent", "duration, x, y, px, py, wx, wy, wpx, wpy", reads, body, writes)
 
 
 def _potential_value(table: _Table, terms: Iterable[Monomial]) -> str:
     """V itself, at one point."""
     body = " + ".join("*".join([table.name((i, j), 1.0), *["x"] * i, *["y"] * j]) for i, j in terms) or "0.0"
-    loads = "".join(f"    {line}\n" for line in _loads([body]))
-    return f"\n\n@kernel\ndef potential_value(coefficients, x, y):\n{loads}    return {body}\n"
+    entries = re.sub(r"\bc(\d+)_", r"coefficients[\1]", body)
+    return f"\n\n@kernel\ndef potential_value(coefficients, x, y):\n    return {entries}\n"
 
 
 def generate_source(terms: Terms, channels: int) -> str:
@@ -313,7 +344,8 @@ def generate_source(terms: Terms, channels: int) -> str:
 
     Returns
     -------
-    Python source that needs ``np`` and ``kernel`` in its namespace. The first argument of each function is the table of
+    Python source that needs ``np``, ``kernel``, ``straight_line`` and ``table_reader`` in its namespace.
+    The first argument of each function is the table of
     `tabulate_coefficients`; no coefficient of V stands in the text.
     """
     return _generate(terms, channels)[0]
@@ -338,4 +370,5 @@ def _generate(terms: Terms, channels: int) -> tuple[str, np.ndarray]:
         _tangent(table),
         _potential_value(table, polynomial),
     ]
-    return "".join(functions), table.values()
+    values = table.values()
+    return f"\n\nread_table = table_reader({values.size})\n" + "".join(functions), values

@@ -1,30 +1,25 @@
 """Where orbits pass y = 0 downward before they leave, at steps of free size: the cuts of a tube of orbits with the section.
 
-Like `loop`, this text is compiled behind the generated kernels of each potential, never imported to run.
+Like `loop`, compiled once for all potentials.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from engine.taylor.calls import call_jets, call_step
 from engine.taylor.codegen import GATE, HIDDEN, ORDER, OVERSHOOT
 from engine.taylor.compilation import kernel
 from engine.taylor.events import find_exit_time, find_extremum, outside_channel, series_slope, series_value
+from engine.taylor.loop import VECTOR
 
-if TYPE_CHECKING:
-    from engine.taylor.generated import jets, step
-    from engine.taylor.loop import VECTOR
-
-# Names of all texts behind the generated kernels share one module.
 _CUT_PARTS = 8
 _CUT_ITERATIONS = 60
 _CUT_ACCURACY = 1e-15
 
 
 @kernel
-def cut(coefficients, tolerance, horizon, gates, curves, state, cuts, found):
+def cut(step, jets, coefficients, tolerance, horizon, gates, curves, state, cuts, found):
     """The first downward passages of y = 0 of each orbit, until it has found enough, leaves through an exit or passes `horizon`.
 
     curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR`; cuts (lanes, m, 3): x, px and time; found
@@ -46,8 +41,8 @@ def cut(coefficients, tolerance, horizon, gates, curves, state, cuts, found):
     riding = lanes
     while riding > 0:
         width = (riding + VECTOR - 1) // VECTOR * VECTOR
-        step(
-            coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
+        call_step(
+            step, coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
         i = riding
@@ -70,7 +65,7 @@ def cut(coefficients, tolerance, horizon, gates, curves, state, cuts, found):
                 aside_channel[waiting] = channel
                 waiting += 1
                 if waiting == lanes:
-                    _find_cuts(coefficients, waiting, aside, aside_rider, aside_channel, curves, cuts, found)
+                    _find_cuts(jets, coefficients, waiting, aside, aside_rider, aside_channel, curves, cuts, found)
                     waiting = 0
             if late or full or channel > 0:
                 riding -= 1
@@ -78,15 +73,15 @@ def cut(coefficients, tolerance, horizon, gates, curves, state, cuts, found):
                     new[c, i] = new[c, riding]
                 rider[i] = rider[riding]
         now, new = new, now
-    _find_cuts(coefficients, waiting, aside, aside_rider, aside_channel, curves, cuts, found)
+    _find_cuts(jets, coefficients, waiting, aside, aside_rider, aside_channel, curves, cuts, found)
 
 
 @kernel
-def _find_cuts(coefficients, n, start, rider, channel, curves, cuts, found):
+def _find_cuts(jets, coefficients, n, start, rider, channel, curves, cuts, found):
     """Locate the downward passages within each of `n` steps set aside, x, y, px, py, t, h, in the order in which they were."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
-    jets(coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
         j = rider[i]
         duration = start[5, i]

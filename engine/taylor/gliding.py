@@ -1,22 +1,19 @@
 """Orbits side by side at one fixed step, exits unseen: their weighted averages, and where they pierce the section y = 0.
 
-Like `loop`, this text is compiled behind the generated kernels of each potential, never imported to run. All lanes keep the same
-time, so nothing is refilled; an orbit that leaves runs off to infinity, and its numbers with it.
+Like `loop`, compiled once for all potentials. All lanes keep the same time, so nothing is refilled; an
+orbit that leaves runs off to infinity, and its numbers with it.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from engine.taylor.calls import call_glide, call_jets, call_tangent
 from engine.taylor.codegen import ORDER
 from engine.taylor.compilation import kernel
 from engine.taylor.events import series_slope, series_value
-
-if TYPE_CHECKING:
-    from engine.taylor.generated import glide, jets, tangent
 
 _RENORMALISED_AFTER = 8
 _NEWTON_STEPS = 12
@@ -24,21 +21,21 @@ _ROOT_ACCURACY = 1e-14
 
 
 @kernel
-def average(coefficients, h, weights, state, averages):
+def average(glide, coefficients, h, weights, state, averages):
     """Weighted averages of x² and y² over consecutive windows.
 
     weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (windows, 2, lanes), zeros.
     """
     for window in range(averages.shape[0]):
         for weight in weights:
-            glide(
-                coefficients, state.shape[1], h, weight, state[0], state[1], state[2], state[3],
+            call_glide(
+                glide, coefficients, state.shape[1], h, weight, state[0], state[1], state[2], state[3],
                 averages[window, 0], averages[window, 1],
             )  # fmt: skip
 
 
 @kernel
-def pierce(coefficients, h, steps, state, points, found):
+def pierce(glide, jets, coefficients, h, steps, state, points, found):
     """The next points (x, px) in which orbits cross y = 0 upward, until all have found enough or `steps` are over.
 
     state (4, lanes), changed in place; points (lanes, m, 2), found (lanes,): filled from where `found` says.
@@ -51,7 +48,7 @@ def pierce(coefficients, h, steps, state, points, found):
     waiting = 0
     for taken in range(steps):
         before[:] = state
-        glide(coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], nothing[0], nothing[1])
+        call_glide(glide, coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], nothing[0], nothing[1])
         for i in range(lanes):
             if not (before[1, i] < 0.0 and state[1, i] >= 0.0 and found[i] < points.shape[1]):
                 continue
@@ -60,20 +57,20 @@ def pierce(coefficients, h, steps, state, points, found):
             rider[waiting] = i
             waiting += 1
             if waiting == lanes:
-                _find_points(coefficients, h, waiting, aside, rider, points, found)
+                _find_points(jets, coefficients, h, waiting, aside, rider, points, found)
                 waiting = 0
         if taken % 16 == 0 and found.min() == points.shape[1]:
             break
     if waiting > 0:
-        _find_points(coefficients, h, waiting, aside, rider, points, found)
+        _find_points(jets, coefficients, h, waiting, aside, rider, points, found)
 
 
 @kernel
-def _find_points(coefficients, h, n, start, rider, points, found):
+def _find_points(jets, coefficients, h, n, start, rider, points, found):
     """Locate the upward crossing within each of `n` steps set aside, in the order in which they were."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
-    jets(coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
         lane = rider[i]
         if found[lane] == points.shape[1]:
@@ -98,7 +95,7 @@ def _find_points(coefficients, h, n, start, rider, points, found):
 
 
 @kernel
-def align(coefficients, h, steps, state, first, second, sali):
+def align(tangent, glide, coefficients, h, steps, state, first, second, sali):
     """The smallest SALI of orbits over `steps`: min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, eq. 9 of Zotos (2014).
 
     state, first, second (4, lanes), of orbits and deviations, are changed in place; sali (lanes,) is lowered, and is NaN from
@@ -109,8 +106,8 @@ def align(coefficients, h, steps, state, first, second, sali):
     nothing = np.zeros((2, lanes))
     for taken in range(1, steps + 1):
         for w in (first, second):
-            tangent(coefficients, lanes, duration, state[0], state[1], state[2], state[3], w[0], w[1], w[2], w[3])
-        glide(coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], nothing[0], nothing[1])
+            call_tangent(tangent, coefficients, lanes, duration, state[0], state[1], state[2], state[3], w[0], w[1], w[2], w[3])
+        call_glide(glide, coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], nothing[0], nothing[1])
         if taken % _RENORMALISED_AFTER == 0 or taken == steps:
             _renormalise(first)
             _renormalise(second)

@@ -48,7 +48,7 @@ class KernelCache(_Cache):
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
-        self._source = _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
+        self._source = _hash_package() + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
 
     @property
     def cache_path(self) -> str:
@@ -105,6 +105,12 @@ def _hash_source(file: str) -> str:
     """Of a source file; nothing for generated source, whose module is named after it."""
     path = Path(file)
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+
+
+@functools.cache
+def _hash_package() -> str:
+    """Of all source here: a kernel holds copies of the kernels and constants that it names."""
+    return "".join(_hash_source(str(path)) for path in sorted(Path(__file__).parent.glob("*.py")))
 
 
 @functools.cache

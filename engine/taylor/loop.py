@@ -1,17 +1,16 @@
 """The loop around the step: lanes that never idle, and the few steps in which something happened set aside for a look.
 
-This text is compiled behind the generated `step` and `jets` of each potential (see `build`), never imported to run. Orbits live
-in the caller's arrays; up to `lanes` of them ride in the lanes at a time. The vector step tells by a flag which lanes
+Compiled once for all potentials: `step` and `jets` are the addresses of one potential's (see `calls`). Orbits live in the
+caller's arrays; up to `lanes` of them ride in the lanes at a time. The vector step tells by a flag which lanes
 need a scalar look; exits, last steps and possible hidden crossings go to a small buffer whose jets are computed together.
 No orbit's arithmetic depends on its neighbours, so results do not depend on lane width, order, budget or threads.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from engine.taylor.calls import call_jets, call_step
 from engine.taylor.codegen import GATE, HIDDEN, ORDER, OVERSHOOT
 from engine.taylor.compilation import kernel
 from engine.taylor.events import (
@@ -25,9 +24,6 @@ from engine.taylor.events import (
     series_value,
 )
 
-if TYPE_CHECKING:
-    from engine.taylor.generated import jets, step
-
 # Arrays of lanes are padded to whole vectors, so that no lane is ever computed by different (scalar) code.
 VECTOR = 16
 
@@ -35,11 +31,13 @@ _LEAVES, _STAYS = 0, 1
 
 
 @kernel
-def resolve(coefficients, n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, crossings, last_crossings, fate):
+def resolve(
+    jets, coefficients, n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, crossings, last_crossings, fate
+):
     """Look into `n` whole steps set aside: count their upward crossings and, for orbits that leave, settle the fate."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
-    jets(coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
         j = orbit[i]
         if leaves[i] == _STAYS:
@@ -65,7 +63,7 @@ def resolve(coefficients, n, orbit, leaves, start, h, horizon, curves, curve_row
 
 @kernel
 def advance(
-    coefficients, todo, horizon, final, tolerance, budget, lanes, gates, curves, curve_row,
+    step, jets, coefficients, todo, horizon, final, tolerance, budget, lanes, gates, curves, curve_row,
     state, t, crossings, last_crossings, fate, waiting,
 ):  # fmt: skip
     """Carry orbits on until they leave, pass `horizon`, or `budget` steps are spent.
@@ -103,8 +101,8 @@ def advance(
         riding += 1
     while riding > 0 and taken < budget:
         width = (riding + VECTOR - 1) // VECTOR * VECTOR
-        step(
-            coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
+        call_step(
+            step, coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
         taken += riding
@@ -138,7 +136,7 @@ def advance(
                 aside += 1
                 if aside == lanes:
                     resolve(
-                        coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
+                        jets, coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
                         curves, curve_row, state, t, crossings, last_crossings, fate,
                     )  # fmt: skip
                     aside = 0
@@ -163,7 +161,7 @@ def advance(
         now, new = new, now
     if aside > 0:
         resolve(
-            coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
+            jets, coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
             curves, curve_row, state, t, crossings, last_crossings, fate,
         )  # fmt: skip
     for i in range(riding):
@@ -176,7 +174,7 @@ def advance(
 
 
 @kernel
-def trace(coefficients, start, begin, end, tolerance, gates, steps):
+def trace(step, coefficients, start, begin, end, tolerance, gates, steps):
     """The starts of the steps of one orbit from time `begin` up to `end`, as `advance` takes them, until `steps` is full.
 
     steps (m, 5): x, y, px, py, t at the start of each step. Returns how many were written; when the last step reaches `end`
@@ -195,8 +193,8 @@ def trace(coefficients, start, begin, end, tolerance, gates, steps):
         for c in range(5):
             steps[count, c] = now[c, 0]
         count += 1
-        step(
-            coefficients, VECTOR, tolerance, end, gates, now[0], now[1], now[2], now[3], now[4],
+        call_step(
+            step, coefficients, VECTOR, tolerance, end, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
         if flag[0] & OVERSHOOT != 0:

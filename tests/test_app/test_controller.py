@@ -33,7 +33,7 @@ class Recorder:
         with self.changed:
             assert self.changed.wait_for(true, seconds), self.names()
 
-    def map_requested(self) -> None:
+    def map_requested(self, *, compiling: bool = False) -> None:
         self.tell("map requested")
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:

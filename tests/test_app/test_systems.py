@@ -6,8 +6,8 @@ import pytest
 
 from app.palette import MOST_CHANNELS
 from app.paper_energies import ENERGIES
-from app.systems import TYPED, System, refusal, review
-from engine import CASES, POTENTIALS, channel_family, parse_formula
+from app.systems import TYPED, System, refusal
+from engine import CASES, POTENTIALS, channel_family, parse_formula, review_potential
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 
@@ -39,7 +39,7 @@ def test_what_is_no_system_has_no_potential(system: System) -> None:
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_the_slider_begins_below_the_escape_energy_and_a_look_above_it(name: str) -> None:
     energies, escape = System(name).energies, POTENTIALS[name].potential.escape_energy
-    assert energies.low < escape < energies.first < energies.high <= review(POTENTIALS[name].potential).highest_energy
+    assert energies.low < escape < energies.first < energies.high <= review_potential(POTENTIALS[name].potential).highest_energy
 
 
 def test_the_formula_shown_holds_the_parameters() -> None:
@@ -48,12 +48,12 @@ def test_the_formula_shown_holds_the_parameters() -> None:
 
 
 def test_more_exits_than_colours_are_refused() -> None:
-    assert "colours" in str(refusal(review(channel_family(MOST_CHANNELS + 1))))
+    assert "colours" in str(refusal(review_potential(channel_family(MOST_CHANNELS + 1))))
 
 
 def test_an_escape_energy_below_zero_is_refused() -> None:
-    assert "constant term" in str(refusal(review(parse_formula(f"{HENON_HEILES} − 1"))))
+    assert "constant term" in str(refusal(review_potential(parse_formula(f"{HENON_HEILES} − 1"))))
 
 
 def test_a_known_potential_is_not_refused() -> None:
-    assert [name for name in POTENTIALS if refusal(review(POTENTIALS[name].potential))] == []
+    assert [name for name in POTENTIALS if refusal(review_potential(POTENTIALS[name].potential))] == []

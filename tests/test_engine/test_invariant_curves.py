@@ -1,9 +1,15 @@
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
+from engine import CASES, Plane, start_states
 from engine.invariant_curves import InvariantCurve, find_invariant_curve
+from engine.sections import find_section_points
+
+type Curve = Callable[[np.ndarray], np.ndarray]
 
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
@@ -18,7 +24,7 @@ def boomerang(phase: np.ndarray) -> np.ndarray:
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
-def rotated(curve, count: int, rotation: float = GOLDEN) -> np.ndarray:
+def rotated(curve: Curve, count: int, rotation: float = GOLDEN) -> np.ndarray:
     return curve(2.0 * np.pi * rotation * np.arange(count) + 0.7)
 
 
@@ -36,7 +42,7 @@ def test_a_rotation_gives_its_curve(ring: InvariantCurve) -> None:
 
 @pytest.mark.parametrize("rotation", [GOLDEN, 1.0 - GOLDEN, 0.01 * GOLDEN + 0.25, np.pi / 40])
 @pytest.mark.parametrize("curve", [ellipse, boomerang])
-def test_any_rotation_number_and_any_shape_will_do(curve, rotation: float) -> None:
+def test_any_rotation_number_and_any_shape_will_do(curve: Curve, rotation: float) -> None:
     found = find_invariant_curve(rotated(curve, 800, rotation))
     exact = curve(np.linspace(0, 2 * np.pi, 5000))
     area = 0.5 * abs(np.sum(exact[:-1, 0] * exact[1:, 1] - exact[1:, 0] * exact[:-1, 1]))
@@ -47,6 +53,40 @@ def test_any_rotation_number_and_any_shape_will_do(curve, rotation: float) -> No
 def test_an_exact_curve_lies_within_its_margin(ring: InvariantCurve) -> None:
     assert set(ring.find_side(ellipse(np.linspace(0, 6.3, 999)))) == {0}
     assert ring.margins[0] < 1e-3
+
+
+@pytest.mark.parametrize("curve", [ellipse, boomerang])
+@pytest.mark.parametrize("off", [1e-6, 1e-5, 2e-5, 5e-5])
+def test_the_margin_bridges_the_gaps_between_bunches_near_a_resonance(curve: Curve, off: float) -> None:
+    found = find_invariant_curve(rotated(curve, 800, 1.0 / 18.0 + off))
+    assert found is None or not found.find_side(curve(np.linspace(0, 6.3, 999))).any()
+
+
+# Starts on invariant tori of III at h = 0.36 whose first 800 points are bunched, and starts near them that escape later.
+BUNCHED = [(0.5829907, 0.6006459), (-0.7862344, -0.2537992)]
+ESCAPING = [(0.6768284688161396, -0.4609629106555103), (0.5643984906074785, -0.6048732827625964)]
+
+
+def points_of(start: tuple[float, float], count: int) -> np.ndarray:
+    states = start_states(CASES["III"], Plane.X_PX, 0.36, *np.array([start]).T)
+    points = find_section_points(CASES["III"], states, count, 8.0 * count)[0]
+    found: np.ndarray = points[np.isfinite(points).all(axis=1)]
+    return found
+
+
+@pytest.mark.parametrize("start", BUNCHED)
+def test_a_torus_stays_within_the_margin_of_its_curve(start: tuple[float, float]) -> None:
+    points = points_of(start, 6000)
+    found = find_invariant_curve(points[:800])
+    assert found is None or not found.find_side(points).any()
+
+
+@pytest.mark.parametrize("start", BUNCHED)
+@pytest.mark.parametrize("escaping", ESCAPING)
+def test_an_escaping_orbit_is_not_beyond_a_torus(start: tuple[float, float], escaping: tuple[float, float]) -> None:
+    """The exits are within these curves, so what is outside could not escape."""
+    found = find_invariant_curve(points_of(start, 800))
+    assert found is None or found.find_side(points_of(escaping, 200)).max() <= 0
 
 
 def test_inside_and_outside_are_told_apart(ring: InvariantCurve) -> None:

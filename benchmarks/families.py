@@ -1,0 +1,78 @@
+"""What more channels cost: V = r²/2 − rⁿ cos nθ / n for n = 3 … 8, beside the paper's potentials.
+
+Bounded orbits, one core. Multiply-adds are counted in the source of a step; what else it does (its size, tests) is in the time
+but not in the count.
+
+Run: uv run python -m benchmarks.families
+"""
+
+from __future__ import annotations
+
+import re
+import time
+
+import numpy as np
+from numba import njit
+
+from benchmarks.throughput import multiplications
+from engine import CASES, Plane, Potential, start_states
+from engine.known_potentials import channel_family
+from engine.lyapunov_orbits import closed_curves, exit_gates
+from engine.taylor.build import load_kernels
+from engine.taylor.calls import SIGNATURES
+from engine.taylor.codegen import TOLERANCE
+from engine.taylor.events import NOT_COMPUTED
+
+ORBITS = 64
+T_MAX = 300.0
+REPEATS = 40
+ENERGY = 0.9
+"""In units of the escape energy."""
+
+
+def nanoseconds(potential: Potential) -> float:
+    """Of one step of one orbit, in the loop that maps use; the least of several runs."""
+    energy = ENERGY * potential.escape_energy
+    reach = np.sqrt(2.0 * energy)
+    x, px = np.random.default_rng(1).uniform(-reach, reach, (2, 40 * ORBITS))
+    states = start_states(potential, Plane.X_PX, energy, x, px)
+    inside = np.isfinite(states).all(axis=1) & (np.abs(x) < np.hypot(*potential.saddles.T).min())
+    begin = np.ascontiguousarray(states[inside][:ORBITS])
+    curves = closed_curves(potential)[None]
+    gates = exit_gates(curves)
+    advance = load_kernels(potential.terms, potential.channels).advance
+    least = np.inf
+    for _ in range(REPEATS):
+        state, counts = begin.copy(), np.zeros((3, len(begin)), np.int64)
+        started = time.thread_time()
+        steps = advance(
+            np.arange(len(begin)), T_MAX, True, TOLERANCE, 2**62, ORBITS, gates, curves, counts[0], state,
+            np.zeros(len(begin)), counts[1], counts[2], np.full(len(begin), NOT_COMPUTED, np.int8), np.ones(len(begin), np.uint8),
+        )  # fmt: skip
+        least = min(least, (time.thread_time() - started) / steps)
+    return least * 1e9
+
+
+def vector_share(potential: Potential) -> float:
+    """The packed share of the multiplications in the machine code; with the remainder of the loop, which never runs, one half."""
+    step = njit(error_model="numpy", fastmath={"contract"})(
+        load_kernels(potential.terms, potential.channels).step.function.py_func
+    )
+    step.compile(SIGNATURES["step"])
+    assembly = "".join(step.inspect_asm().values())
+    packed, scalar = (len(re.findall(rf"\bv(?:fn?m|mul)\w*{kind}\b", assembly)) for kind in ("pd", "sd"))
+    return packed / (packed + scalar)
+
+
+def main() -> None:
+    print("| potential | channels | multiply-adds a step | ns an orbit-step | ns a multiply-add | vector code |")
+    print("|---|---|---|---|---|---|")
+    named = {**CASES, **{f"n = {n}": channel_family(n) for n in range(3, 9)}}
+    for name, potential in named.items():
+        count, time_taken = multiplications(potential), nanoseconds(potential)
+        vector = "yes" if vector_share(potential) >= 0.5 else "no"
+        print(f"| {name} | {potential.channels} | {count} | {time_taken:.1f} | {time_taken / count:.3f} | {vector} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""How kernels that are compiled once for all potentials call the functions of one: by address, handed over at run time.
+
+Compiled code that names a function holds a copy of it, and would have to be compiled again for every structure of a potential. So
+the loops around the step know of `step`, `glide`, `jets`, `tangent` and `potential_value` only the types of their arguments.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import types
+from numba.core.typing.templates import Signature
+from numba.extending import intrinsic
+
+_table = types.Array(types.float64, 1, "C", readonly=True)
+_gates = types.Array(types.float64, 2, "C", readonly=True)
+_lanes = types.float64[::1]
+_flags = types.int64[::1]
+_series = types.float64[:, ::1]
+
+SIGNATURES: dict[str, Signature] = {
+    "step": types.void(_table, types.int64, types.float64, types.float64, _gates, *[_lanes] * 11, _flags, _flags),
+    "glide": types.void(_table, types.int64, types.float64, types.float64, *[_lanes] * 6),
+    "jets": types.void(_table, types.int64, *[_lanes] * 4, _series, _series),
+    "tangent": types.void(_table, types.int64, *[_lanes] * 9),
+    "potential_value": types.float64(_table, types.float64, types.float64),
+}
+"""For each generated function the only types that it is compiled for."""
+
+
+def _caller(name: str) -> Any:
+    """A function for use in kernels that takes the address of a generated function, then its arguments."""
+    callee = SIGNATURES[name]
+
+    @intrinsic
+    def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
+        """Nothing at other types than the callee's: the compiler then says so."""
+        given = tuple(map(types.unliteral, arguments))
+        if len(given) != len(callee.args) or any(
+            typing_context.can_convert(one, other) is None for one, other in zip(given, callee.args, strict=True)
+        ):
+            return None
+
+        def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            where, packed = values
+            passed = [builder.extract_value(packed, i) for i in range(len(given))]
+            cast = [context.cast(builder, *each) for each in zip(passed, given, callee.args, strict=True)]
+            convention = context.call_conv
+            pointer = builder.inttoptr(where, convention.get_function_type(callee.return_type, callee.args).as_pointer())
+            return convention.call_function(builder, pointer, callee.return_type, callee.args, cast)[1]
+
+        return Signature(callee.return_type, (types.int64, types.StarArgTuple(given)), None), generate  # type: ignore[no-untyped-call]
+
+    return call
+
+
+call_step, call_glide, call_jets, call_tangent, call_potential_value = map(_caller, SIGNATURES)
