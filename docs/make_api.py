@@ -21,6 +21,7 @@ import engine
 ROOT = Path(__file__).parents[1]
 HERE = Path(__file__).parent
 PICTURES = ("*.png", "*.webp")
+LINKED_FILES = re.compile(r"\]\((?:\.\./)?((?:deploy|examples)/[\w.-]+)\)")
 PAGE = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
 <style>
@@ -55,7 +56,9 @@ def make_site(folder: Path) -> None:
         _write(folder / f"{stem}.html", _as_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
     for picture in (path for pattern in PICTURES for path in HERE.glob(pattern)):
         shutil.copy(picture, folder)
-    shutil.copytree(ROOT / "examples", folder / "examples", ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    for file in {file for path in sources.values() for file in LINKED_FILES.findall(path.read_text(encoding="utf-8"))}:
+        (folder / file).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / file, folder / file)
 
 
 def document_engine() -> pdoc.doc.Module:
@@ -82,7 +85,9 @@ def _as_html(text: str, pages: list[str]) -> str:
     """A page of Markdown, its links to other pages leading to theirs."""
     title = text.split("\n", 1)[0].lstrip("# ")
     text = text.replace("benchmarks/README.md)", "benchmarks.md)")
-    linked = re.sub(r"\]\((?:\.\./)?(?:docs/)?([\w-]+)\.md\)", r"](\1.html)", text).replace("](docs/", "](")
+    linked = (
+        re.sub(r"\]\((?:\.\./)?(?:docs/)?([\w-]+)\.md\)", r"](\1.html)", text).replace("](docs/", "](").replace("](../", "](")
+    )
     links = " · ".join(f'<a href="{page}.html">{page}</a>' for page in pages)
     return PAGE.format(title=title, body=pdoc.render_helpers.to_html(linked), pages=links)
 
