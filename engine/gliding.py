@@ -14,9 +14,6 @@ from engine.orbit_batches import LANES, count_workers, default_executor
 from engine.potentials import Potential
 from engine.taylor.loop import VECTOR
 
-GLIDE_STEP = 1.0 / 3.0
-"""Step of orbits followed side by side: at the order in use their energy is kept as well as with steps of free size."""
-
 
 def glide(
     work: Callable[..., np.ndarray],

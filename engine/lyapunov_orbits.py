@@ -17,9 +17,9 @@ from numpy.polynomial import chebyshev
 from scipy import optimize
 
 from engine.checks import read_number
+from engine.kernels import kernels_of
 from engine.potentials import Potential
 from engine.taylor import events
-from engine.taylor.build import load_kernels
 from engine.taylor.codegen import ORDER, TOLERANCE
 
 # In units of the distance from the well's bottom to the saddle: how far along the channel a start may run before it is
@@ -174,7 +174,7 @@ def channel_axes(potential: Potential, channel: int) -> np.ndarray:
 
 
 def _find(potential: Potential, energy: float, channel: int, named: float) -> LyapunovOrbit:
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = kernels_of(potential)
     saddle = potential.saddles[channel - 1]
     outward = channel_axes(potential, channel)
     scale = float(np.hypot(*saddle))

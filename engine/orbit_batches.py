@@ -15,9 +15,9 @@ import numpy as np
 
 from engine.certificates import Certificate
 from engine.fates import Fate
+from engine.kernels import kernels_of, step_tolerance
 from engine.lyapunov_orbits import exit_gates
 from engine.potentials import Potential
-from engine.taylor.build import load_kernels
 from engine.taylor.codegen import TOLERANCE
 from engine.taylor.events import find_outside
 from engine.taylor.loop import VECTOR
@@ -175,11 +175,11 @@ def _advance_tile(
     tolerance: float = TOLERANCE,
 ) -> _Tile:
     """The work of a worker: one budget's worth of steps."""
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = kernels_of(potential)
     todo = np.flatnonzero(tile.waiting)
     b = tile.batch
     kernels.advance(
-        todo, horizon, final, tolerance, BUDGET, LANES, gates, curves, b.curve_row,
+        todo, horizon, final, step_tolerance(potential, tolerance), BUDGET, LANES, gates, curves, b.curve_row,
         b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.waiting,
     )  # fmt: skip
     return tile

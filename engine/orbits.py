@@ -10,11 +10,11 @@ import numpy as np
 
 from engine.checks import LARGEST_NUMBER, read_array, shown
 from engine.fates import Fate, Regularity, describe_fate, judge_regularity
+from engine.kernels import kernels_of, step_tolerance
 from engine.map_specs import checked_t_max
 from engine.orbit_batches import SerialExecutor
 from engine.outcomes import classify_orbits
 from engine.potentials import Potential
-from engine.taylor.build import load_kernels
 from engine.taylor.dense import carry_deviations, sample_path, trace_steps
 
 # Fixed, generic and orthonormal: the same orbit always gets the same answer, and no symmetry keeps a vector apart.
@@ -152,8 +152,8 @@ def _follow(
     """Times, path, SALI and Lyapunov exponent from 0 to `t_end`."""
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
-    kernels = load_kernels(potential.terms, potential.channels)
-    steps = trace_steps(kernels, start, t_end, potential.channels, cancel)
+    kernels = kernels_of(potential)
+    steps = trace_steps(kernels, start, t_end, potential.channels, cancel, step_tolerance(potential))
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     path = sample_path(kernels, steps, times, cancel)
     sali, growth = carry_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)

@@ -104,7 +104,7 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
         row = int(np.argmin(usable))
         raise ValueError(f"states: row {row} holds a number that is not finite, or beyond {LARGEST_NUMBER:g}")
     off = np.abs(potential.energy(states_array) - energy)
-    if np.any(off > ENERGY_TOLERANCE):
+    if np.any(off > ENERGY_TOLERANCE * potential.length**2):
         row = int(np.argmax(off))
         raise ValueError(
             f"states: row {row} has energy {float(potential.energy(states_array[row]))!r}; "

@@ -144,6 +144,13 @@ class Potential:
             return balanced_length(self._table)
         return float(2.0 ** np.round(np.log2(np.hypot(*self.saddles.T).min())))
 
+    @cached_property
+    def fastest_frequency(self) -> float:
+        """The higher frequency of small oscillations in the well at the origin; NaN where there is no well."""
+        vxx, vxy, vyy = self.hessian(0.0, 0.0)
+        with np.errstate(invalid="ignore"):
+            return float(np.sqrt(np.linalg.eigvalsh([[vxx, vxy], [vxy, vyy]])[-1]))
+
     def in_units(self, length: float) -> Potential:
         """The potential whose orbits are those of this one with x, y, px, py in units of `length`, at the same times.
 

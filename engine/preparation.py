@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from engine.kernels import kernels_of
 from engine.lyapunov_orbits import find_lyapunov_orbits
 from engine.map_specs import MapSpec
 from engine.maps import compute_map
@@ -14,7 +15,6 @@ from engine.quasi_periodicity import count_agreeing_digits
 from engine.regularity_maps import judge_bounded_orbits
 from engine.sections import find_section_points
 from engine.stable_manifolds import find_stable_manifolds
-from engine.taylor.build import load_kernels
 
 _SHORT = 10.0
 
@@ -25,7 +25,7 @@ _FOR_MAPS = ("step", "jets", "potential_value", "advance", "swing")
 
 def is_ready_for_maps(potential: Potential) -> bool:
     """Whether a map can begin at once: nothing needs to be compiled, as for other coefficients of a potential computed before."""
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = kernels_of(potential)
     return all(getattr(kernels, name).signatures for name in _FOR_MAPS)
 
 

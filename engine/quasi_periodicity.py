@@ -17,9 +17,9 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from engine.gliding import GLIDE_STEP, glide
+from engine.gliding import glide
+from engine.kernels import glide_step, kernels_of
 from engine.potentials import Potential
-from engine.taylor.build import load_kernels
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
 """Lengths of windows worth trying one after the other: most tori show themselves in the first."""
@@ -68,19 +68,19 @@ def count_agreeing_digits(
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
-    energy = potential.energy(tile.T)
+    energy, step = potential.energy(tile.T), glide_step(potential)
     averages = np.zeros((2, 2, tile.shape[1]))
-    load_kernels(potential.terms, potential.channels).average(GLIDE_STEP, window_weights(window), tile, averages)
+    kernels_of(potential).average(step, window_weights(window, step), tile, averages)
     with np.errstate(all="ignore"):
         difference = np.abs(averages[1] - averages[0]) / np.abs(averages).max(axis=0)
         digits = -np.log10(np.maximum(difference.max(axis=0), 10.0**-_MOST_DIGITS))
-        kept = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE
+        kept = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE * potential.length**2
     agreeing: np.ndarray = np.where(kept & np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
     return agreeing
 
 
-def window_weights(window: float) -> np.ndarray:
-    """Kaiser's I0(β √(1 − (2s − 1)²)) at the samples of a window of length `window`; their sum is 1."""
-    weights: np.ndarray = np.kaiser(int(window / GLIDE_STEP), _KAISER_SHAPE)
+def window_weights(window: float, step: float) -> np.ndarray:
+    """Kaiser's I0(β √(1 − (2s − 1)²)) at the samples, `step` apart, of a window; their sum is 1."""
+    weights: np.ndarray = np.kaiser(int(window / step), _KAISER_SHAPE)
     weights /= weights.sum()
     return weights

@@ -10,30 +10,26 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from engine.checks import read_count, shown
 from engine.fates import Fate
+from engine.kernels import kernels_of, step_tolerance
 from engine.map_specs import checked_t_max
 from engine.orbit_batches import SerialExecutor
 from engine.orbits import checked_state
 from engine.outcomes import classify_orbits
 from engine.potentials import Potential
 from engine.read_only import read_only
-from engine.taylor.build import load_kernels
-from engine.taylor.codegen import TOLERANCE
-from engine.taylor.dense import sample_path, stop_if
+from engine.taylor.dense import sample_path, trace_pieces
 
 MOST_INTERVALS = 100_000
 """Most intervals of an envelope: more than any screen or page shows."""
 
 # Between looks at R², which turns in π or so, it moves by less than a thousandth of its range.
 _INTERVAL = 0.05
-# Steps held at once: some ten megabytes with their series and samples.
-_PIECE = 8192
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,25 +107,10 @@ def _walk(
     potential: Potential, start: np.ndarray, t_end: float, ends: np.ndarray, cancel: threading.Event | None
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Times and R² at these, a piece of the way after the other: often enough, and at every one of `ends`."""
-    kernels = load_kernels(potential.terms, potential.channels)
-    for steps, until in _pieces(kernels, start, t_end, potential.channels):
-        stop_if(cancel)
+    kernels = kernels_of(potential)
+    for steps, until in trace_pieces(kernels, start, t_end, potential.channels, cancel, step_tolerance(potential)):
         begin = steps[0, 4]
         often = np.linspace(begin, until, int(np.ceil((until - begin) / _INTERVAL)) + 1)
         times = np.union1d(often, ends[(ends >= begin) & (ends <= until)])
         x, y, _, _ = sample_path(kernels, steps, times, cancel)
         yield times, x * x + y * y
-
-
-def _pieces(kernels: ModuleType, start: np.ndarray, t_end: float, channels: int) -> Iterator[tuple[np.ndarray, float]]:
-    """(m, 5) x, y, px, py, t at the start of each step of a piece of the way, and the time at which the piece ends."""
-    gates = np.full((channels, 3), np.inf)
-    gates[:, :2] = 0.0
-    state, begin, count = start, 0.0, _PIECE
-    while count == _PIECE:
-        piece = np.empty((_PIECE, 5))
-        count = kernels.trace(state, begin, t_end, TOLERANCE, gates, piece)
-        # A full piece ends where the next begins.
-        whole = count == _PIECE
-        state, begin = piece[count - 1, :4].copy(), float(piece[count - 1, 4])
-        yield (piece[: count - 1], begin) if whole else (piece[:count], t_end)

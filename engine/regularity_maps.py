@@ -14,13 +14,13 @@ import numpy as np
 from engine.certificates import Certificate
 from engine.escape_maps import EscapeMap
 from engine.fates import CHAOS_THRESHOLD, Fate, Regularity
-from engine.gliding import GLIDE_STEP, glide
+from engine.gliding import glide
+from engine.kernels import glide_step, kernels_of
 from engine.map_specs import MapSpec
 from engine.orbits import DEVIATION_VECTORS
 from engine.planes import find_mirror_images
 from engine.potentials import Potential
 from engine.quasi_periodicity import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
-from engine.taylor.build import load_kernels
 
 # SALI up to these times, with the search for tori between: what is strongly chaotic falls early, most of what is regular shows
 # itself as a torus, and the few that are neither are followed to t_max.
@@ -136,7 +136,7 @@ class _Judgement:
         """Carry deviations on, and judge those orbits chaotic whose SALI has fallen."""
         if not self.pixels.size:
             return
-        steps = max(1, round((until - self.time) / GLIDE_STEP))
+        steps = max(1, round((until - self.time) / glide_step(self.potential)))
         carried = glide(_carry, self.potential, self.orbits, steps, shape=self.orbits.shape[1:], **self.pool)
         if self.cancelled():
             return
@@ -174,7 +174,7 @@ class _Judgement:
 
 def _carry(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
     """Orbits with two deviations and their smallest SALI, some steps on."""
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = kernels_of(potential)
     with np.errstate(invalid="ignore"):
-        kernels.align(GLIDE_STEP, steps, tile[:4], tile[4:8], tile[8:12], tile[12])
+        kernels.align(glide_step(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

@@ -8,10 +8,10 @@ from concurrent.futures import Executor
 import numpy as np
 from numpy.polynomial import polynomial
 
-from engine.gliding import GLIDE_STEP, glide
+from engine.gliding import glide
+from engine.kernels import glide_step, kernels_of
 from engine.orbits import Orbit
 from engine.potentials import Potential
-from engine.taylor.build import load_kernels
 
 _ROOT_ITERATIONS = 6
 
@@ -54,8 +54,8 @@ def find_section_points(
 def _pierce(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
     points = np.full((tile.shape[1], count, 2), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
-    steps = int(np.ceil(duration / GLIDE_STEP))
-    load_kernels(potential.terms, potential.channels).pierce(GLIDE_STEP, steps, tile, points, found)
+    steps = int(np.ceil(duration / glide_step(potential)))
+    kernels_of(potential).pierce(glide_step(potential), steps, tile, points, found)
     return points
 
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from engine.kernels import kernels_of, step_tolerance
 from engine.map_specs import checked_t_max
 from engine.orbits import checked_state
 from engine.potentials import Potential
-from engine.taylor.build import load_kernels
 from engine.taylor.dense import sample_path, trace_steps
 
 LONGEST_SEPARATION = 2000.0
@@ -68,11 +68,11 @@ def compute_separation(
         When a state is not four finite numbers, or `t_end` is out of its range.
     """
     times = np.linspace(0.0, min(checked_t_max(t_end), LONGEST_SEPARATION), SAMPLES)
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = kernels_of(potential)
     paths = []
     for name, state in (("first", first), ("second", second)):
         start = checked_state(name, state)
-        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, cancel)
+        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, cancel, step_tolerance(potential))
         paths.append(sample_path(kernels, steps, times, cancel))
     distance = np.linalg.norm(paths[1] - paths[0], axis=0)
     for array in (times, distance):

@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.gliding import glide
+from engine.kernels import kernels_of, step_tolerance
 from engine.lyapunov_orbits import LyapunovOrbit, channel_axes, exit_curves, exit_gates
 from engine.potentials import Potential
 from engine.read_only import read_only
-from engine.taylor.build import load_kernels
-from engine.taylor.codegen import TOLERANCE
 from engine.taylor.dense import sample_path, trace_steps
 
 # Displacement in phase space from the Lyapunov orbit, at most, at which the tube is launched. How far a launch lies off the tube,
@@ -80,9 +79,9 @@ class UnstableTube:
 
         across (4,): the left eigenvector of the multiplier; what it gives for a displacement is its unstable part.
         """
-        kernels = load_kernels(self.potential.terms, self.potential.channels)
+        kernels = kernels_of(self.potential)
         (start,) = self.launch(np.array([self.smallest]))
-        steps = trace_steps(kernels, start, self.orbit.period, self.potential.channels)
+        steps = trace_steps(kernels, start, self.orbit.period, self.potential.channels, tolerance=step_tolerance(self.potential))
         back = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
         size = self.largest
         for _ in range(3):
@@ -133,8 +132,14 @@ def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
 
 def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
     """(4, 4) linearised flow over a period, from rest."""
-    kernels = load_kernels(potential.terms, potential.channels)
-    steps = trace_steps(kernels, np.array([orbit.x[0], orbit.y[0], 0.0, 0.0]), orbit.period, potential.channels)
+    kernels = kernels_of(potential)
+    steps = trace_steps(
+        kernels,
+        np.array([orbit.x[0], orbit.y[0], 0.0, 0.0]),
+        orbit.period,
+        potential.channels,
+        tolerance=step_tolerance(potential),
+    )
     durations = np.diff(steps[:, 4], append=orbit.period)
     columns = np.eye(4)
     for state, duration in zip(steps[:, :4], durations, strict=True):
@@ -145,5 +150,5 @@ def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
 def _cut(potential: Potential, tile: np.ndarray, most: int, curves: np.ndarray, gates: np.ndarray, horizon: float) -> np.ndarray:
     cuts = np.full((tile.shape[1], most, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
-    load_kernels(potential.terms, potential.channels).cut(TOLERANCE, horizon, gates, curves, tile, cuts, found)
+    kernels_of(potential).cut(step_tolerance(potential), horizon, gates, curves, tile, cuts, found)
     return cuts

@@ -41,8 +41,8 @@ _EARLIER_WEIGHT = 0.3
 LONGEST_STEP = 1.0
 """Steps near rest or of nearly linear motion stop growing here, well within reach of the series."""
 
-# Where no orbit inside the exits gets to within a step: the bound on how fast y oscillates is taken over this disc.
-_FURTHEST = 3.0
+REACH = 3.0
+"""Where no orbit inside the exits of a well of size 1 gets to within a step: y oscillates at its fastest within this disc."""
 
 # Coefficients that ask for steps too short to move the clock at any t_max; an orbit with these, or with NaN, has failed.
 _BROKEN_DOWN = 1e90
@@ -181,7 +181,7 @@ def _horner(name: str, value: str, slope: str) -> list[str]:
     return lines
 
 
-def crossings_can_hide(terms: Polynomial) -> bool:
+def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     """Can a step hold two crossings of y = 0, which the signs at its ends do not show?
 
     Where V is even in y, ÿ = −g(x, y) y. With g below (π/h)² two zeros of y are further than h apart, by Sturm's comparison
@@ -190,7 +190,7 @@ def crossings_can_hide(terms: Polynomial) -> bool:
     force = derivative(terms, 1)
     if any(j % 2 == 0 for _, j in force):
         return True
-    bound = sum(abs(c) * _FURTHEST ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
+    bound = sum(abs(c) * reach ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 
@@ -332,7 +332,7 @@ def _potential_value(table: _Table, terms: Iterable[Monomial]) -> str:
     return f"\n\n@kernel\ndef potential_value(coefficients, x, y):\n    return {entries}\n"
 
 
-def generate_source(terms: Terms, channels: int) -> str:
+def generate_source(terms: Terms, channels: int, reach: float = REACH) -> str:
     """The source of ``step``, ``glide``, ``jets``, ``tangent`` and ``potential_value`` for the structure of one potential.
 
     Parameters
@@ -341,6 +341,8 @@ def generate_source(terms: Terms, channels: int) -> str:
         ((i, j, c), …) of V = Σ c x^i y^j, in any order.
     channels
         How many gates ``step`` tests.
+    reach
+        How far from the origin orbits get, above 0.
 
     Returns
     -------
@@ -348,7 +350,7 @@ def generate_source(terms: Terms, channels: int) -> str:
     The first argument of each function is the table of
     `tabulate_coefficients`; no coefficient of V stands in the text.
     """
-    return _generate(terms, channels)[0]
+    return _generate(terms, channels, reach)[0]
 
 
 def tabulate_coefficients(terms: Terms) -> np.ndarray:
@@ -357,12 +359,12 @@ def tabulate_coefficients(terms: Terms) -> np.ndarray:
 
 
 @functools.lru_cache(maxsize=64)
-def _generate(terms: Terms, channels: int) -> tuple[str, np.ndarray]:
+def _generate(terms: Terms, channels: int, reach: float = REACH) -> tuple[str, np.ndarray]:
     # One order for all who write the same potential.
     polynomial = {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}
     table = _Table(polynomial)
     recurrence = _recurrence(table, plan_products(frozenset({*table.differentiated(0), *table.differentiated(1)})))
-    hidden = _hidden_crossings() if crossings_can_hide(polynomial) else ["hidden = 0"]
+    hidden = _hidden_crossings() if crossings_can_hide(polynomial, reach) else ["hidden = 0"]
     functions = [
         _step(recurrence, hidden, channels),
         _glide(recurrence),

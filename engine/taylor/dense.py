@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from concurrent.futures import CancelledError
 from threading import Event
 from types import ModuleType
@@ -20,20 +21,28 @@ def stop_if(cancel: Event | None) -> None:
         raise CancelledError
 
 
-def trace_steps(kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None) -> np.ndarray:
-    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
+def trace_pieces(
+    kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
+) -> Iterator[tuple[np.ndarray, float]]:
+    """(m, 5) x, y, px, py, t at the start of each step of a piece of the way up to `t_end`, and the time at which it ends."""
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0
-    pieces = []
     begin, start, count = 0.0, state, _CHUNK
     while count == _CHUNK:
         stop_if(cancel)
         piece = np.empty((_CHUNK, 5))
-        count = kernels.trace(start, begin, t_end, TOLERANCE, gates, piece)
+        count = kernels.trace(start, begin, t_end, tolerance, gates, piece)
         # A full piece ends where the next begins.
-        pieces.append(piece[: count - 1] if count == _CHUNK else piece[:count])
+        whole = count == _CHUNK
         start, begin = piece[count - 1, :4].copy(), float(piece[count - 1, 4])
-    return np.concatenate(pieces)
+        yield (piece[: count - 1], begin) if whole else (piece[:count], t_end)
+
+
+def trace_steps(
+    kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
+) -> np.ndarray:
+    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
+    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, cancel, tolerance)])
 
 
 def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cancel: Event | None = None) -> np.ndarray:

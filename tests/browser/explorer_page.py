@@ -55,7 +55,8 @@ class ExplorerPage:
     def wait_for_data(self, name: str, condition: str) -> None:
         """Until a JavaScript condition on a source's columns `data` holds."""
         self.page.wait_for_function(
-            f"([name, test]) => new Function('data', 'return ' + test)({_DOCUMENT}.get_model_by_name(name).data)",
+            f"([name, test]) => {{ const model = {_DOCUMENT}.get_model_by_name(name);"
+            " return model && new Function('data', 'return ' + test)(model.data) }",
             arg=[name, condition],
         )
 

@@ -127,10 +127,10 @@ def test_every_picture_explains_itself(explorer: ExplorerPage) -> None:
 
 
 def test_the_equations_are_those_of_the_case(explorer: ExplorerPage) -> None:
-    explorer.text("Equations of case I").click()
+    explorer.text("Equations: Case I").click()
     expect(explorer.page.locator("math").first).to_be_visible()
     explorer.press("III")
-    expect(explorer.text("Equations of case III")).to_be_visible()
+    expect(explorer.text("Equations: Case III")).to_be_visible()
 
 
 def test_the_page_can_be_read_as_a_table(explorer: ExplorerPage) -> None:
@@ -138,5 +138,12 @@ def test_the_page_can_be_read_as_a_table(explorer: ExplorerPage) -> None:
     expect(explorer.text("Escaped through channel 1")).to_be_visible()
     explorer.text("This page as a table").click()
     table = explorer.page.get_by_role("table", name="What is shown")
-    for words in ("case", "energy h", "leave through channel 1", "median escape time", "Escaped through channel 1"):
+    for words in (
+        "Case I",
+        "½(x² + y²) − xy²",
+        "energy h",
+        "leave through channel 1",
+        "median escape time",
+        "Escaped through channel 1",
+    ):
         expect(table).to_contain_text(words)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import socket
 import time
 from collections.abc import Callable, Iterator
@@ -14,7 +12,7 @@ from html.parser import HTMLParser
 import panel as pn
 import pytest
 from hypothesis import given
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Browser
 
 from app.orbit_requests import ChosenOrbit
 from app.sentences import as_markdown
@@ -114,17 +112,12 @@ def address() -> Iterator[str]:
 
 
 @pytest.mark.browser
-def test_a_warning_runs_nothing_in_the_browser(address: str) -> None:
-    chromium = shutil.which("chromium")
-    if chromium is None and not os.environ.get("CI"):
-        pytest.skip("no browser")
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        page = browser.new_page()
-        page.goto(address, timeout=120_000)
-        shown = page.locator(".MuiAlert-message")
-        shown.wait_for(timeout=60_000)
-        time.sleep(0.5)
-        assert page.evaluate("window.hit") is None
-        assert shown.inner_text().strip() == HOSTILE
-        browser.close()
+def test_a_warning_runs_nothing_in_the_browser(address: str, chromium: Browser) -> None:
+    page = chromium.new_page()
+    page.goto(address, timeout=120_000)
+    shown = page.locator(".MuiAlert-message")
+    shown.wait_for(timeout=60_000)
+    time.sleep(0.5)
+    assert page.evaluate("window.hit") is None
+    assert shown.inner_text().strip() == HOSTILE
+    page.close()

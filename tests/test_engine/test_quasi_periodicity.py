@@ -45,7 +45,7 @@ def test_no_orbits_have_no_digits() -> None:
 
 @pytest.mark.parametrize("window", [10.0, 1000.0])
 def test_weights_are_an_average_that_fades_at_both_ends(window: float) -> None:
-    weights = window_weights(window)
+    weights = window_weights(window, 1.0 / 3.0)
     assert weights.sum() == pytest.approx(1.0, abs=1e-14)
     np.testing.assert_allclose(weights, weights[::-1], rtol=1e-12)
     assert weights[0] < 1e-6 * weights.max()

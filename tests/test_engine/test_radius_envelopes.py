@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, Plane, find_lyapunov_orbits, integrate_orbit, start_states
-from engine import radius_envelopes as module
 from engine.radius_envelopes import sample_r2
+from engine.taylor import dense
 
 BOUNDED = start_states(CASES["III"], Plane.X_PX, 0.26, np.array([0.1]), np.array([0.2]))[0]
 LEAVING = start_states(CASES["I"], Plane.X_PX, 0.15, np.array([0.1]), np.array([0.0]))[0]
@@ -34,7 +34,7 @@ def test_one_that_leaves_ends_on_the_lyapunov_orbit_at_its_escape() -> None:
 
 def test_an_orbit_may_come_in_any_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = sample_r2(CASES["III"], BOUNDED, 500.0, 10)
-    monkeypatch.setattr(module, "_PIECE", 17)
+    monkeypatch.setattr(dense, "_CHUNK", 17)
     pieces = sample_r2(CASES["III"], BOUNDED, 500.0, 10)
     np.testing.assert_allclose(pieces.high, whole.high, atol=1e-3)
     np.testing.assert_allclose(pieces.low, whole.low, atol=1e-3)
