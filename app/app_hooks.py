@@ -12,6 +12,7 @@ from bokeh.server import urls
 from tornado.ioloop import PeriodicCallback
 
 from app.explorer import shared_jobs
+from app.server import pressure
 from app.server.admission import admit
 from app.server.bokeh_application import find_web_application
 from app.server.figures import FaultCounter, these_figures
@@ -19,6 +20,7 @@ from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
 from app.server.logs import set_up_logs
 from app.server.pages import add_routes
 from app.server.preparation import prepare_in_background
+from app.server.pressure import this_pressure
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
 from app.server.site import this_site
@@ -34,6 +36,7 @@ def on_server_loaded(server_context: Any) -> None:
     find_web_application(server_context).add_transform(SecurityTransform)
     site.sessions, site.jobs = lambda: context.sessions, shared_jobs()
     PeriodicCallback(LeftPages(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
+    PeriodicCallback(this_pressure().tick, 1000.0 * pressure.LOOKED_AT_EVERY).start()
     stop_gracefully_on_sigterm(site, context.io_loop.stop)
     prepare_in_background(site)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from app.locking import Locked
@@ -37,18 +37,28 @@ class MapListener(Protocol):
 class Controller:
     """One session's requests.
 
-    `locked` turns a function into one that any thread may call, that returns at once and runs under the session's lock
+    `is_pressed` tells whether the server is behind with its visitors' messages: then nobody gets quick looks. `locked` turns a
+    function into one that any thread may call, that returns at once and runs under the session's lock
     (Bokeh's ``Document.locked_callback``).
     """
 
     def __init__(
-        self, state: ViewState, jobs: Requests, listener: MapListener, locked: Locked, looks: Sequence[SecondLook] = ()
+        self,
+        state: ViewState,
+        jobs: Requests,
+        listener: MapListener,
+        locked: Locked,
+        looks: Sequence[SecondLook] = (),
+        is_pressed: Callable[[], bool] = lambda: False,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None
         self._go_on = locked(self._prepared)
         self._whole_map: EscapeMap | None = None
         self._generation = 0
+        # Of the request of which something has been sent to the page.
+        self._sent = -1
+        self._is_pressed = is_pressed
         self._show_map = locked(self._map_arrived)
         self._show_map_problem = locked(self._map_failed)
         self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked)
@@ -72,9 +82,16 @@ class Controller:
         self._listener.map_requested()
         self._map_ticket = self._jobs.request_map(
             spec,
-            lambda frame: self._show_map(generation, frame, map_columns(frame, characters=self._state.judge)),
+            lambda frame: self._send(generation, frame),
             lambda error: self._show_map_problem(generation, error),
         )
+
+    def _send(self, generation: int, frame: EscapeMap) -> None:
+        """Hand a frame on; only the first and the last one where many wait for theirs."""
+        if self._sent == generation and not frame.complete and self._is_pressed():
+            return
+        self._sent = generation
+        self._show_map(generation, frame, map_columns(frame, characters=self._state.judge))
 
     def _prepare(self, generation: int) -> None:
         """First compile, in the background: even a map's window hangs on the exits, which take an integrator to find."""
@@ -91,7 +108,7 @@ class Controller:
 
     def request_preview(self, energy: float) -> None:
         """Look quickly at another energy; the map on its way is cancelled, as its energy is not looked at any more."""
-        if not is_ready_for_maps(self._state.potential):
+        if self._is_pressed() or not is_ready_for_maps(self._state.potential):
             return
         self.cancel_map()
         self._generation += 1

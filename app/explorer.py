@@ -21,6 +21,7 @@ from app.potential_choice import PotentialChoice
 from app.separation_request import SeparationRequest
 from app.server.figures import observe_first_frame
 from app.server.left_pages import when_left
+from app.server.pressure import this_pressure
 from app.settings import current_settings
 from app.systems import SYSTEM, System
 from app.twin_request import TwinRequest
@@ -68,7 +69,7 @@ class Explorer:
         when_left(document, self._visitor.close)
         self.potential = PotentialChoice(self.state, jobs, self._locked)
         self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
-        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks())
+        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks(), this_pressure().is_high)
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.twin = TwinRequest(self.state, jobs, self.desk.say, self._locked)
         self.separation = SeparationRequest(self.state, jobs, self.separation_pane.show, self.desk.say, self._locked)

@@ -26,8 +26,8 @@ from reproduction.printing import (
     tidy_axes,
 )
 
-LONGEST_DRAWN = 1e6
-"""The latest escape of an orbit that is drawn: the paper's leaves before it, and the axis does not end far beyond t_max."""
+LONGEST_DRAWN = 4e6
+"""The latest escape of an orbit that is drawn: to follow it takes a second for each 1e5 time units."""
 
 # Times at which R² is known by its least and greatest value between them, for the page to thin out.
 _INTERVALS = 100_000
@@ -90,7 +90,7 @@ def _follow_late_orbit(hunt: SuperStickyHunt, shelf: MapShelf) -> RadiusEnvelope
 
 def _describe(hunt: SuperStickyHunt, orbit: RadiusEnvelope | None) -> str:
     if orbit is None:
-        return f"no chaotic orbit of this map leaves by $t = {hunt.t_max:g}$"
+        return f"no chaotic orbit of this map leaves by {hunt.t_max / 1e6:g} million time units"
     return f"an orbit that leaves through channel {orbit.fate} at $t = {orbit.escape_time:.0f}$"
 
 

@@ -1,0 +1,45 @@
+"""How far the server is behind."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.server import pressure
+from app.server.pressure import HIGH, LOOKED_AT_EVERY, Pressure
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    made = Clock()
+    monkeypatch.setattr(pressure, "time", made)
+    return made
+
+
+def tick(measured: Pressure, clock: Clock, seconds: float) -> None:
+    clock.now += seconds
+    measured.tick()
+
+
+def test_a_clock_that_is_in_time_knows_no_pressure(clock: Clock) -> None:
+    measured = Pressure()
+    for _ in range(5):
+        tick(measured, clock, LOOKED_AT_EVERY)
+    assert not measured.is_high()
+
+
+def test_a_late_tick_is_pressure_which_passes(clock: Clock) -> None:
+    measured = Pressure()
+    tick(measured, clock, 0.0)
+    tick(measured, clock, LOOKED_AT_EVERY + 4.0 * HIGH)
+    assert measured.is_high()
+    for _ in range(20):
+        tick(measured, clock, LOOKED_AT_EVERY)
+    assert not measured.is_high()
