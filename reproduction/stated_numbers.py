@@ -106,6 +106,7 @@ _CONFINED = (
     "The paper says that all bounded orbits of I and II are regular; SALI of many of these falls below its threshold: "
     "chaos that invariant tori shut in."
 )
+_TINY = "Above h = 0.22 single pixels of tiny islands are left, which a coarser grid passes over."
 _OVER_100 = "The four stated shares sum to 102."
 _OVER_106 = "The five stated shares sum to 106."
 _SQUARE = "No square about the origin has so much of channel 1 and so little of the others outside."
@@ -151,7 +152,7 @@ _CASE_II = (
     StatedNumber("II", _X_PX, (0.17,), "0.17", _THROUGH, _ABOUT, 55.0, (1,), _WINDOW),
     StatedNumber("II", _X_PX, (0.17,), "0.17", _THROUGH, _ABOUT, 44.0, (2, 3), _WINDOW),
     StatedNumber("II", _X_PX, (0.17, 0.18, 0.2, 0.3, 0.5), "> 1/6", _ESCAPED, _MORE, 95.0, (), _INTERIOR),
-    StatedNumber("II", _X_PX, (0.17,), "any", Quantity.CHAOTIC, _ABOUT, 0.0),
+    StatedNumber("II", _X_PX, (0.17,), "any", Quantity.CHAOTIC, _ABOUT, 0.0, (), _INTERIOR, _CONFINED),
     StatedNumber("II", _X_PX, (0.205, 0.22, 0.3), "> 0.2", _BOUNDED, _ABOUT, 0.0),
     StatedNumber("II", _X_PX, (0.255, 0.3, 0.4), "> 0.25", _BOUNDED, _ABOUT, 0.0),
     StatedNumber("II", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 70.0, (1,), _WINDOW),
@@ -159,7 +160,7 @@ _CASE_II = (
     StatedNumber("II", _X_PX, (0.5,), "0.5", _THROUGH, _ABOUT, 10.0, (3,), _WINDOW),
     StatedNumber("II", _X_PX, (0.45, 0.5), "high", _DIRECT, _MORE, 70.0, (), _INTERIOR),
     StatedNumber("II", _X_PX, (0.5, 0.52, 0.55), "> 0.5", _DIRECT, _ABOUT, 80.0, (), _INTERIOR, _OWN_FIT),
-    StatedNumber("II", _X_H, (1 / 6, 0.5), "(1/6, 1/2]", Quantity.LAST_BOUNDED_ENERGY, _LESS, 0.22),
+    StatedNumber("II", _X_H, (1 / 6, 0.5), "(1/6, 1/2]", Quantity.LAST_BOUNDED_ENERGY, _LESS, 0.22, (), _INTERIOR, _TINY),
 )
 
 _CASE_III = (
