@@ -45,6 +45,9 @@ from app.views.zoom_buttons import ZoomButtons
 from app.why import Why
 from engine import EscapeMap, Jobs, Plane, Visitor, Window
 
+# Parts of jobs for each thread that may wait while there are still quick looks: one visitor's map makes two.
+_MOST_WAITING = 4
+
 
 @cache
 def shared_jobs() -> Jobs:
@@ -69,7 +72,7 @@ class Explorer:
         when_left(document, self._visitor.close)
         self.potential = PotentialChoice(self.state, jobs, self._locked)
         self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
-        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks(), this_pressure().is_high)
+        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks(), _is_pressed)
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.twin = TwinRequest(self.state, jobs, self.desk.say, self._locked)
         self.separation = SeparationRequest(self.state, jobs, self.separation_pane.show, self.desk.say, self._locked)
@@ -277,6 +280,12 @@ class Explorer:
             self.indicators.follow(orbits)
             self.take_along.show_orbits(orbits)
             self.words.show_orbits(orbits)
+
+
+def _is_pressed() -> bool:
+    """Whether many wait, for the server's words or for its threads."""
+    now = shared_jobs().figures()
+    return this_pressure().is_high() or now.calls_waiting > _MOST_WAITING * now.threads
 
 
 def _parameters() -> dict[str, str]:

@@ -15,7 +15,6 @@ from engine.bench import Bench
 from engine.escape_maps import EscapeMap
 from engine.fair_pool import FairPool, Rank
 from engine.job_figures import JobFigures
-from engine.job_specs import PreviewSpec
 from engine.map_specs import MapSpec
 from engine.maps import LARGEST_RUN, compute_map
 from engine.orbit_batches import count_workers
@@ -127,7 +126,7 @@ class Jobs:
 
         What grows as it is computed comes more than once, the last time with ``complete`` True.
         """
-        return self._request(spec, on_result, on_error, spec.run, owner, looked_for=isinstance(spec, PreviewSpec))
+        return self._request(spec, on_result, on_error, spec.run, owner, looked_for=False)
 
     @property
     def in_flight(self) -> int:
