@@ -71,9 +71,13 @@ class Controller:
         self.cancel_map()
         self._generation += 1
         generation = self._generation
-        if not is_ready_for_maps(self._state.potential):
+        if is_ready_for_maps(self._state.potential):
+            self._ask(generation)
+        else:
             self._prepare(generation)
-            return
+
+    def _ask(self, generation: int) -> None:
+        """The request itself, for which everything is compiled."""
         try:
             spec = self._state.map_spec()
         except ValueError as error:
@@ -104,7 +108,7 @@ class Controller:
 
     def _prepared(self, generation: int) -> None:
         if generation == self._generation:
-            self.request_map()
+            self._ask(generation)
 
     def request_preview(self, energy: float) -> None:
         """Look quickly at another energy; the map on its way is cancelled, as its energy is not looked at any more."""

@@ -11,7 +11,7 @@ from enum import StrEnum
 from functools import cache
 from typing import Any
 
-from engine import MOST_REQUESTS
+from engine import MOST_REQUESTS, count_cores
 
 PREFIX = "ESCAPE_EXPLORER_"
 """With what the names of the environment variables begin."""
@@ -54,13 +54,6 @@ def _read_framers(text: str) -> tuple[str, ...]:
     if not all(framer.isascii() and framer.isprintable() and not set(framer) & set(";,'\"") for framer in framers):
         raise ValueError
     return framers
-
-
-def count_cores() -> int:
-    """How many cores this process may use."""
-    # Python 3.12 cannot tell the cores of this process from those of the machine.
-    count = getattr(os, "process_cpu_count", os.cpu_count)
-    return count() or 1
 
 
 _LOG_FORMATS = _Reading(LogFormat, "text or json")

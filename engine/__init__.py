@@ -47,6 +47,7 @@ from engine.metrics.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.metrics.labels import ENTROPY_COUNTS_BOUNDED, MERGING_COUNTS_BOUNDED, exit_labels
 from engine.metrics.merging import MergingTest, compute_merging
 from engine.metrics.uncertainty import UncertaintyExponent, compute_uncertainty_exponent, fit_uncertainty
+from engine.orbit_batches import count_cores
 from engine.orbits import Orbit, integrate_orbit
 from engine.origin_fates import OriginFateMap, compute_origin_fates, join_origin_fates
 from engine.outcomes import Outcomes, classify_orbits
@@ -172,6 +173,7 @@ __all__ = [
     "compute_survival",
     "compute_trust",
     "compute_uncertainty_exponent",
+    "count_cores",
     "default_window",
     "describe_certificate",
     "describe_codes",

@@ -28,12 +28,17 @@ LARGEST_TILE = 2048
 BUDGET = 2_000_000
 
 
+def count_cores() -> int:
+    """How many cores this process may use."""
+    # Python 3.12 cannot tell the cores of this process from those of the machine.
+    count = getattr(os, "process_cpu_count", os.cpu_count)
+    return count() or 1
+
+
 @cache
 def default_executor() -> ThreadPoolExecutor:
     """The one bounded pool of this process: a thread for each core it may use; kernels hold no GIL."""
-    # Python 3.12 cannot tell the cores of this process from those of the machine.
-    count = getattr(os, "process_cpu_count", os.cpu_count)
-    return ThreadPoolExecutor(count() or 1, thread_name_prefix="orbits")
+    return ThreadPoolExecutor(count_cores(), thread_name_prefix="orbits")
 
 
 def count_workers(executor: Executor) -> int:
