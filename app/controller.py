@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 from app.locking import Locked
 from app.map_columns import map_columns
-from app.preview_requests import PreviewRequests
+from app.preview_requests import UNHURRIED, Patience, PreviewRequests
 from app.second_looks import SecondLook, SecondLooks
 from app.sentences import sentence
 from app.systems import SYSTEM
 from app.view_state import ViewState
-from engine import EscapeMap, PreparationSpec, Requests, Ticket, is_ready_for_maps
+from engine import EscapeMap, MapSpec, PreparationSpec, Requests, Ticket, is_ready_for_maps
 
 
 class MapListener(Protocol):
@@ -37,9 +37,8 @@ class MapListener(Protocol):
 class Controller:
     """One session's requests.
 
-    `is_pressed` tells whether the server is behind with its visitors' messages: then nobody gets quick looks. `locked` turns a
-    function into one that any thread may call, that returns at once and runs under the session's lock
-    (Bokeh's ``Document.locked_callback``).
+    While many wait there are no quick looks, and no frames between the first and the last. `locked` turns a function into one
+    that any thread may call, that returns at once and runs under the session's lock (Bokeh's ``Document.locked_callback``).
     """
 
     def __init__(
@@ -49,19 +48,20 @@ class Controller:
         listener: MapListener,
         locked: Locked,
         looks: Sequence[SecondLook] = (),
-        is_pressed: Callable[[], bool] = lambda: False,
+        patience: Patience = UNHURRIED,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._map_ticket: Ticket | None = None
         self._go_on = locked(self._prepared)
         self._whole_map: EscapeMap | None = None
         self._generation = 0
+        self._compiling = False
         # Of the request of which something has been sent to the page.
         self._sent = -1
-        self._is_pressed = is_pressed
+        self._patience = patience
         self._show_map = locked(self._map_arrived)
         self._show_map_problem = locked(self._map_failed)
-        self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked)
+        self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked, patience)
         self._second_looks = SecondLooks(state, jobs, looks, listener.map_failed, locked)
         state.param.watch(lambda *events: self.request_map(), [*SYSTEM, "plane", "energy", "t_max", "resolution", "window"])
 
@@ -71,19 +71,20 @@ class Controller:
         self.cancel_map()
         self._generation += 1
         generation = self._generation
-        if is_ready_for_maps(self._state.potential):
-            self._ask(generation)
-        else:
-            self._prepare(generation)
+        self._compiling = not is_ready_for_maps(self._state.potential)
+        self._listener.map_requested(compiling=self._compiling)
+        # In the background, as even a map's window hangs on the exits, which it takes an integrator to find.
+        self._map_ticket = self._jobs.request(
+            PreparationSpec(self._state.map_wish()),
+            lambda prepared: self._go_on(generation, prepared.map_spec),
+            lambda error: self._show_map_problem(generation, error),
+        )
 
-    def _ask(self, generation: int) -> None:
-        """The request itself, for which everything is compiled."""
-        try:
-            spec = self._state.map_spec()
-        except ValueError as error:
-            self._listener.map_failed(str(error))
+    def _prepared(self, generation: int, spec: MapSpec) -> None:
+        if generation != self._generation:
             return
-        self._listener.map_requested()
+        if self._compiling:
+            self._listener.map_requested()
         self._map_ticket = self._jobs.request_map(
             spec,
             lambda frame: self._send(generation, frame),
@@ -92,27 +93,14 @@ class Controller:
 
     def _send(self, generation: int, frame: EscapeMap) -> None:
         """Hand a frame on; only the first and the last one where many wait for theirs."""
-        if self._sent == generation and not frame.complete and self._is_pressed():
+        if self._sent == generation and not frame.complete and self._patience.is_pressed():
             return
         self._sent = generation
         self._show_map(generation, frame, map_columns(frame, characters=self._state.judge))
 
-    def _prepare(self, generation: int) -> None:
-        """First compile, in the background: even a map's window hangs on the exits, which take an integrator to find."""
-        self._listener.map_requested(compiling=True)
-        self._map_ticket = self._jobs.request(
-            PreparationSpec(self._state.potential),
-            lambda _: self._go_on(generation),
-            lambda error: self._show_map_problem(generation, error),
-        )
-
-    def _prepared(self, generation: int) -> None:
-        if generation == self._generation:
-            self._ask(generation)
-
     def request_preview(self, energy: float) -> None:
         """Look quickly at another energy; the map on its way is cancelled, as its energy is not looked at any more."""
-        if self._is_pressed() or not is_ready_for_maps(self._state.potential):
+        if not is_ready_for_maps(self._state.potential):
             return
         self.cancel_map()
         self._generation += 1

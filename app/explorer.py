@@ -18,6 +18,7 @@ from app.link import LINKED, read_link, write_link
 from app.navigation import Navigation
 from app.orbit_requests import ChosenOrbit, OrbitRequests
 from app.potential_choice import PotentialChoice
+from app.preview_requests import Patience
 from app.separation_request import SeparationRequest
 from app.server.figures import observe_first_frame
 from app.server.left_pages import when_left
@@ -48,6 +49,9 @@ from engine import EscapeMap, Jobs, Plane, Visitor, Window
 # Parts of jobs for each thread that may wait while there are still quick looks: one visitor's map makes two.
 _MOST_WAITING = 4
 
+# Between two questions whether there is time for a quick look again.
+_PATIENCE_MS = 300
+
 
 @cache
 def shared_jobs() -> Jobs:
@@ -72,7 +76,8 @@ class Explorer:
         when_left(document, self._visitor.close)
         self.potential = PotentialChoice(self.state, jobs, self._locked)
         self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
-        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks(), _is_pressed)
+        patience = Patience(_is_pressed, lambda call: document.add_timeout_callback(call, _PATIENCE_MS))
+        self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks(), patience)
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.twin = TwinRequest(self.state, jobs, self.desk.say, self._locked)
         self.separation = SeparationRequest(self.state, jobs, self.separation_pane.show, self.desk.say, self._locked)

@@ -1,23 +1,53 @@
-"""Quick looks at energies that a visitor passes by: always one on its way, always the latest wanted next."""
+"""Quick looks at energies that a visitor passes by: always one on its way, always the latest wanted next.
+
+While many wait for their first picture there are none; the latest wanted comes when that is over.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from app.locking import Locked
 from app.map_columns import map_columns
 from app.view_state import ViewState
-from engine import EscapeMap, PreviewSpec, Requests, Ticket, preview_spec
+from engine import EscapeMap, PreviewSpec, Requests, Ticket
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How to wait while others wait for more.
+
+    Attributes
+    ----------
+    is_pressed
+        Whether many wait.
+    later
+        Calls back in a while, under the session's lock.
+    """
+
+    is_pressed: Callable[[], bool] = lambda: False
+    later: Callable[[Callable[[], None]], Any] = lambda call: None
+
+
+UNHURRIED = Patience()
+"""Nobody else is there."""
 
 
 class PreviewRequests:
     """One session's previews; `show(frame, columns)` paints one, under the session's lock."""
 
     def __init__(
-        self, state: ViewState, jobs: Requests, show: Callable[[EscapeMap, dict[str, list[Any]]], None], locked: Locked
+        self,
+        state: ViewState,
+        jobs: Requests,
+        show: Callable[[EscapeMap, dict[str, list[Any]]], None],
+        locked: Locked,
+        patience: Patience,
     ) -> None:
-        self._state, self._jobs, self._show = state, jobs, show
+        self._state, self._jobs, self._show, self._patience = state, jobs, show, patience
+        self._waiting = False
         self._wanted: float | None = None
         self._under_way: float | None = None
         self._ticket: Ticket | None = None
@@ -31,7 +61,7 @@ class PreviewRequests:
     def request(self, energy: float) -> None:
         """Look at an energy: at once, or as soon as the last look is over."""
         self._wanted = energy
-        if not self.under_way:
+        if not (self.under_way or self._waiting):
             self._begin()
 
     def cancel(self) -> None:
@@ -41,17 +71,24 @@ class PreviewRequests:
             self._ticket.cancel()
             self._ticket = None
 
+    def _wait(self) -> None:
+        self._waiting = True
+        self._patience.later(self._waited)
+
+    def _waited(self) -> None:
+        self._waiting = False
+        self._begin()
+
     def _begin(self) -> None:
+        if self._wanted is not None and self._patience.is_pressed():
+            self._wait()
+            return
         energy, self._wanted = self._wanted, None
         if energy is None:
             return
-        try:
-            spec = self._state.map_spec_at(energy)
-        except ValueError:
-            return
         self._under_way = energy
         self._ticket = self._jobs.request(
-            PreviewSpec(preview_spec(spec)),
+            PreviewSpec(self._state.map_wish_at(energy)),
             lambda preview: self._arrive(energy, preview.frame, map_columns(preview.frame, characters=False)),
             lambda error: self._arrive(energy, None, {}),
         )

@@ -12,7 +12,7 @@ from app.palette import MOST_ORBITS, PALETTES, Palette
 from app.paper_energies import ENERGIES
 from app.settings import current_settings
 from app.systems import SYSTEM, TYPED, System
-from engine import FREQUENCIES, POTENTIALS, STRENGTHS, MapSpec, OrbitSpec, Plane, Potential, Window, start_states
+from engine import FREQUENCIES, POTENTIALS, STRENGTHS, MapSpec, MapWish, OrbitSpec, Plane, Potential, Window, start_states
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
@@ -98,14 +98,18 @@ class ViewState(param.Parameterized):
 
     def map_spec(self) -> MapSpec:
         """The request for the map in view; ValueError names what is wrong with the choice."""
-        return self.map_spec_at(self.energy)
+        return self.map_wish().spec()
 
-    def map_spec_at(self, h: float) -> MapSpec:
+    def map_wish(self) -> MapWish:
+        """The map in view."""
+        return self.map_wish_at(self.energy)
+
+    def map_wish_at(self, h: float) -> MapWish:
         """The same at another energy."""
         energy: float | tuple[float, float] = h
         if self.plane is Plane.X_H:
             energy = (self.potential.escape_energy, self.system.energies.high)
-        return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
+        return MapWish(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def orbit_spec(self, start: Start) -> OrbitSpec | None:
         """The request for the orbit of a start; None where no orbit of this energy can start."""

@@ -47,6 +47,9 @@ class FairPool:
         # In the order of their turns; only those who wait for something.
         self._waiting: OrderedDict[Hashable, deque[_Task]] = OrderedDict()
         self._whole_ones = 0
+        self._first_looks_only = False
+        # Threads that came for work while there was none of the only kind that was served.
+        self._sent_away = 0
 
     def line(self, owner: Hashable, rank: Callable[[], Rank]) -> Line:
         """Where one job hands its work in.
@@ -66,6 +69,26 @@ class FairPool:
         with self._lock:
             return sum(map(len, self._waiting.values()))
 
+    def serve_first_looks_only(self, only: bool) -> None:
+        """Leave everything else waiting, or with False take it up again: for a process that is behind with other things."""
+        with self._lock:
+            self._first_looks_only = only
+            again = 0 if only else self._sent_away
+            self._sent_away -= again
+        for _ in range(again):
+            self._pool.submit(self._serve)
+
+    def drop(self, line: Line) -> None:
+        """Cancel those calls of a line that no thread has taken up."""
+        with self._lock:
+            dropped = [task for task in self._waiting.get(line.owner, ()) if task.line is line]
+            for task in dropped:
+                self._take_out(task)
+        for task in dropped:
+            # The first says so, the second wakes those who wait for it.
+            task.future.cancel()
+            task.future.set_running_or_notify_cancel()
+
     def _take_in(self, task: _Task) -> None:
         with self._lock:
             self._waiting.setdefault(task.line.owner, deque()).append(task)
@@ -75,9 +98,10 @@ class FairPool:
         """The work of a thread: whatever is next. As many of these are under way as there are calls."""
         with self._lock:
             chosen = self._choose()
-        if chosen is None:
-            # Held back; whoever ends such a call comes for it.
-            return
+            if chosen is None:
+                # Whoever ends a call that lasts comes for the next of these.
+                self._sent_away += self._first_looks_only
+                return
         task, rank = chosen
         try:
             _carry_out(task)
@@ -89,22 +113,25 @@ class FairPool:
 
     def _choose(self) -> tuple[_Task, Rank] | None:
         for rank in Rank:
+            if rank is not Rank.FIRST_LOOK and self._first_looks_only:
+                return None
             if rank is Rank.WHOLE and self._whole_ones >= max(self.threads - 1, 1):
                 return None
             for owner, tasks in self._waiting.items():
                 for task in tasks:
                     if task.line.rank() is rank:
-                        self._end_turn(owner, task)
+                        self._take_out(task)
+                        if owner in self._waiting:
+                            self._waiting.move_to_end(owner)
                         self._whole_ones += rank is Rank.WHOLE
                         return task, rank
         return None
 
-    def _end_turn(self, owner: Hashable, task: _Task) -> None:
-        tasks = self._waiting[owner]
+    def _take_out(self, task: _Task) -> None:
+        tasks = self._waiting[task.line.owner]
         tasks.remove(task)
-        self._waiting.move_to_end(owner)
         if not tasks:
-            del self._waiting[owner]
+            del self._waiting[task.line.owner]
 
 
 class Line(Executor):
@@ -114,6 +141,10 @@ class Line(Executor):
         self._fair_pool = pool
         self.owner = owner
         self.rank = rank
+
+    def drop(self) -> None:
+        """Cancel those calls that no thread has taken up."""
+        self._fair_pool.drop(self)
 
     @property
     def _max_workers(self) -> int:

@@ -38,7 +38,8 @@ def glide(
     def collect(most: int) -> None:
         while len(running) > most:
             begin, future = running.popleft()
-            results[begin : begin + LANES] = future.result()[: len(states) - begin]
+            if not future.cancelled():
+                results[begin : begin + LANES] = future.result()[: len(states) - begin]
 
     for begin in range(0, len(states), LANES):
         collect(ahead - 1)

@@ -24,8 +24,8 @@ from engine.origin_fates import OriginFateMap, join_origin_fates
 from engine.planes import Plane, Window
 from engine.potential_review import PotentialReview, review_potential
 from engine.potentials import Potential
-from engine.preparation import prepare_for_maps
-from engine.previews import compute_preview
+from engine.preparation import is_ready_for_maps, prepare_for_maps
+from engine.previews import compute_preview, preview_spec
 from engine.regularity_maps import RegularityMap, judge_bounded_orbits
 from engine.separations import Separation, compute_separation
 from engine.stable_manifolds import StableManifolds, find_stable_manifolds
@@ -80,23 +80,41 @@ class ReviewSpec:
 
 
 @dataclass(frozen=True)
-class Preparation:
-    """The knowledge that a potential is ready for maps."""
+class MapWish:
+    """A map as it is wished for: `MapSpec`'s arguments, hashable, before a window is found and anything is checked."""
 
     potential: Potential
+    plane: Plane
+    energy: float | tuple[float, float]
+    resolution: tuple[int, int]
+    window: Window | None
+    t_max: float
+
+    def spec(self) -> MapSpec:
+        """The request for it: to find the whole interior takes Lyapunov orbits, thus milliseconds and a compiled integrator."""
+        where = (self.potential, self.plane, self.energy, self.resolution)
+        return MapSpec(*where, self.window, self.t_max)  # type: ignore[arg-type]  # None is replaced
+
+
+@dataclass(frozen=True)
+class Preparation:
+    """A map that can be computed now: all is compiled, its window is known."""
+
+    map_spec: MapSpec
     nbytes: int = 1024
 
 
 @dataclass(frozen=True)
 class PreparationSpec:
-    """The request to compile what maps of a potential need."""
+    """The request to compile what a map needs, and to find its window."""
 
-    potential: Potential
+    wish: MapWish
 
     def run(self, bench: Bench) -> Preparation:
-        """Compile it."""
-        bench.call_executor.submit(prepare_for_maps, self.potential).result()
-        return Preparation(self.potential)
+        """Compile, where that has not been done; ValueError where there can be no such map."""
+        if not is_ready_for_maps(self.wish.potential):
+            bench.call_executor.submit(prepare_for_maps, self.wish.potential).result()
+        return Preparation(self.wish.spec())
 
 
 @dataclass(frozen=True)
@@ -153,13 +171,13 @@ class Preview:
 
 @dataclass(frozen=True)
 class PreviewSpec:
-    """The request for a quick look at a map; `map_spec` from `preview_spec`."""
+    """The request for a quick look at a map."""
 
-    map_spec: MapSpec
+    wish: MapWish
 
     def run(self, bench: Bench) -> Preview:
-        """Compute it."""
-        frame = compute_preview(self.map_spec, bench.executor, bench.cancel)
+        """Compute it; ValueError where there can be no such map."""
+        frame = compute_preview(preview_spec(self.wish.spec()), bench.executor, bench.cancel)
         if bench.cancel.is_set():
             raise CancelledError
         return Preview(frame)

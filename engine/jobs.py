@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 from engine.bench import Bench
 from engine.escape_maps import EscapeMap
-from engine.fair_pool import FairPool, Rank
+from engine.fair_pool import FairPool, Line, Rank
 from engine.job_figures import JobFigures
 from engine.map_specs import MapSpec
 from engine.maps import LARGEST_RUN, compute_map
@@ -58,6 +58,14 @@ class _Job:
     """Whether somebody sees nothing until this is there."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
+    lines: list[Line] = field(default_factory=list)
+    """Where its calls wait for their turn."""
+
+    def stop(self) -> None:
+        """Nobody waits for it any more."""
+        self.cancel.set()
+        for line in self.lines:
+            line.drop()
 
     def rank(self) -> Rank:
         return Rank.FIRST_LOOK if self.looked_for and self.latest is None else Rank.TILE
@@ -149,6 +157,10 @@ class Jobs:
             threads=count_workers(self._executor) if self._executor is not None else self._pool.threads,
         )
 
+    def serve_first_looks_only(self, only: bool) -> None:
+        """Whether, of the calls to this pool, those for first frames of maps alone are served; the others wait, however long."""
+        self._pool.serve_first_looks_only(only)
+
     def stop(self) -> None:
         """Stop all jobs, within about 0.2 s; those who wait for them hear nothing any more."""
         with self._lock:
@@ -189,7 +201,7 @@ class Jobs:
                 return
             job.tickets.remove(ticket)
             if not job.tickets:
-                job.cancel.set()
+                job.stop()
                 del self._in_flight[key]
 
     def _work(self, job: _Job, run: Callable[[Bench], Sized]) -> None:
@@ -231,8 +243,8 @@ class Jobs:
                 whole = self._compute_map(spec, bench, on_frame=None)
             return whole if whole.complete else None
 
-        tiles = self._executor or self._pool.line(job.owner, job.rank)
-        calls = self._executor or self._pool.line(job.owner, lambda: Rank.WHOLE)
+        job.lines = [self._pool.line(job.owner, rank) for rank in (job.rank, lambda: Rank.WHOLE)]
+        tiles, calls = (self._executor or line for line in job.lines)
         bench = Bench(tiles, calls, job.cancel, partial(self._publish, job), map_at_hand, answer)
         return bench
 

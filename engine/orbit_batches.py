@@ -232,21 +232,29 @@ def carry_on(
     def submit(tile: _Tile) -> None:
         running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance))
 
-    for tile in tiles:
+    def go_on(tile: _Tile) -> None:
+        tile.put_back(batch)
+        if is_set(cancel):
+            return
+        following = [tile] if tile.waiting.any() else list(islice(tiles, 1))
+        if len(following) + len(running) < workers:
+            following = [_Tile.taken_from(batch, part) for tile in following for part in _halves(tile)]
+        for tile in following:
+            submit(tile)
+
+    for tile in islice(tiles, 2 * workers):
         submit(tile)
-        if len(running) >= 2 * workers:
-            break
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
-        stopped = cancel is not None and cancel.is_set()
         for future in done:
-            tile = future.result()
-            tile.put_back(batch)
-            following = [tile] if tile.waiting.any() else list(islice(tiles, 1))
-            if len(following) + len(running) < workers:
-                following = [_Tile.taken_from(batch, part) for tile in following for part in _halves(tile)]
-            for tile in following if not stopped else ():
-                submit(tile)
-        if on_progress is not None and not stopped:
+            # Of a job that is cancelled, calls that no thread has taken up are cancelled too.
+            if not future.cancelled():
+                go_on(future.result())
+        if on_progress is not None and not is_set(cancel):
             on_progress()
-    return not (cancel is not None and cancel.is_set())
+    return not is_set(cancel)
+
+
+def is_set(event: threading.Event | None) -> bool:
+    """Whether there is such an event, and it has come."""
+    return event is not None and event.is_set()

@@ -1,4 +1,4 @@
-"""How far the server is behind with its visitors' messages: where it is, what is pleasant gives way to what is asked for."""
+"""How far the server is behind with its visitors' messages: while it is, only those who see nothing yet are computed for."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from functools import cache
 LOOKED_AT_EVERY = 0.1
 """Seconds between two looks at the clock."""
 
-HIGH = 0.25
+HIGH = 0.05
 """Seconds by which a look may be late before the server counts as pressed."""
 
-# Of the last delay, what is left at the next look: a second or so after the crowd has gone there are quick looks again.
-_MEMORY = 0.8
+# Of the last delay, what is left at the next look: half a second after a crowd has gone everything is as before.
+_MEMORY = 0.7
+
+LONGEST_SECONDS = 2.0
+"""In a crowd that does not go, everything is computed for a moment each time this is over: nothing waits for ever."""
 
 
 class Pressure:
@@ -20,6 +23,7 @@ class Pressure:
 
     def __init__(self) -> None:
         self._due: float | None = None
+        self._high_since: float | None = None
         self.delay = 0.0
 
     def tick(self) -> None:
@@ -28,10 +32,14 @@ class Pressure:
         late = max(0.0, now - self._due) if self._due is not None else 0.0
         self.delay = max(late, _MEMORY * self.delay)
         self._due = now + LOOKED_AT_EVERY
+        if not self.delay > HIGH or (self._high_since is not None and now - self._high_since > LONGEST_SECONDS):
+            self._high_since = None
+        elif self._high_since is None:
+            self._high_since = now
 
     def is_high(self) -> bool:
-        """Whether quick looks and frames between the first and the last are too much."""
-        return self.delay > HIGH
+        """Whether all that nobody waits for before an empty page is too much."""
+        return self._high_since is not None
 
 
 @cache

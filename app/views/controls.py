@@ -11,6 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.palette import PALETTES
+from app.server.pressure import this_pressure
 from app.systems import SYSTEM, System
 from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from app.views.wrapping import wrapping_row
@@ -46,9 +47,11 @@ class ControlActions:
 
 
 class PromptSlider(pmui.FloatSlider):
-    """A slider whose moves are heard sooner than Panel's 50 ms after the first of them."""
+    """A slider whose moves are heard sooner than Panel's 50 ms after the first of them, unless the server is behind."""
 
-    _debounce = 5
+    @property
+    def _debounce(self) -> int:
+        return 150 if this_pressure().is_high() else 5
 
 
 class Controls:
@@ -157,7 +160,9 @@ class Controls:
         # The slider stands at its end for an energy typed beyond it, and passes others in a sweep: no wish to go there.
         if event.new != self._on_slider() and event.new not in self._passed:
             self._looked = False
-            self.state.energy = event.new
+            # All that follows from it makes one message.
+            with pn.io.hold():
+                self.state.energy = event.new
 
     def _on_slider(self) -> float:
         """Where the slider stands for the energy of the state."""

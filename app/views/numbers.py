@@ -20,6 +20,10 @@ BINS = 40
 MOST_CROSSINGS = 15
 """The chance to leave is shown up to this many crossings."""
 
+CROSSINGS, CHANCE = "n", "p"
+"""Columns of the second chart."""
+
+_NUMBERS = [str(n) for n in range(MOST_CROSSINGS + 1)]
 _BAR = "#5b8db8"
 
 
@@ -33,9 +37,8 @@ class NumbersView:
         self.table = pn.pane.HTML("", name="numbers", width=360)
         self.whole = pmui.Button(label="Count the whole view", variant="outlined", size="small", disabled=True)
         self.whole.on_click(lambda event: on_whole())
-        self._times, self._chances = hv.streams.Pipe(data=None), hv.streams.Pipe(data=None)
-        self.histogram = _pane(hv.DynamicMap(_draw_times, streams=[self._times]))
-        self.probabilities = _pane(hv.DynamicMap(_draw_chances, streams=[self._chances]))
+        self._times, self._chances = _plot(_draw_times()), _plot(_draw_chances())
+        self.histogram, self.probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._chances))
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """The table, and the charts with their explanations."""
@@ -66,10 +69,20 @@ class NumbersView:
             return
         statistics = compute_statistics(self._frame, self._box)
         self.table.object = self._table(statistics)
-        # The charts take longer to draw than a frame of the map.
         if self._frame.complete:
-            self._times.send(statistics)
-            self._chances.send(statistics)
+            self._show_times(*statistics.time_histogram(BINS))
+            self._show_chances(statistics.escape_probabilities[: len(_NUMBERS)])
+
+    def _show_times(self, edges: np.ndarray, counts: np.ndarray) -> None:
+        drawn = self._times.handles
+        drawn["source"].data = {"left": edges[:-1], "right": edges[1:], "top": counts}
+        drawn["x_range"].update(start=edges[0], end=edges[-1])
+        drawn["y_range"].update(start=0.0, end=1.05 * max(float(counts.max()), 1.0))
+
+    def _show_chances(self, chances: np.ndarray) -> None:
+        shown = np.zeros(len(_NUMBERS))
+        shown[: len(chances)] = chances
+        self._chances.handles["source"].data = {CROSSINGS: _NUMBERS, CHANCE: shown}
 
     def _table(self, statistics: EscapeStatistics) -> str:
         shares = statistics.shares
@@ -90,15 +103,13 @@ class NumbersView:
         return f"<table aria-label='numbers table' style='font-size:14px;border-spacing:14px 2px'>{head}{body}</table>"
 
 
-def _draw_times(data: EscapeStatistics | None) -> hv.Histogram:
-    edges, counts = data.time_histogram(BINS) if data is not None else (np.array([1.0, 10.0]), np.zeros(1))
+def _draw_times() -> hv.Histogram:
     style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time", "ylabel": "starts"}
-    return hv.Histogram((edges, counts)).opts(title="Escape times", **style, **_frame())
+    return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(title="Escape times", **style, **_frame())
 
 
-def _draw_chances(data: EscapeStatistics | None) -> hv.Bars:
-    chances = data.escape_probabilities[: MOST_CROSSINGS + 1] if data is not None else np.zeros(0)
-    bars = hv.Bars([(str(n), float(p)) for n, p in enumerate(chances)] or [("0", 0.0)], "upward crossings n", "p")
+def _draw_chances() -> hv.Bars:
+    bars = hv.Bars([(number, 0.0) for number in _NUMBERS], (CROSSINGS, "upward crossings n"), (CHANCE, "p"))
     style = {"color": _BAR, "line_color": None, "ylabel": "p", "ylim": (0.0, 1.0)}
     return bars.opts(title="Chance to leave after n crossings", **style, **_frame())
 
@@ -106,7 +117,7 @@ def _draw_chances(data: EscapeStatistics | None) -> hv.Bars:
 def _frame() -> dict[str, Any]:
     fonts = {"title": "14px", "labels": "12px", "ticks": "11px"}
     return {
-        "width": FRAME + 60, "height": FRAME + 20, "framewise": True, "fontsize": fonts, "toolbar": None,
+        "width": FRAME + 60, "height": FRAME + 20, "fontsize": fonts, "toolbar": None,
         "hooks": [_see_through],
     }  # fmt: skip
 
@@ -115,8 +126,9 @@ def _see_through(plot: Any, _element: Any) -> None:
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
 
 
-def _pane(drawn: hv.DynamicMap) -> pn.pane.HoloViews:
-    return pn.pane.HoloViews(drawn, linked_axes=False, margin=0)
+def _plot(element: hv.Element) -> Any:
+    """Drawn once: to draw anew takes 20 times as long as to change what is drawn."""
+    return hv.renderer("bokeh").get_plot(element)
 
 
 def _number(value: float) -> str:

@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.palette import DARK, LIGHT, PAPER, Entry, Inks, Palette
-from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials, trace_zero_velocity_curve
+from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
@@ -61,22 +61,15 @@ class Outlines:
 
     def show(self, spec: MapSpec, *, quickly: bool = False) -> None:
         """The curves of a map's plane, window and energy; `quickly` leaves the equipotentials as they are."""
-        energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
-        self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window))
-        orbits = find_lyapunov_orbits(spec.potential, energy) if spec.plane is Plane.X_Y else ()
+        limit, critical, *others = _trace(spec, () if quickly or spec.plane is Plane.X_H else (1.0, *_LEVELS))
+        self._limit.data = _lines(limit)
+        orbits = find_lyapunov_orbits(spec.potential, _energy(spec)) if spec.plane is Plane.X_Y else ()
         # Every message takes its time, those that say nothing too.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
         if not quickly:
-            self._show_levels(spec)
-
-    def _show_levels(self, spec: MapSpec) -> None:
-        levels: list[list[np.ndarray]] = [[]]
-        if spec.plane is not Plane.X_H:
-            energies = tuple(level * spec.potential.escape_energy for level in (1.0, *_LEVELS))
-            levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.window)
-        self._critical.data = _lines(levels[0])
-        self._levels.data = _lines([line for lines in levels[1:] for line in lines])
+            self._critical.data = _lines(critical)
+            self._levels.data = _lines([line for lines in others for line in lines])
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
@@ -99,6 +92,16 @@ class Outlines:
         if spec.plane is Plane.X_Y:
             entries += [Entry(f"Lyapunov orbit {k}", self._palette.channels[k - 1]) for k in _open_channels(spec)]
         return entries
+
+
+def _energy(spec: MapSpec) -> float:
+    return 0.0 if isinstance(spec.energy, tuple) else spec.energy
+
+
+def _trace(spec: MapSpec, levels: tuple[float, ...]) -> list[list[np.ndarray]]:
+    """The limiting curve, and the equipotentials of these energies in units of the escape energy; an empty one where none are."""
+    energies = (_energy(spec), *(level * spec.potential.escape_energy for level in levels))
+    return [*trace_equipotentials(spec.potential, spec.plane, energies, spec.window), *([] if levels else [[]])]
 
 
 def _open_channels(spec: MapSpec) -> tuple[int, ...]:

@@ -151,6 +151,9 @@ def test_after_a_map_is_asked_for_no_quick_look_is_painted(session: Session) -> 
 def test_a_quick_look_at_nothing_leaves_the_picture(session: Session) -> None:
     _, controller, recorder, _ = session
     controller.request_preview(50.0)
+    end = time.monotonic() + 30.0
+    while controller.previews.under_way and time.monotonic() < end:
+        time.sleep(0.01)
     assert not controller.previews.under_way
     assert recorder.names() == []
 

@@ -111,3 +111,25 @@ def test_what_waits_is_counted() -> None:
     assert stage.pool.waiting >= 2
     stage.play(*calls)
     assert stage.pool.waiting == 0
+
+
+def test_while_it_is_told_so_it_serves_first_looks_only() -> None:
+    stage = Stage(threads=2)
+    stage.pool.serve_first_looks_only(True)
+    others = [*stage.ask(stage.line("a"), "a1", "a2"), *stage.ask(stage.line("c", lambda: Rank.WHOLE), "c1")]
+    looks = stage.ask(stage.line("b", lambda: Rank.FIRST_LOOK), "b1")
+    assert stage.play(*looks) == ["b1"]
+    assert not wait(others, 0.2).done
+    stage.pool.serve_first_looks_only(False)
+    assert not wait(others, SECONDS).not_done
+    assert sorted(stage.order) == ["a1", "a2", "b1", "c1"]
+
+
+def test_calls_that_nobody_has_taken_up_can_be_dropped() -> None:
+    stage = Stage()
+    line = stage.line("a")
+    dropped, others = stage.ask(line, "a1", "a2"), stage.ask(stage.line("a"), "a3")
+    line.drop()
+    assert not wait(dropped, SECONDS).not_done
+    assert all(future.cancelled() for future in dropped)
+    assert stage.play(*others) == ["a3"]

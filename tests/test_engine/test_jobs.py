@@ -16,8 +16,10 @@ from engine import (
     EscapeMap,
     Jobs,
     MapSpec,
+    MapWish,
     OrbitSpec,
     Plane,
+    PreparationSpec,
     PreviewSpec,
     RegularitySpec,
     SeparationSpec,
@@ -229,13 +231,13 @@ def test_any_executor_serves() -> None:
 
 def test_a_quick_look_comes_once_and_is_kept() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
-    spec = MapSpec(CASES["I"], Plane.X_PX, 0.3)
-    jobs.request(PreviewSpec(preview_spec(spec)), first.result, first.error)
+    wish = MapWish(CASES["I"], Plane.X_PX, 0.3, (225, 225), None, 1e5)
+    jobs.request(PreviewSpec(wish), first.result, first.error)
     assert first.first.wait(30)
     wait_until_idle(jobs)
-    jobs.request(PreviewSpec(preview_spec(spec)), second.result, second.error)
+    jobs.request(PreviewSpec(wish), second.result, second.error)
     assert second.results == first.results
-    assert first.results[0].frame.spec == preview_spec(spec)
+    assert first.results[0].frame.spec == preview_spec(wish.spec())
 
 
 def test_two_orbits_are_compared() -> None:
@@ -255,3 +257,38 @@ def test_stopping_ends_all_jobs_and_nobody_hears_of_it() -> None:
     heard = len(inbox.results)
     wait_until_idle(jobs)
     assert (len(inbox.results), inbox.errors) == (heard, [])
+
+
+def test_what_a_map_needs_is_prepared_and_its_window_found() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    wish = MapWish(CASES["I"], Plane.X_Y, 0.3, (40, 40), None, 1e3)
+    jobs.request(PreparationSpec(wish), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    assert inbox.results[-1].map_spec == MapSpec(CASES["I"], Plane.X_Y, 0.3, (40, 40), t_max=1e3)
+
+
+def test_a_wish_that_cannot_be_had_is_refused_in_the_background() -> None:
+    jobs, inbox = Jobs(), Inbox()
+    jobs.request(PreparationSpec(MapWish(CASES["I"], Plane.X_Y, -1.0, (40, 40), None, 1e3)), inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    assert isinstance(inbox.errors[0], ValueError)
+
+
+def test_a_process_that_is_behind_still_gives_first_frames() -> None:
+    jobs, inbox = Jobs(threads=2), Inbox()
+    jobs.serve_first_looks_only(True)
+    jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
+    assert inbox.first.wait(30)
+    assert not inbox.done.wait(0.5)
+    jobs.serve_first_looks_only(False)
+    assert inbox.done.wait(60)
+
+
+def test_a_map_that_is_cancelled_while_it_is_held_up_ends_at_once() -> None:
+    jobs, inbox = Jobs(threads=2), Inbox()
+    jobs.serve_first_looks_only(True)
+    ticket = jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
+    assert inbox.first.wait(30)
+    ticket.cancel()
+    wait_until_idle(jobs)
+    assert jobs.figures().calls_waiting == 0

@@ -160,7 +160,7 @@ def hunt_with(times: list[float], shelf: MapShelf) -> SuperStickyHunt:
 
 def test_of_late_leavers_the_last_before_the_axis_ends_is_shown(shelf: MapShelf) -> None:
     assert find_shown(hunt_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], shelf)) == 2
-    assert find_shown(hunt_with([3e6, np.nan, 2e6], shelf)) == 2
+    assert find_shown(hunt_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], shelf)) == 2
     assert find_shown(hunt_with([np.nan, np.nan], shelf)) is None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.server import pressure
-from app.server.pressure import HIGH, LOOKED_AT_EVERY, Pressure
+from app.server.pressure import HIGH, LONGEST_SECONDS, LOOKED_AT_EVERY, Pressure
 
 
 class Clock:
@@ -43,3 +43,14 @@ def test_a_late_tick_is_pressure_which_passes(clock: Clock) -> None:
     for _ in range(20):
         tick(measured, clock, LOOKED_AT_EVERY)
     assert not measured.is_high()
+
+
+def test_pressure_that_lasts_lets_go_from_time_to_time(clock: Clock) -> None:
+    measured = Pressure()
+    tick(measured, clock, 0.0)
+    high = []
+    for _ in range(40):
+        tick(measured, clock, LOOKED_AT_EVERY + 2.0 * HIGH)
+        high.append(measured.is_high())
+    assert high[0]
+    assert 1 <= high.count(False) <= 40 * (LOOKED_AT_EVERY + 2.0 * HIGH) / LONGEST_SECONDS

@@ -1,0 +1,55 @@
+"""All that one callback changes on a page, sent as one message.
+
+Bokeh sends a message for each change, and goes through all models of the page for each message: the first frame of a map is 17
+changes, 16 ms of work as many messages and 3 ms as one; and the browser paints once. The protocol has room for any number of
+changes in a message.
+"""
+
+from __future__ import annotations
+
+import itertools
+import logging
+from collections.abc import Sequence
+from typing import Any
+
+from bokeh.document import Document
+from bokeh.io.doc import patch_curdoc
+from bokeh.server import session
+
+log = logging.getLogger(f"bokeh.{__name__}")
+
+# Bokeh has no public place for it; in a version without this one everything works as Bokeh has it.
+_SERIALIZER = "_serialize_patches"
+
+
+def send_changes_together() -> None:
+    """From now on, in this process."""
+    if hasattr(session, _SERIALIZER):
+        setattr(session, _SERIALIZER, serialize_together)
+    else:
+        log.warning("this version of Bokeh sends a message for each change")
+
+
+def serialize_together(pending: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """One message for each run of changes to the same page that go to the same connections, in their order.
+
+    Parameters
+    ----------
+    pending
+        Bokeh's pending patches: each an event, a protocol and connections.
+
+    Returns
+    -------
+    Pairs of a message, ready to be sent, and the connections it goes to.
+    """
+    runs = itertools.groupby(pending, key=lambda patch: (id(patch.event.document), patch.connections))
+    return [_serialize([*patches]) for _, patches in runs]
+
+
+def _serialize(patches: list[Any]) -> tuple[Any, Any]:
+    first = patches[0]
+    document: Document = first.event.document
+    with patch_curdoc(document):
+        message = first.protocol.create("PATCH-DOC", [patch.event for patch in patches])
+        message.prepare()
+    return message, first.connections
