@@ -13,8 +13,9 @@ from typing import Any
 from bokeh.server import urls
 from tornado.ioloop import PeriodicCallback
 
+from app import pressure
 from app.explorer import shared_jobs
-from app.server import pressure
+from app.pressure import this_pressure
 from app.server.admission import admit
 from app.server.bokeh_application import find_web_application
 from app.server.figures import FaultCounter, these_figures
@@ -23,13 +24,12 @@ from app.server.logs import set_up_logs
 from app.server.one_message import send_changes_together
 from app.server.pages import add_routes
 from app.server.preparation import prepare_in_background
-from app.server.pressure import this_pressure
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
 from app.server.site import this_site
 
 SWITCH_SECONDS = 0.001
-"""How long a thread keeps Python to itself while others wait for it: with Python's own 5 ms, thirty visitors wait 1.7 times as long."""
+"""How long a thread keeps Python to itself while others wait: with Python's own 5 ms thirty visitors wait 1.7 times as long."""
 
 # Before Bokeh builds its web application from the list, as Panel puts its own pages there.
 add_routes(urls.toplevel_patterns)

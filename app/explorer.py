@@ -18,11 +18,11 @@ from app.link import LINKED, read_link, write_link
 from app.navigation import Navigation
 from app.orbit_requests import ChosenOrbit, OrbitRequests
 from app.potential_choice import PotentialChoice
+from app.pressure import this_pressure
 from app.preview_requests import Patience
 from app.separation_request import SeparationRequest
 from app.server.figures import observe_first_frame
 from app.server.left_pages import when_left
-from app.server.pressure import this_pressure
 from app.settings import current_settings
 from app.systems import SYSTEM, System
 from app.twin_request import TwinRequest

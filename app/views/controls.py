@@ -11,7 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.palette import PALETTES
-from app.server.pressure import this_pressure
+from app.pressure import this_pressure
 from app.systems import SYSTEM, System
 from app.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from app.views.wrapping import wrapping_row

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.server import pressure
-from app.server.pressure import HIGH, LONGEST_SECONDS, LOOKED_AT_EVERY, Pressure
+from app import pressure
+from app.pressure import HIGH, LONGEST_SECONDS, LOOKED_AT_EVERY, Pressure
 
 
 class Clock:
