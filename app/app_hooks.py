@@ -19,6 +19,7 @@ from app.pressure import this_pressure
 from app.server.admission import admit
 from app.server.bokeh_application import find_web_application
 from app.server.figures import FaultCounter, these_figures
+from app.server.garbage import Garbage
 from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
 from app.server.logs import set_up_logs
 from app.server.one_message import send_changes_together
@@ -43,6 +44,7 @@ def on_server_loaded(server_context: Any) -> None:
     site.sessions, site.jobs = lambda: context.sessions, shared_jobs()
     PeriodicCallback(LeftPages(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
     PeriodicCallback(_give_way, 1000.0 * pressure.LOOKED_AT_EVERY).start()
+    PeriodicCallback(Garbage(this_pressure().is_high).look, 1000.0).start()
     sys.setswitchinterval(SWITCH_SECONDS)
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
     context.io_loop.asyncio_loop.set_task_factory(asyncio.eager_task_factory)

@@ -40,7 +40,14 @@ def measure(potential: Potential, energy: float) -> str:
     shares = [np.mean(fate == channel) for channel in range(1, potential.channels + 1)]
     moved = np.mean([abs(np.mean(others.fate == k % potential.channels + 1) - shares[k - 1]) for k in range(1, len(shares) + 1)])
     apart = np.abs(others.escape_time - time)[soon & same].max()
-    cells = (f"{fate.size}", f"{same.mean():.3%}", f"{same[soon].mean():.3%}", f"{soon.mean():.1%}", f"{apart:.1e}", f"{moved:.3%}")
+    cells = (
+        f"{fate.size}",
+        f"{same.mean():.3%}",
+        f"{same[soon].mean():.3%}",
+        f"{soon.mean():.1%}",
+        f"{apart:.1e}",
+        f"{moved:.3%}",
+    )
     return f"| {potential.name} | {energy / potential.escape_energy:.2f} | {' | '.join(cells)} |"
 
 

@@ -17,7 +17,7 @@ from engine.fair_pool import FairPool, Line, Rank
 from engine.job_figures import JobFigures
 from engine.map_specs import MapSpec
 from engine.maps import LARGEST_RUN, compute_map
-from engine.orbit_batches import count_workers
+from engine.orbit_batches import computing_threads, count_workers
 from engine.result_cache import ResultCache, Sized
 from engine.room import Room
 from engine.tickets import Ticket
@@ -94,7 +94,7 @@ class Jobs:
         threads: int | None = None,
     ) -> None:
         self._executor = executor
-        self._pool = FairPool(None if threads is None else ThreadPoolExecutor(threads, thread_name_prefix="orbits"))
+        self._pool = FairPool(None if threads is None else computing_threads(threads))
         self._room = Room(most_orbits)
         self._ended = dict.fromkeys(_End, 0)
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -264,7 +264,9 @@ class Jobs:
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
         """The kept map of the same picture that has been followed longest, though not beyond t_max."""
         with self._lock:
-            candidates = [key for key in self.cache if isinstance(key, MapSpec) and replace(key, t_max=spec.t_max) == spec]
+            # By energy first, as there may be thousands of others.
+            alike = [key for key in self.cache if isinstance(key, MapSpec) and key.energy == spec.energy]
+            candidates = [key for key in alike if replace(key, t_max=spec.t_max) == spec]
             earlier = [key for key in candidates if key.t_max <= spec.t_max]
             kept = self.cache.get(max(earlier, key=lambda key: key.t_max)) if earlier else None
             return kept if kept is not None and kept.batch is not None else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
@@ -35,10 +36,25 @@ def count_cores() -> int:
     return count() or 1
 
 
+# Of threads that compute: where they compete with others, they get a tenth of a processor.
+_NICENESS = 10
+
+
 @cache
 def default_executor() -> ThreadPoolExecutor:
     """The one bounded pool of this process: a thread for each core it may use; kernels hold no GIL."""
-    return ThreadPoolExecutor(count_cores(), thread_name_prefix="orbits")
+    return computing_threads(count_cores())
+
+
+def computing_threads(count: int) -> ThreadPoolExecutor:
+    """So many threads for kernels, which leave the processors to those of this process that answer people."""
+    return ThreadPoolExecutor(count, thread_name_prefix="orbits", initializer=_leave_first_turn_to_others)
+
+
+def _leave_first_turn_to_others() -> None:
+    # Elsewhere priorities belong to whole processes.
+    if sys.platform == "linux":
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
 
 
 def count_workers(executor: Executor) -> int:

@@ -146,7 +146,8 @@ class Controls:
             self.case.value = self._case()
             self._actions.choose_potential()
         else:
-            self.state.show_system(System(case))
+            with pn.io.hold():
+                self.state.show_system(System(case))
 
     def _case(self) -> str:
         """The button of the system in view."""
@@ -154,7 +155,8 @@ class Controls:
 
     def _take_plane(self, plane: Plane) -> None:
         if plane != self.state.plane:
-            self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
+            with pn.io.hold():
+                self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
 
     def _take_slid_energy(self, event: Any) -> None:
         # The slider stands at its end for an energy typed beyond it, and passes others in a sweep: no wish to go there.
