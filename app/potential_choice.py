@@ -47,7 +47,8 @@ class PotentialChoice:
             self._request.cancel()
             self.panel.say(str(error))
             return
-        self._proposed = system, take
+        # The last letter may be heard after Enter.
+        self._proposed = system, take or self._proposed == (system, True)
         if potential in self._reviewed:
             self._show(self._reviewed[potential])
         else:
@@ -61,6 +62,7 @@ class PotentialChoice:
         if self._proposed is None:
             return
         system, take = self._proposed
+        self._proposed = system, False
         problem = refusal(found)
         self.panel.show(found, problem)
         if take and problem is None:

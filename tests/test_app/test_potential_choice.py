@@ -104,3 +104,9 @@ def test_to_begin_typing_the_formula_in_view_is_there(choice: PotentialChoice) -
     state = state_of(choice)
     wait_for(lambda: state.case == TYPED)
     assert state.potential == CASES["I"]
+
+
+def test_the_last_letter_may_be_heard_after_enter(choice: PotentialChoice) -> None:
+    choice.panel.formula.value = "½(x² + y²) − 0.6x²y²"
+    choice.panel.formula.value_input = "½(x² + y²) − 0.6x²y²"
+    wait_for(lambda: state_of(choice).system.case == "typed")
