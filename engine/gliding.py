@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.orbit_batches import LANES, count_workers, default_executor
+from engine.orbit_batches import LANES, count_workers, default_executor, is_set
 from engine.potentials import Potential
 from engine.taylor.loop import VECTOR
 
@@ -43,7 +43,7 @@ def glide(
 
     for begin in range(0, len(states), LANES):
         collect(ahead - 1)
-        if cancel is not None and cancel.is_set():
+        if is_set(cancel):
             break
         lanes = min(LANES, -(-(len(states) - begin) // VECTOR) * VECTOR)
         tile = states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

@@ -15,7 +15,7 @@ from engine.escape_maps import EscapeMap, anchors, find_interior
 from engine.fates import Fate
 from engine.lyapunov_orbits import closed_curves, exit_curves
 from engine.map_specs import MapSpec
-from engine.orbit_batches import OrbitBatch, carry_on
+from engine.orbit_batches import OrbitBatch, carry_on, is_set
 from engine.outcomes import Outcomes, read_outcomes
 from engine.planes import Plane, find_mirror_images
 
@@ -181,7 +181,7 @@ def carry_through(
     """Take a run through all its stages; `publish(stage_over)` is called whenever there may be news."""
     spec = run.spec
     for pixels, stride, horizon in run.stages():
-        if cancel is not None and cancel.is_set():
+        if is_set(cancel):
             break
         if spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= run.horizon:
             run.certify(executor, cancel, lambda: publish(False))

@@ -15,6 +15,7 @@ from engine.escape_maps import IMAGES, EscapeMap
 from engine.fates import Fate
 from engine.map_runs import MapRun, carry_through
 from engine.map_specs import MapSpec
+from engine.orbit_batches import is_set
 from engine.row_bands import row_bands
 from engine.trust_maps import compute_trust
 
@@ -135,7 +136,7 @@ def _compute_in_bands(
         for name in IMAGES:
             getattr(canvas, name)[rows] = getattr(part, name)
         done += rows.size
-        stopped = cancel is not None and cancel.is_set()
+        stopped = is_set(cancel)
         canvas = replace(canvas, progress=done / spec.resolution[1], horizon=part.horizon)
         if stopped:
             break

@@ -17,6 +17,7 @@ from engine.fates import CHAOS_THRESHOLD, Fate, Regularity
 from engine.gliding import glide
 from engine.kernels import glide_step, kernels_of
 from engine.map_specs import MapSpec
+from engine.orbit_batches import is_set
 from engine.orbits import DEVIATION_VECTORS
 from engine.planes import find_mirror_images
 from engine.potentials import Potential
@@ -155,7 +156,7 @@ class _Judgement:
     def cancelled(self) -> bool:
         """Whether nobody waits any more."""
         cancel = self.pool["cancel"]
-        return cancel is not None and cancel.is_set()
+        return is_set(cancel)
 
     def judge(self, which: np.ndarray, character: Regularity) -> None:
         """Settle some of the orbits and leave them behind."""

@@ -17,7 +17,7 @@ from engine.fates import Fate, Trust
 from engine.lyapunov_orbits import closed_curves, exit_curves
 from engine.map_runs import CERTIFIED_FROM
 from engine.map_specs import FINEST_PIXEL, MapSpec
-from engine.orbit_batches import OrbitBatch, carry_on
+from engine.orbit_batches import OrbitBatch, carry_on, is_set
 from engine.planes import Plane, find_mirror_images
 from engine.taylor.codegen import TOLERANCE
 
@@ -240,7 +240,7 @@ class _Trial:
     def is_over(self) -> bool:
         """Whether nothing is left to test, or nobody waits any more."""
         cancel = self.pool["cancel"]
-        return not self.open.size or (cancel is not None and cancel.is_set())
+        return not self.open.size or is_set(cancel)
 
     def follow(self, horizon: float) -> None:
         """Carry all orbits of open pixels on, first the shifted ones."""

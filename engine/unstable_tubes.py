@@ -12,6 +12,7 @@ import numpy as np
 from engine.gliding import glide
 from engine.kernels import kernels_of, step_tolerance
 from engine.lyapunov_orbits import LyapunovOrbit, channel_axes, exit_curves, exit_gates
+from engine.orbit_batches import is_set
 from engine.potentials import Potential
 from engine.read_only import read_only
 from engine.taylor.dense import sample_path, trace_steps
@@ -103,7 +104,7 @@ class UnstableTube:
         horizon = most * _MOST_PERIODS * self.orbit.period - pace * math.log(self.smallest)
         arguments = (most, curves, exit_gates(curves), horizon)
         cuts = glide(_cut, self.potential, self.launch(sizes), *arguments, shape=(most, 3), executor=executor, cancel=cancel)
-        if cancel is not None and cancel.is_set():
+        if is_set(cancel):
             raise CancelledError
         cuts[:, :, 2] += pace * np.log(sizes)[:, None]
         return cuts

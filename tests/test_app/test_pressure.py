@@ -6,14 +6,7 @@ import pytest
 
 from app import pressure
 from app.pressure import HIGH, LONGEST_SECONDS, LOOKED_AT_EVERY, Pressure
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def monotonic(self) -> float:
-        return self.now
+from tests.test_app.clock import Clock
 
 
 @pytest.fixture

@@ -9,14 +9,7 @@ import pytest
 
 from app.server import garbage
 from app.server.garbage import SEARCHED_EVERY, Garbage
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def monotonic(self) -> float:
-        return self.now
+from tests.test_app.clock import Clock
 
 
 @pytest.fixture
