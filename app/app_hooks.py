@@ -25,6 +25,7 @@ from app.server.logs import set_up_logs
 from app.server.one_message import send_changes_together
 from app.server.pages import add_routes
 from app.server.preparation import prepare_in_background
+from app.server.prompt_sockets import use_prompt_sockets
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
 from app.server.site import this_site
@@ -32,8 +33,9 @@ from app.server.site import this_site
 SWITCH_SECONDS = 0.001
 """How long a thread keeps Python to itself while others wait: with Python's own 5 ms thirty visitors wait 1.7 times as long."""
 
-# Before Bokeh builds its web application from the list, as Panel puts its own pages there.
+# Before Bokeh builds its web application from the lists, as Panel puts its own pages there.
 add_routes(urls.toplevel_patterns)
+use_prompt_sockets(urls.per_app_patterns)
 
 
 def on_server_loaded(server_context: Any) -> None:

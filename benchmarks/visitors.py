@@ -11,6 +11,7 @@ import time
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, field
 from typing import Any
+from urllib.parse import parse_qsl
 
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClientConnection, websocket_connect
@@ -64,6 +65,8 @@ class Channel:
         if token is None:
             raise RuntimeError("the page has no token")
         socket = await websocket_connect(re.sub("^http", "ws", address) + "/ws", subprotocols=["bokeh", token[1]])
+        # As browsers do.
+        socket.protocol.set_nodelay(True)
         return cls(socket)
 
     def send(self, kind: str, content: dict[str, Any]) -> None:
@@ -118,6 +121,7 @@ class Visitor:
         self._models: dict[str, str] = {}
         self._case, self._plane = "I", Plane.X_PX
         self._asked: tuple[str, float] | None = None
+        self._wish: dict[str, str] = {}
         self._begun = True
         self._here = asyncio.Event()
         self._leaving = False
@@ -164,19 +168,19 @@ class Visitor:
         for move in range(1, MOVES + 1):
             self._open_channel.set(self._models["Energy h"], value=start + (stop - start) * move / MOVES)
             await asyncio.sleep(MOVE_SECONDS)
-        self._ask("slider")
+        self._ask("slider", h=repr(stop))
         self._open_channel.set(self._models["Energy h"], value=stop, value_throttled=stop)
 
     async def _act_case(self) -> None:
         cases = list(CHEAP_ENERGIES)
         self._case = self._random.choice([case for case in cases if case != self._case])
-        self._ask("case")
+        self._ask("case", case=self._case)
         self._open_channel.set(self._models["Case"], value=self._case, active=cases.index(self._case))
 
     async def _act_plane(self) -> None:
         planes = list(Plane)
         self._plane = Plane.X_Y if self._plane is Plane.X_PX else Plane.X_PX
-        self._ask("plane")
+        self._ask("plane", plane=self._plane.name.lower())
         self._open_channel.set(self._models["Plane"], value=self._plane.value, active=planes.index(self._plane))
 
     async def _act_click(self) -> None:
@@ -190,11 +194,11 @@ class Visitor:
         assert self._channel is not None, "a visitor opens the page first"
         return self._channel
 
-    def _ask(self, act: str) -> None:
-        """From now on a map is waited for."""
+    def _ask(self, act: str, **wish: str) -> None:
+        """From now on a map is waited for; `wish` is what the page's address then says of it."""
         if self._asked is not None:
             self._record.overtaken.append(time.perf_counter() - self._asked[1])
-        self._asked, self._begun = (act, time.perf_counter()), False
+        self._asked, self._wish, self._begun = (act, time.perf_counter()), wish, False
 
     def _check_patience(self) -> None:
         if self._asked is not None and time.perf_counter() - self._asked[1] > LONGEST_FRAME_SECONDS:
@@ -222,12 +226,11 @@ class Visitor:
             self._hear_patch(content)
 
     def _hear_patch(self, content: str) -> None:
-        # The page says so when it takes a request: pixels that come before belong to the last one.
-        self._begun |= "Starting …" in content or "Starting \\u2026" in content
-        if '"data"' not in content:
-            return
         for event in json.loads(content)["events"]:
             model = event.get("model", {}).get("id")
+            if event.get("attr") == "search":
+                # The address changes as the page takes a request: pixels that come before belong to the last one.
+                self._begun |= self._wish.items() <= dict(parse_qsl(event["new"].removeprefix("?"))).items()
             if event.get("attr") == "data" and model in (self._models["maps"], self._models["paths"]):
                 columns = dict(event.get("new", event.get("data"))["entries"])
                 if model == self._models["maps"]:
