@@ -22,6 +22,7 @@ from app.server.figures import FaultCounter, these_figures
 from app.server.garbage import Garbage
 from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
 from app.server.logs import set_up_logs
+from app.server.on_the_loop import stay_on_the_loop
 from app.server.one_message import send_changes_together
 from app.server.pages import add_routes
 from app.server.preparation import prepare_in_background
@@ -51,6 +52,7 @@ def on_server_loaded(server_context: Any) -> None:
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
     context.io_loop.asyncio_loop.set_task_factory(asyncio.eager_task_factory)
     send_changes_together()
+    stay_on_the_loop()
     stop_gracefully_on_sigterm(site, context.io_loop.stop)
     prepare_in_background(site)
 
