@@ -22,7 +22,7 @@ from app.server.figures import FaultCounter, these_figures
 from app.server.garbage import Garbage
 from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
 from app.server.logs import set_up_logs
-from app.server.on_the_loop import stay_on_the_loop
+from app.server.on_the_loop import answer_on_the_loop
 from app.server.one_message import send_changes_together
 from app.server.pages import add_routes
 from app.server.preparation import prepare_in_background
@@ -47,19 +47,23 @@ def on_server_loaded(server_context: Any) -> None:
     site.sessions, site.jobs = lambda: context.sessions, shared_jobs()
     PeriodicCallback(LeftPages(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
     PeriodicCallback(_give_way, 1000.0 * pressure.LOOKED_AT_EVERY).start()
-    PeriodicCallback(Garbage(this_pressure().is_high).look, 1000.0).start()
+    PeriodicCallback(Garbage(_is_waited).look, 1000.0).start()
     sys.setswitchinterval(SWITCH_SECONDS)
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
     context.io_loop.asyncio_loop.set_task_factory(asyncio.eager_task_factory)
     send_changes_together()
-    stay_on_the_loop()
+    answer_on_the_loop()
     stop_gracefully_on_sigterm(site, context.io_loop.stop)
     prepare_in_background(site)
 
 
+def _is_waited() -> bool:
+    return this_pressure().is_high() or shared_jobs().in_flight > 0
+
+
 def _give_way() -> None:
     this_pressure().tick()
-    shared_jobs().serve_first_looks_only(this_pressure().is_high())
+    shared_jobs().put_off_tiles(this_pressure().is_high())
 
 
 def on_server_unloaded(server_context: Any) -> None:

@@ -57,7 +57,12 @@ _PATIENCE_MS = 300
 def shared_jobs() -> Jobs:
     """The background work of this process, shared by all sessions."""
     settings = current_settings()
-    return Jobs(cache_bytes=settings.cache_bytes, most_orbits=settings.most_orbits, threads=settings.threads)
+    return Jobs(
+        cache_bytes=settings.cache_bytes,
+        most_orbits=settings.most_orbits,
+        threads=settings.threads,
+        only_idle=settings.only_idle,
+    )
 
 
 class Explorer:

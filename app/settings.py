@@ -56,6 +56,7 @@ def _read_framers(text: str) -> tuple[str, ...]:
     return framers
 
 
+_SWITCH = _Reading(lambda text: {"yes": True, "no": False}[text.lower()], "yes or no")
 _LOG_FORMATS = _Reading(LogFormat, "text or json")
 _FRAMERS = _Reading(_read_framers, "origins with spaces between")
 
@@ -87,6 +88,9 @@ class Settings:
         Resident memory from which on the server calls itself not ready, in bytes; 0 for no ceiling.
     threads
         Threads that compute; without it, one for each core of this process.
+    only_idle
+        Whether these run only while a processor has nothing else to do (Linux): in a crowd nobody is answered late because of
+        somebody's map, but another program that keeps all processors busy stops every map.
     log
         How a line of the log is written.
     session_seconds
@@ -105,6 +109,7 @@ class Settings:
     cache_bytes: int = _set(512 * MIB, _whole(0, 2**50))
     memory_ceiling: int = _set(0, _whole(0, 2**50))
     threads: int = _set(count_cores, _whole(1, 1024))
+    only_idle: bool = _set(False, _SWITCH)
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"reading": _LOG_FORMATS})
     session_seconds: int = _set(60, _whole(1, 86_400))
     keep_alive_seconds: int = _set(20, _whole(1, 3600))
@@ -132,7 +137,7 @@ def read_settings(environment: Mapping[str, str]) -> Settings:
             continue
         try:
             values[setting.name] = reading.read(text)
-        except ValueError:
+        except (ValueError, KeyError):
             raise ValueError(f"{variable}={reprlib.repr(text)}: must be {reading.legal}") from None
     return Settings(**values)
 

@@ -1,6 +1,6 @@
 """Many visitors at once, who drag sliders for some minutes: how long they wait, what the server needs, what stays behind.
 
-Run: uv run python -m benchmarks.load --sessions 50 --seconds 300
+Run: ESCAPE_EXPLORER_ONLY_IDLE=yes uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 300
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import sys
 import tempfile
 import time
 import urllib.request
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -102,21 +102,41 @@ def wait_until_ready(address: str, process: subprocess.Popen[bytes]) -> None:
     raise RuntimeError(f"the server was not ready within {START_SECONDS:g} s, or ended: {process.poll()}")
 
 
-async def load(server: Server, record: Record, sessions: int, seconds: float, seed: int) -> tuple[int, int, float]:
-    """Let visitors come, stay and leave; sessions while they were there and after, and processors kept busy."""
-    watching = asyncio.create_task(server.watch())
-    visitors = [Visitor(server.address, seed + place, record) for place in range(sessions)]
+@dataclass(frozen=True)
+class Outcome:
+    """What else there is to say of a load: sessions while visitors were there and after, and processors kept busy."""
+
+    there: int
+    left: int
+    busy: float
+
+
+async def load(servers: Sequence[Server], record: Record, sessions: int, seconds: float, seed: int) -> Outcome:
+    """Let visitors come, dealt out to the processes in turn, stay and leave."""
+    watching = [asyncio.create_task(server.watch()) for server in servers]
+    visitors = [Visitor(servers[place % len(servers)].address, seed + place, record) for place in range(sessions)]
     for visitor in visitors:
         await visitor.open()
-    there, used, begin = server.sessions(), server.cpu_seconds(), time.perf_counter()
+    there, used, begin = count_sessions(servers), count_cpu_seconds(servers), time.perf_counter()
     await asyncio.gather(*(visitor.stay(begin + seconds) for visitor in visitors))
-    busy = (server.cpu_seconds() - used) / (time.perf_counter() - begin)
+    busy = (count_cpu_seconds(servers) - used) / (time.perf_counter() - begin)
     await asyncio.gather(*(visitor.leave() for visitor in visitors))
     last = time.perf_counter() + REST_SECONDS
-    while (left := await asyncio.to_thread(server.sessions)) and time.perf_counter() < last:
+    while (left := await asyncio.to_thread(count_sessions, servers)) and time.perf_counter() < last:
         await asyncio.sleep(1.0)
-    watching.cancel()
-    return there, left, busy
+    for task in watching:
+        task.cancel()
+    return Outcome(there, left, busy)
+
+
+def count_sessions(servers: Sequence[Server]) -> int:
+    """Of all processes together."""
+    return sum(server.sessions() for server in servers)
+
+
+def count_cpu_seconds(servers: Sequence[Server]) -> float:
+    """Of all processes together."""
+    return sum(server.cpu_seconds() for server in servers)
 
 
 def summary(times: list[float]) -> str:
@@ -128,21 +148,22 @@ def summary(times: list[float]) -> str:
     return " | ".join([str(len(times)), *(f"{figure:.2f}" for figure in figures)])
 
 
-def report(server: Server, record: Record, there: int, left: int, busy: float) -> None:
+def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
     print("| seconds to the first frame after | times | least | median | 95 % | 99 % | worst |\n|---|---|---|---|---|---|---|")
     for name, times in record.waits.items():
         print(f"| {name} | {summary(times)} |")
     print(f"| overtaken by the next wish, so far | {summary(record.overtaken)} |")
     print(f"| opening the page, one visitor at a time | {summary(record.opening)} |")
-    tenth = max(len(server.megabytes) // 10, 1)
     print(f"\nQuick looks: {record.looks}. Clicks: {record.clicks}, pictures of orbits: {record.drawn}.")
-    print(f"Processors kept busy by the server: {busy:.2f}.")
-    sizes = ", ".join(f"{size:.0f}" for size in server.megabytes[::tenth])
-    print(f"Resident memory of the server, MB: {sizes}; most {max(server.megabytes):.0f}.")
-    print(f"Sessions: {there} at once, {left} after all had left.")
+    print(f"Processors kept busy by the server: {outcome.busy:.2f}.")
+    for server in servers:
+        tenth = max(len(server.megabytes) // 10, 1)
+        sizes = ", ".join(f"{size:.0f}" for size in server.megabytes[::tenth])
+        print(f"Resident memory of a process, MB: {sizes}; most {max(server.megabytes):.0f}.")
+    print(f"Sessions: {outcome.there} at once, {outcome.left} after all had left.")
 
 
-def faults(server: Server, record: Record, left: int, ceiling: float) -> Iterator[str]:
+def faults(servers: Sequence[Server], record: Record, left: int, ceiling: float) -> Iterator[str]:
     """What may not be."""
     waits = [*(wait for times in record.waits.values() for wait in times), *record.overtaken]
     late = [wait for wait in waits if wait > LONGEST_WAIT_SECONDS]
@@ -150,11 +171,12 @@ def faults(server: Server, record: Record, left: int, ceiling: float) -> Iterato
         yield "nobody asked for anything"
     if late:
         yield f"{len(late)} of {len(waits)} waits longer than {LONGEST_WAIT_SECONDS:g} s, the worst {max(late):.2f} s"
-    errors = [*record.errors, *server.error_lines()]
+    errors = [*record.errors, *(line for server in servers for line in server.error_lines())]
     if errors:
         yield f"{len(errors)} errors, as: " + " / ".join(list(dict.fromkeys(errors))[:5])
-    if max(server.megabytes) > 1024 * ceiling:
-        yield f"{max(server.megabytes):.0f} MB of memory, more than {ceiling:g} GiB"
+    most = max(max(server.megabytes) for server in servers)
+    if most > 1024 * ceiling:
+        yield f"{most:.0f} MB of memory in a process, more than {ceiling:g} GiB"
     if left:
         yield f"{left} sessions stay behind"
 
@@ -164,14 +186,17 @@ def main() -> int:
     parser.add_argument("--sessions", type=int, default=50)
     parser.add_argument("--seconds", type=float, default=300.0)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--ceiling", type=float, default=2.0, help="of the server's resident memory, GiB")
+    parser.add_argument("--ceiling", type=float, default=2.0, help="of the resident memory of a process, GiB")
+    parser.add_argument("--processes", type=int, default=1, help="among which visitors are dealt out in turn")
     wanted = parser.parse_args()
     record = Record()
-    with tempfile.TemporaryDirectory() as folder, served(Path(folder) / "log") as server:
-        print(f"\n{wanted.sessions} visitors for {wanted.seconds:g} s, seed {wanted.seed}\n", flush=True)
-        outcome = asyncio.run(load(server, record, wanted.sessions, wanted.seconds, wanted.seed))
-        report(server, record, *outcome)
-        problems = list(faults(server, record, outcome[1], wanted.ceiling))
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
+        servers = [end.enter_context(served(Path(folder) / f"log {place}")) for place in range(wanted.processes)]
+        who = f"{wanted.sessions} visitors of {wanted.processes} processes"
+        print(f"\n{who} for {wanted.seconds:g} s, seed {wanted.seed}\n", flush=True)
+        outcome = asyncio.run(load(servers, record, wanted.sessions, wanted.seconds, wanted.seed))
+        report(servers, record, outcome)
+        problems = list(faults(servers, record, outcome.left, wanted.ceiling))
     print("\nPassed." if not problems else "\nFailed: " + "; ".join(problems) + ".")
     return 1 if problems else 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
@@ -12,17 +13,22 @@ from typing import Any, NamedTuple
 from engine.orbit_batches import count_workers, default_executor
 
 
+# While tiles are put off: how many times as long as a call has lasted the next one that lasts waits.
+_REST = 3.0
+
+
 class Rank(IntEnum):
     """What is computed before what."""
 
     FIRST_LOOK = 0
     """For somebody who sees nothing yet."""
 
-    TILE = 1
-    """A part of something larger, back within about 50 ms."""
+    WHOLE = 1
+    """All of something at once, as an orbit that was clicked; it may take a second or more, so one thread is kept free of these,
+    where there are two."""
 
-    WHOLE = 2
-    """All of something at once, which may take a second or more: one thread is kept free of these, where there are two."""
+    TILE = 2
+    """A part of something larger, back within about 50 ms: there are always more of these where many look at maps."""
 
 
 class _Task(NamedTuple):
@@ -47,8 +53,10 @@ class FairPool:
         # In the order of their turns; only those who wait for something.
         self._waiting: OrderedDict[Hashable, deque[_Task]] = OrderedDict()
         self._whole_ones = 0
-        self._first_looks_only = False
-        # Threads that came for work while there was none of the only kind that was served.
+        self._puts_off_tiles = False
+        # Until when whole ones wait while tiles are put off.
+        self._rest_until = 0.0
+        # Threads that came for work while there was none that is not put off.
         self._sent_away = 0
 
     def line(self, owner: Hashable, rank: Callable[[], Rank]) -> Line:
@@ -69,11 +77,14 @@ class FairPool:
         with self._lock:
             return sum(map(len, self._waiting.values()))
 
-    def serve_first_looks_only(self, only: bool) -> None:
-        """Leave everything else waiting, or with False take it up again: for a process that is behind with other things."""
+    def put_off_tiles(self, put_off: bool) -> None:
+        """Leave them waiting, or with False take them up again: for a process that is behind with other things.
+
+        Meanwhile calls that last have a quarter of a thread. To be called again and again, every tenth of a second or so.
+        """
         with self._lock:
-            self._first_looks_only = only
-            again = 0 if only else self._sent_away
+            self._puts_off_tiles = put_off
+            again = min(1, self._sent_away) if put_off else self._sent_away
             self._sent_away -= again
         for _ in range(again):
             self._pool.submit(self._serve)
@@ -100,23 +111,26 @@ class FairPool:
             chosen = self._choose()
             if chosen is None:
                 # Whoever ends a call that lasts comes for the next of these.
-                self._sent_away += self._first_looks_only
+                self._sent_away += self._puts_off_tiles
                 return
         task, rank = chosen
+        begun = time.monotonic()
         try:
             _carry_out(task)
         finally:
             if rank is Rank.WHOLE:
                 with self._lock:
                     self._whole_ones -= 1
+                    now = time.monotonic()
+                    self._rest_until = now + _REST * (now - begun)
                 self._pool.submit(self._serve)
 
     def _choose(self) -> tuple[_Task, Rank] | None:
         for rank in Rank:
-            if rank is not Rank.FIRST_LOOK and self._first_looks_only:
-                return None
-            if rank is Rank.WHOLE and self._whole_ones >= max(self.threads - 1, 1):
-                return None
+            if rank is Rank.TILE and self._puts_off_tiles:
+                continue
+            if rank is Rank.WHOLE and not self._has_room_for_whole_ones():
+                continue
             for owner, tasks in self._waiting.items():
                 for task in tasks:
                     if task.line.rank() is rank:
@@ -126,6 +140,11 @@ class FairPool:
                         self._whole_ones += rank is Rank.WHOLE
                         return task, rank
         return None
+
+    def _has_room_for_whole_ones(self) -> bool:
+        if self._puts_off_tiles:
+            return self._whole_ones == 0 and time.monotonic() >= self._rest_until
+        return self._whole_ones < max(self.threads - 1, 1)
 
     def _take_out(self, task: _Task) -> None:
         tasks = self._waiting[task.line.owner]

@@ -84,6 +84,8 @@ class Jobs:
         Of all large jobs under way together, which bounds the memory that they hold, by about 120 bytes an orbit.
     threads
         Of a pool of its own; None for that of this process.
+    only_idle
+        Whether that pool of its own takes no more than what the processors have left (`computing_threads`).
     """
 
     def __init__(
@@ -92,9 +94,10 @@ class Jobs:
         cache_bytes: int = DEFAULT_CACHE_BYTES,
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
+        only_idle: bool = False,
     ) -> None:
         self._executor = executor
-        self._pool = FairPool(None if threads is None else computing_threads(threads))
+        self._pool = FairPool(None if threads is None else computing_threads(threads, only_idle=only_idle))
         self._room = Room(most_orbits)
         self._ended = dict.fromkeys(_End, 0)
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -157,9 +160,9 @@ class Jobs:
             threads=count_workers(self._executor) if self._executor is not None else self._pool.threads,
         )
 
-    def serve_first_looks_only(self, only: bool) -> None:
-        """Whether, of the calls to this pool, those for first frames of maps alone are served; the others wait, however long."""
-        self._pool.serve_first_looks_only(only)
+    def put_off_tiles(self, put_off: bool) -> None:
+        """Whether what makes pictures finer, and quick looks, wait, however long; first frames and orbits do not."""
+        self._pool.put_off_tiles(put_off)
 
     def stop(self) -> None:
         """Stop all jobs, within about 0.2 s; those who wait for them hear nothing any more."""

@@ -46,15 +46,31 @@ def default_executor() -> ThreadPoolExecutor:
     return computing_threads(count_cores())
 
 
-def computing_threads(count: int) -> ThreadPoolExecutor:
-    """So many threads for kernels, which leave the processors to those of this process that answer people."""
-    return ThreadPoolExecutor(count, thread_name_prefix="orbits", initializer=_leave_first_turn_to_others)
+def computing_threads(count: int, *, only_idle: bool = False) -> ThreadPoolExecutor:
+    """So many threads for kernels, which leave the processors to those of this process that answer people.
+
+    Parameters
+    ----------
+    count
+        At least 1.
+    only_idle
+        Whether they run only while a processor has nothing else to do, where the system is Linux: whoever answers people then
+        never waits for them, but any other program that keeps all processors busy stops them. Without it they have
+        a tenth of a processor at least.
+    """
+    manners = _take_what_is_left if only_idle else _take_little
+    return ThreadPoolExecutor(count, thread_name_prefix="orbits", initializer=manners)
 
 
-def _leave_first_turn_to_others() -> None:
+def _take_little() -> None:
     # Elsewhere priorities belong to whole processes.
     if sys.platform == "linux":
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
+
+
+def _take_what_is_left() -> None:
+    if sys.platform == "linux":
+        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
 
 
 def count_workers(executor: Executor) -> int:

@@ -3,6 +3,9 @@
 Bokeh sends a message for each change, and goes through all models of the page for each message: the first frame of a map is 17
 changes, 16 ms of work as many messages and 3 ms as one; and the browser paints once. The protocol has room for any number of
 changes in a message.
+
+Bokeh also hands the writing of them to a thread and waits for it, which gains nothing where Python's lock is what everybody waits
+for.
 """
 
 from __future__ import annotations
@@ -14,20 +17,26 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
-from bokeh.server import session
+from bokeh.server.session import ServerSession
 
 log = logging.getLogger(f"bokeh.{__name__}")
 
 # Bokeh has no public place for it; in a version without this one everything works as Bokeh has it.
-_SERIALIZER = "_serialize_patches"
+_SENDS = "_send_pending_patches"
 
 
 def send_changes_together() -> None:
     """From now on, in this process."""
-    if hasattr(session, _SERIALIZER):
-        setattr(session, _SERIALIZER, serialize_together)
+    if hasattr(ServerSession, _SENDS):
+        setattr(ServerSession, _SENDS, _send)
     else:
         log.warning("this version of Bokeh sends a message for each change")
+
+
+async def _send(session: ServerSession, pending: Sequence[Any]) -> None:
+    for message, connections in serialize_together(pending):
+        for connection in connections:
+            await connection.send_message(message)
 
 
 def serialize_together(pending: Sequence[Any]) -> list[tuple[Any, Any]]:

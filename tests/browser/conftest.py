@@ -64,6 +64,16 @@ class Watch:
 @pytest.fixture
 def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
     """Opens the page, or a link to a view, in a visitor of its own, at a given width and height of the screen."""
+    yield from _opening(chromium, server)
+
+
+@pytest.fixture(scope="module")
+def open_for_all(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
+    """The same for a page that all tests of a file share, as none of them changes what it shows."""
+    yield from _opening(chromium, server)
+
+
+def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
     contexts: list[BrowserContext] = []
     watches: list[Watch] = []
 

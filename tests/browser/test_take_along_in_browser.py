@@ -19,9 +19,9 @@ from tests.browser.explorer_page import ExplorerPage
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=113&orbits=0.1,0.2;0.1,-0.3"
 
 
-@pytest.fixture
-def small(open_explorer: Callable[..., ExplorerPage]) -> ExplorerPage:
-    explorer = open_explorer(link=SMALL)
+@pytest.fixture(scope="module")
+def small(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    explorer = open_for_all(link=SMALL)
     explorer.wait_for_data("paths", "data.xs.length == 2")
     return explorer
 

@@ -113,16 +113,24 @@ def test_what_waits_is_counted() -> None:
     assert stage.pool.waiting == 0
 
 
-def test_while_it_is_told_so_it_serves_first_looks_only() -> None:
+def test_while_it_is_told_so_it_puts_off_tiles() -> None:
     stage = Stage(threads=2)
-    stage.pool.serve_first_looks_only(True)
-    others = [*stage.ask(stage.line("a"), "a1", "a2"), *stage.ask(stage.line("c", lambda: Rank.WHOLE), "c1")]
-    looks = stage.ask(stage.line("b", lambda: Rank.FIRST_LOOK), "b1")
-    assert stage.play(*looks) == ["b1"]
-    assert not wait(others, 0.2).done
-    stage.pool.serve_first_looks_only(False)
+    stage.pool.put_off_tiles(True)
+    tiles = stage.ask(stage.line("a"), "a1", "a2")
+    others = [*stage.ask(stage.line("b", lambda: Rank.FIRST_LOOK), "b1"), *stage.ask(stage.line("c", lambda: Rank.WHOLE), "c1")]
+    stage.curtain.set()
     assert not wait(others, SECONDS).not_done
-    assert sorted(stage.order) == ["a1", "a2", "b1", "c1"]
+    assert sorted(stage.order) == ["b1", "c1"]
+    assert not wait(tiles, 0.2).done
+    stage.pool.put_off_tiles(False)
+    assert not wait(tiles, SECONDS).not_done
+
+
+def test_what_was_clicked_comes_before_what_makes_pictures_finer() -> None:
+    stage = Stage()
+    tiles = stage.ask(stage.line("a"), "a1", "a2")
+    orbits = stage.ask(stage.line("b", lambda: Rank.WHOLE), "b1")
+    assert stage.play(*tiles, *orbits) == ["b1", "a1", "a2"]
 
 
 def test_calls_that_nobody_has_taken_up_can_be_dropped() -> None:

@@ -276,17 +276,17 @@ def test_a_wish_that_cannot_be_had_is_refused_in_the_background() -> None:
 
 def test_a_process_that_is_behind_still_gives_first_frames() -> None:
     jobs, inbox = Jobs(threads=2), Inbox()
-    jobs.serve_first_looks_only(True)
+    jobs.put_off_tiles(True)
     jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
     assert inbox.first.wait(30)
     assert not inbox.done.wait(0.5)
-    jobs.serve_first_looks_only(False)
+    jobs.put_off_tiles(False)
     assert inbox.done.wait(60)
 
 
 def test_a_map_that_is_cancelled_while_it_is_held_up_ends_at_once() -> None:
     jobs, inbox = Jobs(threads=2), Inbox()
-    jobs.serve_first_looks_only(True)
+    jobs.put_off_tiles(True)
     ticket = jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
     assert inbox.first.wait(30)
     ticket.cancel()

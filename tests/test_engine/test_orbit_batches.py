@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import os
+import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -7,7 +9,7 @@ import pytest
 
 from engine import CASES, Fate, Plane, start_states
 from engine.lyapunov_orbits import exit_curves
-from engine.orbit_batches import OrbitBatch, carry_on, default_executor
+from engine.orbit_batches import OrbitBatch, carry_on, computing_threads, default_executor
 
 POTENTIAL, ENERGY = CASES["III"], 0.4
 
@@ -68,3 +70,10 @@ def test_an_error_in_a_worker_reaches_the_caller(batch: OrbitBatch, curves: np.n
 
 def test_there_is_one_pool_in_the_process() -> None:
     assert default_executor() is default_executor()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere priorities belong to whole processes")
+def test_threads_can_take_what_the_processors_have_left() -> None:
+    with computing_threads(1) as usual, computing_threads(1, only_idle=True) as modest:
+        assert usual.submit(os.sched_getscheduler, 0).result() == os.SCHED_OTHER
+        assert modest.submit(os.sched_getscheduler, 0).result() == os.SCHED_IDLE

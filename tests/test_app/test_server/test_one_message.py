@@ -9,7 +9,7 @@ from bokeh.document import Document
 from bokeh.document.events import DocumentPatchedEvent
 from bokeh.models import Range1d
 from bokeh.protocol import Protocol
-from bokeh.server import session
+from bokeh.server.session import ServerSession
 
 from app.server.one_message import send_changes_together, serialize_together
 
@@ -61,9 +61,9 @@ def test_what_goes_elsewhere_is_another_message() -> None:
 
 
 def test_bokeh_has_the_place_for_it() -> None:
-    before = session._serialize_patches
+    before = ServerSession._send_pending_patches
     try:
         send_changes_together()
-        assert session._serialize_patches is serialize_together  # type: ignore[comparison-overlap]
+        assert ServerSession._send_pending_patches is not before
     finally:
-        session._serialize_patches = before
+        ServerSession._send_pending_patches = before  # type: ignore[method-assign]
