@@ -24,6 +24,7 @@ ENV PATH=/opt/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     PYTHONDONTWRITEBYTECODE=1 \
     ESCAPE_EXPLORER_ONLY_IDLE=yes \
+    MALLOC_ARENA_MAX=2 \
     ESCAPE_EXPLORER_CACHE=/var/cache/escape-explorer \
     MPLCONFIGDIR=/var/cache/escape-explorer/matplotlib
 # Whose pages may talk to this server besides its own, as behind a proxy that renames it: host:port, with commas between.

@@ -285,7 +285,8 @@ class Explorer:
             self.panes.show(self.state.potential, there, chosen)
             looked_at = there[chosen] if orbits else None
             self.time_bar.follow(float(looked_at.orbit.t[-1]) if looked_at is not None else None)
-            self.orbit_row.follow(sum(one is not None for one in there))
+            # Those on their way, too: panes that went and came at each energy would cost four times what the orbits do.
+            self.orbit_row.follow(sum(not one.problem for one in orbits))
             self.separation.follow(orbits)
             self.indicators.follow(orbits)
             self.take_along.show_orbits(orbits)

@@ -1,4 +1,4 @@
-"""How far the server is behind with its visitors' messages: while it is, only those who see nothing yet are computed for."""
+"""How far the server is behind with its visitors' messages: while it is, finer pictures and quick looks wait."""
 
 from __future__ import annotations
 

@@ -26,25 +26,29 @@ class Bench:
         Set when nobody waits for the job any more.
     publish
         Hands a result on that is not complete yet.
-    map_at_hand
-        The map of a request, finished: kept, or computed for the purpose, or None when cancelled.
-    answer
-        What another request of `engine.job_specs` comes to: kept, or made for the purpose.
+    find_map
+        On a bench, the map of a request, finished: kept, or computed for the purpose, or None when cancelled.
+    find_answer
+        On a bench, what another request of `engine.job_specs` comes to: kept, or made for the purpose.
     """
 
     executor: Executor
     call_executor: Executor
     cancel: threading.Event
     publish: Callable[[Any], None]
-    map_at_hand: Callable[[MapSpec], EscapeMap | None]
-    answer: Callable[[Any], Any]
+    find_map: Callable[[Bench, MapSpec], EscapeMap | None]
+    find_answer: Callable[[Bench, Any], Any]
 
     def whole_map(self, spec: MapSpec) -> EscapeMap:
         """The map of a request, finished. Raises CancelledError when nobody waits for it any more."""
-        whole = self.map_at_hand(spec)
+        whole = self.find_map(self, spec)
         if whole is None:
             raise CancelledError
         return whole
+
+    def answer(self, spec: Any) -> Any:
+        """What another request of `engine.job_specs` comes to."""
+        return self.find_answer(self, spec)
 
     def on_pool[Result](self, compute: Callable[..., Result], *arguments: Any, **options: Any) -> Result:
         """What one call comes to, made by a thread that is there for computing."""

@@ -14,7 +14,7 @@ from engine.orbit_batches import count_workers, default_executor
 
 
 # While tiles are put off: how many times as long as a call has lasted the next one that lasts waits.
-_REST = 3.0
+_REST = 9.0
 
 
 class Rank(IntEnum):
@@ -80,7 +80,7 @@ class FairPool:
     def put_off_tiles(self, put_off: bool) -> None:
         """Leave them waiting, or with False take them up again: for a process that is behind with other things.
 
-        Meanwhile calls that last have a quarter of a thread. To be called again and again, every tenth of a second or so.
+        Meanwhile calls that last have a tenth of a thread. To be called again and again, every tenth of a second or so.
         """
         with self._lock:
             self._puts_off_tiles = put_off

@@ -67,6 +67,11 @@ class _Job:
         for line in self.lines:
             line.drop()
 
+    def empty(self) -> list[Ticket]:
+        """It is over: let go of all that refers to it, so that its memory is free at once, and return its tickets."""
+        tickets, self.tickets, self.lines, self.latest = self.tickets, [], [], None
+        return tickets
+
     def rank(self) -> Rank:
         return Rank.FIRST_LOOK if self.looked_for and self.latest is None else Rank.TILE
 
@@ -224,7 +229,7 @@ class Jobs:
                 self.cache.put(job.key, result)
             if self._in_flight.get(job.key) is job:
                 del self._in_flight[job.key]
-            tickets = list(job.tickets)
+            tickets = job.empty()
             self._ended[_End.FAILED if error else _End.CANCELLED if job.cancel.is_set() else _End.DONE] += 1
         for ticket in tickets:
             if error is not None:
@@ -233,23 +238,22 @@ class Jobs:
                 ticket.deliver(result, last=True)
 
     def _bench(self, job: _Job) -> Bench:
-        def answer(spec: JobSpec[Any]) -> Any:
-            kept = self.cache.get(spec)
-            if kept is None or not getattr(kept, "complete", True):
-                kept = spec.run(bench)
-                self.cache.put(spec, kept)
-            return kept
-
-        def map_at_hand(spec: MapSpec) -> EscapeMap | None:
-            whole: EscapeMap | None = self.cache.get(spec)
-            if whole is None or not whole.complete:
-                whole = self._compute_map(spec, bench, on_frame=None)
-            return whole if whole.complete else None
-
         job.lines = [self._pool.line(job.owner, rank) for rank in (job.rank, lambda: Rank.WHOLE)]
         tiles, calls = (self._executor or line for line in job.lines)
-        bench = Bench(tiles, calls, job.cancel, partial(self._publish, job), map_at_hand, answer)
-        return bench
+        return Bench(tiles, calls, job.cancel, partial(self._publish, job), self._find_map, self._find_answer)
+
+    def _find_answer(self, bench: Bench, spec: JobSpec[Any]) -> Any:
+        kept = self.cache.get(spec)
+        if kept is None or not getattr(kept, "complete", True):
+            kept = spec.run(bench)
+            self.cache.put(spec, kept)
+        return kept
+
+    def _find_map(self, bench: Bench, spec: MapSpec) -> EscapeMap | None:
+        whole: EscapeMap | None = self.cache.get(spec)
+        if whole is None or not whole.complete:
+            whole = self._compute_map(spec, bench, on_frame=None)
+        return whole if whole.complete else None
 
     def _compute_map(self, spec: MapSpec, bench: Bench, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
         return compute_map(spec, on_frame, bench.cancel, bench.executor, resume=self._find_resumable(spec))

@@ -51,6 +51,8 @@ class OrbitPanes:
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._drawings: list[tuple[int, OrbitDrawing]] = []
         self._palette = PAPER
+        # Of which energy there are curves, as several orbits share theirs.
+        self._outlined: tuple[Potential, float, Palette] | None = None
         self._draw()
         self.set_palette(PAPER)
 
@@ -123,7 +125,10 @@ class OrbitPanes:
             return
         drawn = self._drawings[-1][1]
         window, (x, y) = drawn.window, (self.path.x_range, self.path.y_range)
-        self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))
+        outlined = (potential, drawn.orbit.energy, self._palette)
+        if outlined != self._outlined:
+            self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))
+            self._outlined = outlined
         for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
             set_range(edges, low, high)
         lines = [_NO_LINE if one.visits is not None else (one.orbit.x, one.orbit.y) for _, one in self._drawings]

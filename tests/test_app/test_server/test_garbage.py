@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Iterator
+from weakref import ref
 
 import pytest
 
 from app.server import garbage
-from app.server.garbage import SEARCHED_EVERY, Garbage
+from app.server.garbage import QUIET_SECONDS, SEARCHED_EVERY, Garbage
 from tests.test_app.clock import Clock
 
 
@@ -18,6 +19,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[Clock]:
     monkeypatch.setattr(garbage, "time", made)
     yield made
     gc.set_threshold(*thresholds)
+    gc.unfreeze()
 
 
 def searches() -> int:
@@ -42,6 +44,36 @@ def test_while_somebody_waits_it_is_put_off_but_not_for_ever(clock: Clock) -> No
     clock.now += 9.0 * SEARCHED_EVERY
     search.look()
     assert searches() == before + 1
+
+
+def test_a_moment_without_anybody_is_not_quiet(clock: Clock) -> None:
+    waited = [True]
+    search, before = Garbage(lambda: waited[0]), searches()
+    clock.now += SEARCHED_EVERY
+    search.look()
+    waited[0] = False
+    clock.now += 0.9 * QUIET_SECONDS
+    search.look()
+    assert searches() == before
+    clock.now += 0.2 * QUIET_SECONDS
+    search.look()
+    assert searches() == before + 1
+
+
+def test_what_lasts_is_left_out_of_searches_by_others_and_found_by_ours(clock: Clock) -> None:
+    class Loop:
+        def __init__(self) -> None:
+            self.itself = self
+
+    search = Garbage(lambda: False)
+    left = ref(Loop())
+    clock.now += 31.0
+    search.look()
+    gc.collect()
+    assert left() is not None
+    clock.now += SEARCHED_EVERY
+    search.look()
+    assert left() is None
 
 
 def test_old_objects_are_not_searched_by_count(clock: Clock) -> None:
