@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import threading
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from app.locking import Locked
@@ -55,6 +56,7 @@ class Controller:
         self._go_on = locked(self._prepared)
         self._whole_map: EscapeMap | None = None
         self._generation = 0
+        self._handing_over = threading.RLock()
         self._compiling = False
         # Of the request of which something has been sent to the page.
         self._sent = -1
@@ -69,15 +71,14 @@ class Controller:
         """Ask for the map in view; whatever was on its way for this session is cancelled."""
         self.previews.cancel()
         self.cancel_map()
-        self._generation += 1
-        generation = self._generation
+        generation = self._want_another()
         self._compiling = not is_ready_for_maps(self._state.potential)
         self._listener.map_requested(compiling=self._compiling)
         # In the background, as even a map's window hangs on the exits, which it takes an integrator to find.
         self._map_ticket = self._jobs.request(
             PreparationSpec(self._state.map_wish()),
-            lambda prepared: self._go_on(generation, prepared.map_spec),
-            lambda error: self._show_map_problem(generation, error),
+            lambda prepared: self._hand_over(self._go_on, generation, prepared.map_spec),
+            lambda error: self._hand_over(self._show_map_problem, generation, error),
         )
 
     def _prepared(self, generation: int, spec: MapSpec) -> None:
@@ -88,22 +89,35 @@ class Controller:
         self._map_ticket = self._jobs.request_map(
             spec,
             lambda frame: self._send(generation, frame),
-            lambda error: self._show_map_problem(generation, error),
+            lambda error: self._hand_over(self._show_map_problem, generation, error),
         )
 
     def _send(self, generation: int, frame: EscapeMap) -> None:
         """Hand a frame on; only the first and the last one where many wait for theirs."""
         if self._sent == generation and not frame.complete and self._patience.is_pressed():
             return
+        columns = map_columns(frame, characters=self._state.judge)
+        self._hand_over(self._show_map, generation, frame, columns)
         self._sent = generation
-        self._show_map(generation, frame, map_columns(frame, characters=self._state.judge))
+
+    def _want_another(self) -> int:
+        """From now on nothing is shown of what has been asked for before."""
+        with self._handing_over:
+            self._generation += 1
+            return self._generation
+
+    def _hand_over(self, receive: Callable[..., None], generation: int, *what: Any) -> None:
+        """To the session, which keeps the latest only: what is late must not take the place of what is wanted now."""
+        with self._handing_over:
+            if generation == self._generation:
+                receive(generation, *what)
 
     def request_preview(self, energy: float) -> None:
         """Look quickly at another energy; the map on its way is cancelled, as its energy is not looked at any more."""
         if not is_ready_for_maps(self._state.potential):
             return
         self.cancel_map()
-        self._generation += 1
+        self._want_another()
         self.previews.request(energy)
 
     def cancel_map(self) -> None:
@@ -119,12 +133,12 @@ class Controller:
         if self._whole_map is not None:
             return
         self.cancel_map()
-        self._generation += 1
+        self._want_another()
         self._listener.map_stopped()
 
     def close(self, *_: Any) -> None:
         """The session is over: nobody waits for its jobs any more."""
-        self._generation += 1
+        self._want_another()
         self.cancel_map()
         self.previews.cancel()
 

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 from engine.orbit_batches import count_workers, default_executor
 
-
 # While tiles are put off: how many times as long as a call has lasted the next one that lasts waits.
 _REST = 9.0
 

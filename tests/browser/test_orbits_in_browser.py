@@ -34,6 +34,23 @@ def test_five_orbits_are_kept_and_marked_in_their_colours(explorer: ExplorerPage
         )
 
 
+def test_panes_stay_in_their_place_while_their_orbits_are_on_their_way(explorer: ExplorerPage) -> None:
+    explorer.click("basins", *STARTS[0])
+    explorer.wait_for_data("paths", "data.xs.length == 1")
+    explorer.page.evaluate("() => { window.gone = 0 }")
+    explorer.page.evaluate(
+        """() => {
+            const view = [...Bokeh.index.all_views()].find(view => view.model.name == 'exponent')
+            const look = () => { window.gone += !view.el.isConnected; requestAnimationFrame(look) }
+            look()
+        }"""
+    )
+    end = explorer.model_data("paths")["xs"][0][-1]
+    explorer.drag_energy_to(0.7)
+    explorer.wait_for_data("paths", f"data.xs.length == 1 && data.xs[0].at(-1) != {end}")
+    assert explorer.page.evaluate("() => window.gone") == 0
+
+
 def test_a_sixth_start_takes_the_first_place(explorer: ExplorerPage) -> None:
     click_all(explorer, STARTS)
     explorer.click("basins", 0.3, 0.1)

@@ -11,7 +11,8 @@ import pytest
 
 from app.controller import Controller
 from app.view_state import ViewState
-from engine import EscapeMap, Jobs
+from engine import CASES, EscapeMap, Jobs, MapSpec, Plane, Ticket, compute_map
+from engine.job_specs import Preparation
 
 
 class Recorder:
@@ -84,6 +85,52 @@ def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> N
     recorder.wait_for(lambda: recorder.complete() and recorder.last_frame().spec.energy == 0.33)  # type: ignore[union-attr]
     seen = [value.spec.energy for what, value in recorder.told if what == "map arrived"]
     assert seen == sorted(seen)
+
+
+class Latest:
+    """A session that comes to what it is told later, and knows the latest only."""
+
+    def __init__(self) -> None:
+        self.told: dict[Callable[..., None], tuple[Any, ...]] = {}
+
+    def locked(self, receive: Callable[..., None]) -> Callable[..., None]:
+        return lambda *what: self.told.update({receive: what})
+
+    def come_to_it(self) -> None:
+        while self.told:
+            receive, what = self.told.popitem()
+            receive(*what)
+
+
+class Asked:
+    """Requests that are answered by the test."""
+
+    def __init__(self) -> None:
+        self.listeners: list[Callable[[Any], None]] = []
+
+    def request_map(self, spec: MapSpec, on_frame: Callable[[Any], None], on_error: Callable[[Exception], None]) -> Ticket:
+        return self.request(spec, on_frame, on_error)
+
+    def request(self, spec: Any, on_result: Callable[[Any], None], on_error: Callable[[Exception], None]) -> Ticket:
+        self.listeners.append(on_result)
+        return Ticket(lambda ticket: None, on_result, on_error)
+
+
+def test_what_comes_too_late_does_not_take_the_place_of_what_is_wanted() -> None:
+    state, recorder, asked, session = ViewState(case="I"), Recorder(), Asked(), Latest()
+    controller = Controller(state, asked, recorder, session.locked)
+    specs = [MapSpec(CASES["I"], Plane.X_PX, energy, (8, 8), t_max=10.0) for energy in (0.3, 0.31)]
+    for spec in specs:
+        controller.request_map()
+        asked.listeners[-1](Preparation(spec))
+        session.come_to_it()
+    _, late, _, wanted = asked.listeners
+    wanted(compute_map(specs[1]))
+    late(compute_map(specs[0]))
+    session.come_to_it()
+    frame = recorder.last_frame()
+    assert frame is not None
+    assert frame.spec == specs[1]
 
 
 def test_cancelling_stops_the_job_and_going_on_finishes_it(session: Session) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -292,3 +294,21 @@ def test_a_map_that_is_cancelled_while_it_is_held_up_ends_at_once() -> None:
     ticket.cancel()
     wait_until_idle(jobs)
     assert jobs.figures().calls_waiting == 0
+
+
+def test_a_job_that_is_over_leaves_nothing_to_search_for() -> None:
+    jobs, inbox = Jobs(cache_bytes=0), Inbox()
+    gc.collect()
+    gc.disable()
+    try:
+        jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
+        assert inbox.done.wait(60)
+        wait_until_idle(jobs)
+        frames = [ref(frame) for frame in inbox.results]
+        inbox.results.clear()
+        end = time.monotonic() + 10.0
+        while any(frame() is not None for frame in frames) and time.monotonic() < end:
+            time.sleep(0.01)
+        assert [frame for frame in frames if frame() is not None] == []
+    finally:
+        gc.enable()
