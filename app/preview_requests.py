@@ -89,9 +89,14 @@ class PreviewRequests:
         self._under_way = energy
         self._ticket = self._jobs.request(
             PreviewSpec(self._state.map_wish_at(energy)),
-            lambda preview: self._arrive(energy, preview.frame, map_columns(preview.frame, characters=False)),
-            lambda error: self._arrive(energy, None, {}),
+            lambda preview: self._answer(energy, preview.frame, map_columns(preview.frame, characters=False)),
+            lambda error: self._answer(energy, None, {}),
         )
+
+    def _answer(self, energy: float, frame: EscapeMap | None, columns: dict[str, list[Any]]) -> None:
+        # The session keeps the latest only: what is late must not take the place of what is wanted now.
+        if energy == self._under_way:
+            self._arrive(energy, frame, columns)
 
     def _arrived(self, energy: float, frame: EscapeMap | None, columns: dict[str, list[Any]]) -> None:
         if energy != self._under_way:
