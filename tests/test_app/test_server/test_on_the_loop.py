@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import threading
+from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from bokeh.document import Document
@@ -13,24 +15,27 @@ from bokeh.server.session import ServerSession
 from app.server.on_the_loop import answer_on_the_loop, call_here
 
 
-def threads_of_callbacks() -> tuple[int, int]:
+def run_elsewhere[Result](make: Callable[[], Coroutine[None, None, Result]]) -> Result:
+    """What a coroutine comes to on a loop of its own: in this thread a browser's may be running."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(lambda: asyncio.run(make())).result()
+
+
+async def threads_of_callbacks() -> tuple[int, int]:
     """Where a locked callback runs, and where the loop does."""
-
-    async def locked() -> int:
-        return await ServerSession("session", Document()).with_document_locked(threading.get_ident)  # type: ignore[arg-type, no-any-return]
-
-    return asyncio.run(locked()), threading.get_ident()
+    made = ServerSession("session", Document())  # type: ignore[arg-type]
+    return await made.with_document_locked(threading.get_ident), threading.get_ident()
 
 
 def test_bokeh_hands_callbacks_to_threads_until_it_is_told_not_to(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(session, "_run_in_executor", session._run_in_executor)
-    callback, loop = threads_of_callbacks()
+    callback, loop = run_elsewhere(threads_of_callbacks)
     assert callback != loop
     answer_on_the_loop()
-    callback, loop = threads_of_callbacks()
+    callback, loop = run_elsewhere(threads_of_callbacks)
     assert callback == loop
 
 
 def test_an_error_reaches_whoever_waits() -> None:
     with pytest.raises(ZeroDivisionError):
-        asyncio.run(call_here(divmod, 1, 0))
+        run_elsewhere(lambda: call_here(divmod, 1, 0))
