@@ -8,13 +8,13 @@ from __future__ import annotations
 import asyncio
 import logging
 import sys
+from importlib import import_module
 from typing import Any
 
 from bokeh.server import urls
 from tornado.ioloop import PeriodicCallback
 
 from app import pressure
-from app.explorer import shared_jobs
 from app.pressure import this_pressure
 from app.server.admission import admit
 from app.server.bokeh_application import find_web_application
@@ -30,9 +30,13 @@ from app.server.prompt_sockets import use_prompt_sockets
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
 from app.server.site import this_site
+from app.shared_jobs import is_waited, shared_jobs
 
 SWITCH_SECONDS = 0.001
 """How long a thread keeps Python to itself while others wait: with Python's own 5 ms thirty visitors wait 1.7 times as long."""
+
+# Before the first visitor comes, who would wait for it; where a setting is of no use, the server ends here.
+import_module("app.explorer")
 
 # Before Bokeh builds its web application from the lists, as Panel puts its own pages there.
 add_routes(urls.toplevel_patterns)
@@ -47,7 +51,7 @@ def on_server_loaded(server_context: Any) -> None:
     site.sessions, site.jobs = lambda: context.sessions, shared_jobs()
     PeriodicCallback(LeftPages(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
     PeriodicCallback(_give_way, 1000.0 * pressure.LOOKED_AT_EVERY).start()
-    PeriodicCallback(Garbage(_is_waited).look, 1000.0).start()
+    PeriodicCallback(Garbage(is_waited).look, 1000.0).start()
     sys.setswitchinterval(SWITCH_SECONDS)
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
     context.io_loop.asyncio_loop.set_task_factory(asyncio.eager_task_factory)
@@ -55,10 +59,6 @@ def on_server_loaded(server_context: Any) -> None:
     answer_on_the_loop()
     stop_gracefully_on_sigterm(site, context.io_loop.stop)
     prepare_in_background(site)
-
-
-def _is_waited() -> bool:
-    return this_pressure().is_high() or shared_jobs().in_flight > 0
 
 
 def _give_way() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import panel as pn
@@ -18,12 +18,12 @@ from app.link import LINKED, read_link, write_link
 from app.navigation import Navigation
 from app.orbit_requests import ChosenOrbit, OrbitRequests
 from app.potential_choice import PotentialChoice
-from app.pressure import this_pressure
 from app.preview_requests import Patience
 from app.separation_request import SeparationRequest
 from app.server.figures import observe_first_frame
 from app.server.left_pages import when_left
 from app.settings import current_settings
+from app.shared_jobs import is_pressed, shared_jobs
 from app.systems import SYSTEM, System
 from app.twin_request import TwinRequest
 from app.view_state import ViewState
@@ -44,25 +44,10 @@ from app.views.tour import Tour
 from app.views.words import WordsView
 from app.views.zoom_buttons import ZoomButtons
 from app.why import Why
-from engine import EscapeMap, Jobs, Plane, Visitor, Window
-
-# Parts of jobs for each thread that may wait while there are still quick looks: one visitor's map makes two.
-_MOST_WAITING = 4
+from engine import EscapeMap, Plane, Visitor, Window
 
 # Between two questions whether there is time for a quick look again.
 _PATIENCE_MS = 300
-
-
-@cache
-def shared_jobs() -> Jobs:
-    """The background work of this process, shared by all sessions."""
-    settings = current_settings()
-    return Jobs(
-        cache_bytes=settings.cache_bytes,
-        most_orbits=settings.most_orbits,
-        threads=settings.threads,
-        only_idle=settings.only_idle,
-    )
 
 
 class Explorer:
@@ -81,7 +66,7 @@ class Explorer:
         when_left(document, self._visitor.close)
         self.potential = PotentialChoice(self.state, jobs, self._locked)
         self.why = Why(self.state, jobs, self.maps, self.take_along.show_findings, self._locked)
-        patience = Patience(_is_pressed, lambda call: document.add_timeout_callback(call, _PATIENCE_MS))
+        patience = Patience(is_pressed, lambda call: document.add_timeout_callback(call, _PATIENCE_MS))
         self.controller = Controller(self.state, jobs, self, self._latest, self.why.looks(), patience)
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.twin = TwinRequest(self.state, jobs, self.desk.say, self._locked)
@@ -291,12 +276,6 @@ class Explorer:
             self.indicators.follow(orbits)
             self.take_along.show_orbits(orbits)
             self.words.show_orbits(orbits)
-
-
-def _is_pressed() -> bool:
-    """Whether many wait, for the server's words or for its threads."""
-    now = shared_jobs().figures()
-    return this_pressure().is_high() or now.calls_waiting > _MOST_WAITING * now.threads
 
 
 def _parameters() -> dict[str, str]:

@@ -7,24 +7,17 @@ comes twice as late to a visitor alone, and ten times as late to one of fifty.
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from typing import Any
 
 from bokeh.server import session
 
-log = logging.getLogger(f"bokeh.{__name__}")
-
-# Bokeh has no public place for it; in a version without this one everything works as Bokeh has it.
-_HANDS_OVER = "_run_in_executor"
+from app.server.own_ways import put_in_place
 
 
 def answer_on_the_loop() -> None:
     """From now on, in this process."""
-    if hasattr(session, _HANDS_OVER):
-        setattr(session, _HANDS_OVER, call_here)
-    else:
-        log.warning("this version of Bokeh hands callbacks to threads in a way of its own")
+    put_in_place(session, "_run_in_executor", call_here)
 
 
 async def call_here[Result](function: Callable[..., Result], *arguments: Any, **named: Any) -> Result:

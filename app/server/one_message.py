@@ -11,7 +11,6 @@ for.
 from __future__ import annotations
 
 import itertools
-import logging
 from collections.abc import Sequence
 from typing import Any
 
@@ -19,18 +18,12 @@ from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
 from bokeh.server.session import ServerSession
 
-log = logging.getLogger(f"bokeh.{__name__}")
-
-# Bokeh has no public place for it; in a version without this one everything works as Bokeh has it.
-_SENDS = "_send_pending_patches"
+from app.server.own_ways import put_in_place
 
 
 def send_changes_together() -> None:
     """From now on, in this process."""
-    if hasattr(ServerSession, _SENDS):
-        setattr(ServerSession, _SENDS, _send)
-    else:
-        log.warning("this version of Bokeh sends a message for each change")
+    put_in_place(ServerSession, "_send_pending_patches", _send)
 
 
 async def _send(session: ServerSession, pending: Sequence[Any]) -> None:
