@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import Any
 
-log = logging.getLogger(f"bokeh.{__name__}")
+log = logging.getLogger(__name__)
 
 
 def put_in_place(owner: Any, name: str, ours: Any) -> None:
