@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Sequence
+from functools import partial
 from io import BytesIO
 
 import panel as pn
@@ -74,30 +76,38 @@ class TakeAlong:
             raise ValueError(_NOTHING)
         return self._frame
 
-    def _png(self) -> BytesIO:
+    def _png(self) -> Callable[[], bytes]:
         self.picture.filename = self._named(".png")
         there = {"characters": self._findings.regularity, "origins": self._findings.origins}
         pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or there[name] is not None)]
         starts = tuple(one.start for one in self._orbits)
-        data = png_bytes(self._whole(), pictures, self._state.colours, self.side.value, findings=self._findings, starts=starts)
-        return BytesIO(data)
+        return partial(
+            png_bytes, self._whole(), pictures, self._state.colours, self.side.value, findings=self._findings, starts=starts
+        )
 
-    def _netcdf(self) -> BytesIO:
+    def _netcdf(self) -> Callable[[], bytes]:
         self.maps.filename = self._named(".nc")
-        return BytesIO(netcdf_bytes(self._whole(), self._findings))
+        return partial(netcdf_bytes, self._whole(), self._findings)
 
-    def _csv(self) -> BytesIO:
+    def _csv(self) -> Callable[[], bytes]:
         self.orbits.filename = "orbits.csv" if self._frame is None else self._named("-orbits.csv")
-        return BytesIO(orbits_csv([one.orbit for one in self._orbits if one.orbit is not None]).encode())
+        chosen = [one.orbit for one in self._orbits if one.orbit is not None]
+        return lambda: orbits_csv(chosen).encode()
 
-    def _python(self) -> BytesIO:
+    def _python(self) -> Callable[[], bytes]:
         self.lines.filename = self._named(".py")
         specs = [self._state.orbit_spec(one.start) for one in self._orbits]
         states = [spec.state for spec in specs if spec is not None]
-        return BytesIO(python_lines(self._whole().spec, self._state.system, states).encode())
+        lines = python_lines(self._whole().spec, self._state.system, states)
+        return lines.encode
 
 
-def _download(label: str, make: Callable[[], BytesIO]) -> pmui.FileDownload:
+def _download(label: str, begin: Callable[[], Callable[[], bytes]]) -> pmui.FileDownload:
+    """A button for a file that `begin` names, and that is made beside the loop, which goes on answering everybody."""
+
+    async def make() -> BytesIO:
+        return BytesIO(await asyncio.to_thread(begin()))
+
     return pmui.FileDownload(
         label=label, callback=make, filename="escapes", auto=True, embed=False, variant="outlined", size="small"
     )  # fmt: skip

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
 import threading
-from collections.abc import Callable, Coroutine
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from bokeh.document import Document
@@ -13,12 +10,7 @@ from bokeh.server import session
 from bokeh.server.session import ServerSession
 
 from app.server.on_the_loop import answer_on_the_loop, call_here
-
-
-def run_elsewhere[Result](make: Callable[[], Coroutine[None, None, Result]]) -> Result:
-    """What a coroutine comes to on a loop of its own: in this thread a browser's may be running."""
-    with ThreadPoolExecutor(1) as thread:
-        return thread.submit(lambda: asyncio.run(make())).result()
+from tests.test_app.other_loop import run_elsewhere
 
 
 async def threads_of_callbacks() -> tuple[int, int]:
