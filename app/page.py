@@ -12,6 +12,7 @@ from panel.util import edit_readonly
 from app.equations import equations
 from app.explorer import Explorer
 from app.systems import SYSTEM
+from app.views.echoes import echo_filter
 from app.views.keyboard import key_legend
 from app.views.wrapping import wrapping_row
 
@@ -48,6 +49,7 @@ def explorer_page(explorer: Explorer) -> pmui.Page:
         pn.pane.HTML(f"<details><summary>Keys</summary>{key_legend()}</details>", margin=(4, 10)),
         explorer.words.layout(),
         explorer.keyboard.layout(),
+        echo_filter(),
         explorer.tour.layout(),
         sizing_mode="stretch_width",
         margin=(0, 10),
