@@ -69,7 +69,7 @@ def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., Expl
 
 @pytest.fixture(scope="module")
 def open_for_all(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
-    """The same for a page that all tests of a file share, as none of them changes what it shows."""
+    """The same for a page that several tests of a file share, as none of them changes what it shows."""
     yield from _opening(chromium, server)
 
 
@@ -104,3 +104,18 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
 def explorer(open_explorer: Callable[..., ExplorerPage]) -> ExplorerPage:
     """The page on a wide screen, with its first map complete."""
     return open_explorer()
+
+
+@pytest.fixture(scope="module")
+def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    """The same page for all tests of a file that leave it as they find it: opening one takes longer than most of them."""
+    return open_for_all()
+
+
+@pytest.fixture
+def for_orbits(shared: ExplorerPage) -> Iterator[ExplorerPage]:
+    """The shared page, without orbits; those that a test chooses are taken away after it."""
+    yield shared
+    if shared.model_data("starts")["x"]:
+        shared.press("Clear all")
+    shared.wait_for_data("starts", "data.x.length == 0")

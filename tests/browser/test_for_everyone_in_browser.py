@@ -119,11 +119,11 @@ def test_a_first_visit_begins_with_the_tour_and_the_second_does_not(open_explore
     expect(tour).not_to_be_visible()
 
 
-def test_every_picture_explains_itself(explorer: ExplorerPage) -> None:
-    summaries = explorer.page.get_by_text("What is this?")
+def test_every_picture_explains_itself(shared: ExplorerPage) -> None:
+    summaries = shared.page.get_by_text("What is this?")
     assert summaries.count() >= 9
     summaries.nth(1).click()
-    expect(explorer.text("through which exit channel its orbit leaves")).to_be_visible()
+    expect(shared.text("through which exit channel its orbit leaves")).to_be_visible()
 
 
 def test_the_equations_are_those_of_the_case(explorer: ExplorerPage) -> None:
@@ -133,11 +133,11 @@ def test_the_equations_are_those_of_the_case(explorer: ExplorerPage) -> None:
     expect(explorer.text("Equations: Case III")).to_be_visible()
 
 
-def test_the_page_can_be_read_as_a_table(explorer: ExplorerPage) -> None:
-    explorer.click("basins", 0.1, 0.05)
-    expect(explorer.text("Escaped through channel 1")).to_be_visible()
-    explorer.text("This page as a table").click()
-    table = explorer.page.get_by_role("table", name="What is shown")
+def test_the_page_can_be_read_as_a_table(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", 0.1, 0.05)
+    expect(for_orbits.text("Escaped through channel 1")).to_be_visible()
+    for_orbits.text("This page as a table").click()
+    table = for_orbits.page.get_by_role("table", name="What is shown")
     for words in (
         "Case I",
         "½(x² + y²) − xy²",

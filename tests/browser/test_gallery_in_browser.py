@@ -10,12 +10,12 @@ from app.gallery import PRESETS
 from tests.browser.explorer_page import ExplorerPage
 
 
-def test_every_preset_has_a_card_with_its_picture(explorer: ExplorerPage) -> None:
-    explorer.press("Gallery")
+def test_every_preset_has_a_card_with_its_picture(shared: ExplorerPage) -> None:
+    shared.press("Gallery")
     for preset in PRESETS:
-        card = explorer.page.get_by_role("button", name=re.compile(re.escape(preset.title)))
+        card = shared.page.get_by_role("button", name=re.compile(re.escape(preset.title)))
         expect(card.first).to_be_attached()
-    explorer.page.wait_for_function(
+    shared.page.wait_for_function(
         """() => {
             const pictures = []
             const look = root => { for (const node of root.querySelectorAll('*')) {
@@ -26,6 +26,7 @@ def test_every_preset_has_a_card_with_its_picture(explorer: ExplorerPage) -> Non
             return pictures.length > 5 && pictures.some(picture => picture.complete && picture.naturalWidth == 160)
         }"""
     )
+    shared.press("Gallery")
 
 
 def test_a_card_leads_to_its_view(explorer: ExplorerPage) -> None:
@@ -41,9 +42,9 @@ def test_a_card_leads_to_its_view(explorer: ExplorerPage) -> None:
     expect(explorer.page.get_by_role("button", name="III", exact=True)).to_have_attribute("aria-pressed", "true")
 
 
-def test_the_gallery_can_be_closed_again(explorer: ExplorerPage) -> None:
-    explorer.press("Gallery")
-    card = explorer.page.get_by_role("button", name=re.compile(re.escape(PRESETS[0].title))).first
+def test_the_gallery_can_be_closed_again(shared: ExplorerPage) -> None:
+    shared.press("Gallery")
+    card = shared.page.get_by_role("button", name=re.compile(re.escape(PRESETS[0].title))).first
     expect(card).to_be_visible()
-    explorer.press("Gallery")
+    shared.press("Gallery")
     expect(card).not_to_be_visible()

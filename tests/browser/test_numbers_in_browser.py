@@ -24,29 +24,29 @@ def choose_box_tool(explorer: ExplorerPage) -> None:
     )
 
 
-def test_the_numbers_are_those_of_the_map(explorer: ExplorerPage) -> None:
+def test_the_numbers_are_those_of_the_map(shared: ExplorerPage) -> None:
     statistics = compute_statistics(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19)))
-    table = explorer.page.get_by_text("Shares of the interior starts in the whole view").locator("xpath=ancestor::table")
+    table = shared.page.get_by_text("Shares of the interior starts in the whole view").locator("xpath=ancestor::table")
     expect(table).to_contain_text(f"{statistics.shares[1]:.2%}")
     expect(table).to_contain_text(f"{statistics.direct_share:.2%}")
     expect(table).to_contain_text(f"{statistics.median_escape_time:.4g}")
 
 
-def test_a_box_counts_what_is_in_it_and_the_whole_view_comes_back(explorer: ExplorerPage) -> None:
-    choose_box_tool(explorer)
-    drag(explorer, (-0.1, 0.2), (0.1, 0.4))
-    expect(explorer.text("Shares of the interior starts in the box drawn on the maps")).to_be_visible()
-    box = explorer.model_data("box")
+def test_a_box_counts_what_is_in_it_and_the_whole_view_comes_back(shared: ExplorerPage) -> None:
+    choose_box_tool(shared)
+    drag(shared, (-0.1, 0.2), (0.1, 0.4))
+    expect(shared.text("Shares of the interior starts in the box drawn on the maps")).to_be_visible()
+    box = shared.model_data("box")
     assert [box["left"][0], box["right"][0]] == [-0.1, 0.1] or abs(box["left"][0] + 0.1) < 0.01
-    expect(explorer.page.get_by_label("numbers table")).to_contain_text("100.00%")
-    explorer.press("Count the whole view")
-    expect(explorer.text("Shares of the interior starts in the whole view")).to_be_visible()
-    assert explorer.model_data("box")["left"] == []
+    expect(shared.page.get_by_label("numbers table")).to_contain_text("100.00%")
+    shared.press("Count the whole view")
+    expect(shared.text("Shares of the interior starts in the whole view")).to_be_visible()
+    assert shared.model_data("box")["left"] == []
 
 
-def test_the_charts_hold_every_escape(explorer: ExplorerPage) -> None:
+def test_the_charts_hold_every_escape(shared: ExplorerPage) -> None:
     statistics = compute_statistics(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19)))
-    tops = explorer.page.evaluate(
+    tops = shared.page.evaluate(
         """() => {
             const sums = []
             for (const model of Bokeh.documents[0].all_models) if (model.type == 'Quad') {

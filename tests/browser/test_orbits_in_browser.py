@@ -21,15 +21,15 @@ def click_all(explorer: ExplorerPage, starts: list[tuple[float, float]]) -> None
         explorer.wait_for_data("starts", f"data.x.length == {place + 1}")
 
 
-def test_five_orbits_are_kept_and_marked_in_their_colours(explorer: ExplorerPage) -> None:
-    click_all(explorer, STARTS)
-    marks = explorer.model_data("starts")
+def test_five_orbits_are_kept_and_marked_in_their_colours(for_orbits: ExplorerPage) -> None:
+    click_all(for_orbits, STARTS)
+    marks = for_orbits.model_data("starts")
     assert marks["text"] == ["1", "2", "3", "4", "5"]
     assert marks["x"] == pytest.approx([x for x, _ in STARTS], abs=0.006)
-    explorer.wait_for_data("paths", "data.xs.length == 5")
-    assert sorted(explorer.model_data("paths")["slot"]) == [0, 1, 2, 3, 4]
+    for_orbits.wait_for_data("paths", "data.xs.length == 5")
+    assert sorted(for_orbits.model_data("paths")["slot"]) == [0, 1, 2, 3, 4]
     for picture in PICTURES:
-        assert explorer.page.evaluate(
+        assert for_orbits.page.evaluate(
             "name => Bokeh.documents[0].get_model_by_name(name).renderers.some(r => r.data_source.name == 'starts')", picture
         )
 
@@ -51,55 +51,55 @@ def test_panes_stay_in_their_place_while_their_orbits_are_on_their_way(explorer:
     assert explorer.page.evaluate("() => window.gone") == 0
 
 
-def test_a_sixth_start_takes_the_first_place(explorer: ExplorerPage) -> None:
-    click_all(explorer, STARTS)
-    explorer.click("basins", 0.3, 0.1)
-    explorer.wait_for_data("starts", "data.x.length == 5 && Math.abs(data.x[0] - 0.3) < 0.006")
+def test_a_sixth_start_takes_the_first_place(for_orbits: ExplorerPage) -> None:
+    click_all(for_orbits, STARTS)
+    for_orbits.click("basins", 0.3, 0.1)
+    for_orbits.wait_for_data("starts", "data.x.length == 5 && Math.abs(data.x[0] - 0.3) < 0.006")
 
 
-def test_another_orbit_can_be_looked_at_and_removed(explorer: ExplorerPage) -> None:
-    click_all(explorer, STARTS[:2])
-    explorer.page.get_by_role("button", name="1", exact=True).click()
-    explorer.page.wait_for_url(re.compile("look=1"))
-    explorer.press("Remove")
-    explorer.wait_for_data("starts", "data.x.length == 1")
-    explorer.press("Clear all")
-    explorer.wait_for_data("starts", "data.x.length == 0")
-    expect(explorer.text("Click a point of any map")).to_be_visible()
+def test_another_orbit_can_be_looked_at_and_removed(for_orbits: ExplorerPage) -> None:
+    click_all(for_orbits, STARTS[:2])
+    for_orbits.page.get_by_role("button", name="1", exact=True).click()
+    for_orbits.page.wait_for_url(re.compile("look=1"))
+    for_orbits.press("Remove")
+    for_orbits.wait_for_data("starts", "data.x.length == 1")
+    for_orbits.press("Clear all")
+    for_orbits.wait_for_data("starts", "data.x.length == 0")
+    expect(for_orbits.text("Click a point of any map")).to_be_visible()
 
 
-def test_the_section_of_an_orbit_is_drawn_on_its_plane(explorer: ExplorerPage) -> None:
-    explorer.click("basins", -0.52, 0.0)
-    explorer.wait_for_data("sections", "data.x.length > 100")
-    drawn = explorer.model_data("sections")
-    marks = explorer.model_data("starts")
+def test_the_section_of_an_orbit_is_drawn_on_its_plane(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", -0.52, 0.0)
+    for_orbits.wait_for_data("sections", "data.x.length > 100")
+    drawn = for_orbits.model_data("sections")
+    marks = for_orbits.model_data("starts")
     state = start_states(CASES["I"], Plane.X_PX, 0.19, np.array(marks["x"]), np.array(marks["y"]))[0]
     points = read_section_points(CASES["I"], integrate_orbit(CASES["I"], state, 1e5))
     np.testing.assert_allclose(drawn["x"], points[: len(drawn["x"]), 0], atol=1e-5)
     np.testing.assert_allclose(drawn["y"], points[: len(drawn["y"]), 1], atol=1e-5)
 
 
-def test_a_twin_is_found_and_the_distance_drawn(explorer: ExplorerPage) -> None:
-    explorer.click("basins", 0.1, 0.05)
-    expect(explorer.text("Escaped through")).to_be_visible()
-    explorer.press("Find its twin")
-    expect(explorer.text("The twin starts")).to_be_visible()
-    explorer.wait_for_data("separation_source", "data.t.length > 100")
-    distance = explorer.model_data("separation_source")["distance"]
+def test_a_twin_is_found_and_the_distance_drawn(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", 0.1, 0.05)
+    expect(for_orbits.text("Escaped through")).to_be_visible()
+    for_orbits.press("Find its twin")
+    expect(for_orbits.text("The twin starts")).to_be_visible()
+    for_orbits.wait_for_data("separation_source", "data.t.length > 100")
+    distance = for_orbits.model_data("separation_source")["distance"]
     assert distance[-1] > distance[0]
-    fates = explorer.page.get_by_label("the chosen orbits").inner_text()
+    fates = for_orbits.page.get_by_label("the chosen orbits").inner_text()
     assert {"channel 1", "channel 2"} <= set(re.findall(r"channel \d", fates))
 
 
-def test_a_time_moves_along_path_sali_and_r2_together(explorer: ExplorerPage) -> None:
-    explorer.click("basins", 0.1, 0.05)
-    expect(explorer.text("Escaped through")).to_be_visible()
-    explorer.page.get_by_role("button", name="Next frame").click()
-    explorer.wait_for_data("points", "data.x.length == 1")
-    first = explorer.model_data("points")
-    explorer.page.get_by_role("button", name="Play", exact=True).first.click()
-    explorer.wait_for_data("points", f"data.x.length == 1 && data.x[0] != {first['x'][0]!r}")
-    spans = explorer.page.evaluate(
+def test_a_time_moves_along_path_sali_and_r2_together(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", 0.1, 0.05)
+    expect(for_orbits.text("Escaped through")).to_be_visible()
+    for_orbits.page.get_by_role("button", name="Next frame").click()
+    for_orbits.wait_for_data("points", "data.x.length == 1")
+    first = for_orbits.model_data("points")
+    for_orbits.page.get_by_role("button", name="Play", exact=True).first.click()
+    for_orbits.wait_for_data("points", f"data.x.length == 1 && data.x[0] != {first['x'][0]!r}")
+    spans = for_orbits.page.evaluate(
         """() => ['sali', 'r2'].map(name => Bokeh.documents[0].get_model_by_name(name).center
             .filter(m => m.type == 'Span' && m.dimension == 'height').map(m => [m.visible, m.location]))"""
     )
