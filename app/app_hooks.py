@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import Any
 
 from bokeh.server import urls
+from bokeh.settings import settings as bokeh_settings
 from tornado.ioloop import PeriodicCallback
 
 from app import pressure
@@ -27,6 +28,7 @@ from app.server.one_message import send_changes_together
 from app.server.pages import add_routes
 from app.server.preparation import prepare_in_background
 from app.server.prompt_sockets import use_prompt_sockets
+from app.server.quick_defaults import look_defaults_up_once
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
 from app.server.site import this_site
@@ -55,6 +57,9 @@ def on_server_loaded(server_context: Any) -> None:
     sys.setswitchinterval(SWITCH_SECONDS)
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
     context.io_loop.asyncio_loop.set_task_factory(asyncio.eager_task_factory)
+    # That a page is sound is for tests to show, not to be looked at anew for each visitor while all others wait.
+    bokeh_settings.perform_document_validation = False
+    look_defaults_up_once()
     send_changes_together()
     answer_on_the_loop()
     stop_gracefully_on_sigterm(site, context.io_loop.stop)

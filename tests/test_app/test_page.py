@@ -8,6 +8,7 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
+from bokeh.core.validation import check_integrity
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 
@@ -42,3 +43,16 @@ def test_a_closed_page_is_let_go_of() -> None:
     while held(built) and time.monotonic() < deadline:
         time.sleep(0.1)
     assert held(built) == []
+
+
+def test_a_page_is_sound() -> None:
+    """The server does not look at each visitor's anew."""
+    document = Sessionless()
+    with set_curdoc(document):
+        explorer = Explorer()
+        explorer_page(explorer).server_doc(document)
+        issues = check_integrity(document.models)
+        explorer.close()
+    assert issues.error == []
+    # Sections that nobody has opened.
+    assert {warning.name for warning in issues.warning} == {"EMPTY_LAYOUT"}
