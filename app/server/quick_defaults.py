@@ -32,7 +32,7 @@ def look_defaults_up_once() -> None:
 
 
 def themed_values(model: Any) -> dict[str, Any] | None:
-    """What a theme sets on a model, None when there is none; as Bokeh's, which raises and catches an error where there is none."""
+    """What a theme sets on a model, None without one; as Bokeh's, which raises and catches an error to see that."""
     return vars(model).get("__themed_values__")  # type: ignore[no-any-return]
 
 
