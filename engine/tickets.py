@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -18,6 +19,8 @@ class Ticket:
         self._release = release
         self._on_result = on_result
         self._on_error = on_error
+        # An earlier frame that another thread hands over must not come after the last one.
+        self._handing_over = threading.RLock()
         self.open = True
         """Whether anything is still to come."""
 
@@ -35,11 +38,12 @@ class Ticket:
         self._call(self._on_error, error, True)
 
     def _call(self, receive: Callable[[Any], None], what: Any, last: bool) -> None:
-        if not self.open:
-            return
-        self.open = not last
-        try:
-            receive(what)
-        except Exception:
-            # One listener's fault is no other listener's.
-            log.exception("a listener failed")
+        with self._handing_over:
+            if not self.open:
+                return
+            self.open = not last
+            try:
+                receive(what)
+            except Exception:
+                # One listener's fault is no other listener's.
+                log.exception("a listener failed")
