@@ -32,6 +32,7 @@ from app.server.quick_defaults import look_defaults_up_once
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
 from app.server.site import this_site
+from app.server.told_by_threads import schedule_on_the_loop
 from app.shared_jobs import is_waited, shared_jobs
 
 SWITCH_SECONDS = 0.001
@@ -56,7 +57,9 @@ def on_server_loaded(server_context: Any) -> None:
     PeriodicCallback(Garbage(is_waited).look, 1000.0).start()
     sys.setswitchinterval(SWITCH_SECONDS)
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
-    context.io_loop.asyncio_loop.set_task_factory(asyncio.eager_task_factory)
+    loop = context.io_loop.asyncio_loop
+    loop.set_task_factory(asyncio.eager_task_factory)
+    schedule_on_the_loop(loop)
     # That a page is sound is for tests to show, not to be looked at anew for each visitor while all others wait.
     bokeh_settings.perform_document_validation = False
     look_defaults_up_once()
