@@ -21,6 +21,7 @@ from app.server.admission import admit
 from app.server.bokeh_application import find_web_application
 from app.server.figures import FaultCounter, these_figures
 from app.server.garbage import Garbage
+from app.server.held_changes import hold_changes
 from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
 from app.server.logs import set_up_logs
 from app.server.on_the_loop import answer_on_the_loop
@@ -63,6 +64,7 @@ def on_server_loaded(server_context: Any) -> None:
     # That a page is sound is for tests to show, not to be looked at anew for each visitor while all others wait.
     bokeh_settings.perform_document_validation = False
     look_defaults_up_once()
+    hold_changes()
     send_changes_together()
     answer_on_the_loop()
     stop_gracefully_on_sigterm(site, context.io_loop.stop)

@@ -106,3 +106,15 @@ def test_a_time_moves_along_path_sali_and_r2_together(for_orbits: ExplorerPage) 
     assert spans[0] == spans[1]
     assert spans[0][0][0] is True
     assert spans[0][0][1] > 0
+
+
+def test_orbits_can_be_cleared_while_their_time_plays(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", 0.1, 0.05)
+    expect(for_orbits.text("Escaped through")).to_be_visible()
+    for _ in range(3):
+        for_orbits.click("basins", 0.1, 0.05)
+        expect(for_orbits.text("Escaped through")).to_be_visible()
+        for_orbits.page.get_by_role("button", name="Play", exact=True).first.click()
+        for_orbits.page.wait_for_timeout(300)
+        for_orbits.press("Clear all")
+        for_orbits.wait_for_data("starts", "data.x.length == 0")
