@@ -1,4 +1,4 @@
-"""Places of Bokeh's where this server has a way of its own, and Bokeh no public place for one."""
+"""Places of Bokeh's, and of Panel's above it, where this server has a way of its own, and they no public place for one."""
 
 from __future__ import annotations
 

@@ -19,8 +19,10 @@ const REACT = "panel.models.esm.ReactComponent"
 const memory = new WeakMap()
 
 function memory_of(model) {
+  // What is not on the page yet cannot be told from what is no widget's.
+  if (!model.document) return null
   if (!memory.has(model)) {
-    const of_react = [...(model.document?._all_models.values() ?? [])].some(one => one.type === REACT && one.data === model)
+    const of_react = [...model.document._all_models.values()].some(one => one.type === REACT && one.data === model)
     memory.set(model, of_react ? new Map() : null)
   }
   return memory.get(model)
