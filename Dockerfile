@@ -33,7 +33,7 @@ WORKDIR /srv/escape-explorer
 USER 10001
 # As the server does at its start. Kernels fit the processor that compiled them; on another kind they are compiled anew into the
 # volume, which begins as a copy of what is here.
-RUN python -c "from app.server.preparation import prepare_now; prepare_now()"
+RUN python -c "from app.server.warmup import prepare_now; prepare_now()"
 VOLUME /var/cache/escape-explorer
 EXPOSE 5006
 HEALTHCHECK --start-period=3m \

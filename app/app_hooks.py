@@ -12,35 +12,35 @@ from importlib import import_module
 from typing import Any
 
 from bokeh.server import urls
-from bokeh.settings import settings as bokeh_settings
+from bokeh.settings import settings
 from tornado.ioloop import PeriodicCallback
 
-from app import pressure
-from app.pressure import this_pressure
+from app.bokeh_patches.held_changes import hold_changes
+from app.bokeh_patches.on_the_loop import answer_on_the_loop
+from app.bokeh_patches.one_message import send_changes_together
+from app.bokeh_patches.prompt_sockets import use_prompt_sockets
+from app.bokeh_patches.quick_defaults import look_defaults_up_once
+from app.bokeh_patches.told_by_threads import schedule_on_the_loop
+from app.runtime import load_monitor
+from app.runtime.disconnects import LOOKED_AT_EVERY, DisconnectMonitor
+from app.runtime.job_pool import is_waited, shared_jobs
+from app.runtime.load_monitor import process_load_monitor
+from app.runtime.metrics import FaultCounter, process_metrics
+from app.runtime.process_state import process_state
 from app.server.admission import admit
 from app.server.bokeh_application import find_web_application
-from app.server.figures import FaultCounter, these_figures
-from app.server.garbage import Garbage
-from app.server.held_changes import hold_changes
-from app.server.left_pages import LOOKED_AT_EVERY, LeftPages
-from app.server.logs import set_up_logs
-from app.server.on_the_loop import answer_on_the_loop
-from app.server.one_message import send_changes_together
-from app.server.pages import add_routes
-from app.server.preparation import prepare_in_background
-from app.server.prompt_sockets import use_prompt_sockets
-from app.server.quick_defaults import look_defaults_up_once
+from app.server.endpoints import add_routes
+from app.server.gc_policy import GarbagePolicy
+from app.server.log_format import set_up_logs
 from app.server.security_headers import SecurityTransform
 from app.server.shutdown import end_stop, stop_gracefully_on_sigterm
-from app.server.site import this_site
-from app.server.told_by_threads import schedule_on_the_loop
-from app.shared_jobs import is_waited, shared_jobs
+from app.server.warmup import prepare_in_background
 
 SWITCH_SECONDS = 0.001
 """How long a thread keeps Python to itself while others wait: with Python's own 5 ms thirty visitors wait 1.7 times as long."""
 
 # Before the first visitor comes, who would wait for it; where a setting is of no use, the server ends here.
-import_module("app.explorer")
+import_module("app.session.explorer")
 
 # Before Bokeh builds its web application from the lists, as Panel puts its own pages there.
 add_routes(urls.toplevel_patterns)
@@ -49,20 +49,20 @@ use_prompt_sockets(urls.per_app_patterns)
 
 def on_server_loaded(server_context: Any) -> None:
     """Begin to compile, or to load what is compiled; the server answers meanwhile."""
-    site, context = this_site(), server_context.application_context
-    set_up_logs(site.settings.log, FaultCounter(these_figures()), [logging.getLogger(), logging.getLogger("panel")])
+    site, context = process_state(), server_context.application_context
+    set_up_logs(site.settings.log, FaultCounter(process_metrics()), [logging.getLogger(), logging.getLogger("panel")])
     find_web_application(server_context).add_transform(SecurityTransform)
     site.sessions, site.jobs = lambda: context.sessions, shared_jobs()
-    PeriodicCallback(LeftPages(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
-    PeriodicCallback(_give_way, 1000.0 * pressure.LOOKED_AT_EVERY).start()
-    PeriodicCallback(Garbage(is_waited).look, 1000.0).start()
+    PeriodicCallback(DisconnectMonitor(site.sessions).look, 1000.0 * LOOKED_AT_EVERY).start()
+    PeriodicCallback(_give_way, 1000.0 * load_monitor.LOOKED_AT_EVERY).start()
+    PeriodicCallback(GarbagePolicy(is_waited).look, 1000.0).start()
     sys.setswitchinterval(SWITCH_SECONDS)
     # A part of a message that the socket takes at once needs no turn of the loop; there are a dozen of them to a frame.
     loop = context.io_loop.asyncio_loop
     loop.set_task_factory(asyncio.eager_task_factory)
     schedule_on_the_loop(loop)
     # That a page is sound is for tests to show, not to be looked at anew for each visitor while all others wait.
-    bokeh_settings.perform_document_validation = False
+    settings.perform_document_validation = False
     look_defaults_up_once()
     hold_changes()
     send_changes_together()
@@ -72,23 +72,23 @@ def on_server_loaded(server_context: Any) -> None:
 
 
 def _give_way() -> None:
-    this_pressure().tick()
-    shared_jobs().put_off_tiles(this_pressure().is_high())
+    process_load_monitor().tick()
+    shared_jobs().put_off_tiles(process_load_monitor().is_high())
 
 
 def on_server_unloaded(server_context: Any) -> None:
     """The last that Bokeh calls."""
-    end_stop(this_site())
+    end_stop(process_state())
 
 
 def on_session_created(session_context: Any) -> None:
     """Count it."""
-    these_figures().created.inc()
+    process_metrics().created.inc()
 
 
 def on_session_destroyed(session_context: Any) -> None:
     """Count it."""
-    these_figures().destroyed.inc()
+    process_metrics().destroyed.inc()
 
 
 def process_request(request: Any) -> dict[str, Any]:

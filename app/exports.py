@@ -11,11 +11,11 @@ from io import BytesIO
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from app.findings import NOTHING_FOUND, Findings
-from app.palette import Palette
-from app.pictures import TITLES
-from app.printed_pictures import draw_picture
-from app.systems import TYPED, System
+from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
+from app.rendering.map_figure import draw_picture
+from app.rendering.map_images import TITLES
+from app.rendering.palette import Palette
+from app.state.system import TYPED, System
 from engine import CASES, EscapeMap, MapSpec, Orbit
 
 MOST_ROWS = 100_000
@@ -30,7 +30,7 @@ def png_bytes(
     palette: Palette,
     side: int,
     *,
-    findings: Findings = NOTHING_FOUND,
+    findings: MapAnalyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
 ) -> bytes:
     """A PNG file of some pictures side by side, with the map's provenance in its text fields.
@@ -57,7 +57,7 @@ def png_bytes(
     return file.getvalue()
 
 
-def netcdf_bytes(frame: EscapeMap, findings: Findings = NOTHING_FOUND) -> bytes:
+def netcdf_bytes(frame: EscapeMap, findings: MapAnalyses = NO_ANALYSES) -> bytes:
     """A NetCDF-4 file of `EscapeMap.to_xarray`, for `xarray.open_dataset` and any reader of HDF5.
 
     What second looks have found goes with it: ``character``, ``trust`` and ``origin``.

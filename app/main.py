@@ -2,8 +2,8 @@
 
 import panel as pn
 
-from app.explorer import Explorer
-from app.page import explorer_page
+from app.session.explorer import Explorer
+from app.session.page import explorer_page
 
 LOST = "The connection to the server is lost. Reload this page: its address holds the view."
 

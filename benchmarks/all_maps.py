@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.paper_energies import ENERGIES
+from app.state.energy_ranges import ENERGIES
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map
-from engine.orbit_batches import default_executor
+from engine.execution import default_executor
 
 SLOWEST = 5
 EARLY = [code for code in Certificate if code > Certificate.INTEGRATED]

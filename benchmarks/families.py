@@ -16,12 +16,12 @@ from numba import njit
 
 from benchmarks.throughput import multiplications
 from engine import CASES, Plane, Potential, start_states
-from engine.known_potentials import channel_family
-from engine.lyapunov_orbits import closed_curves, exit_gates
-from engine.taylor.build import load_kernels
-from engine.taylor.calls import SIGNATURES
-from engine.taylor.codegen import TOLERANCE
-from engine.taylor.events import NOT_COMPUTED
+from engine.dynamics.lyapunov_orbits import closed_curves, exit_gates
+from engine.potentials.catalogue import channel_family
+from engine.taylor.bound_kernels import load_kernels
+from engine.taylor.jit.function_pointers import SIGNATURES
+from engine.taylor.kernels.events import NOT_COMPUTED
+from engine.taylor.source.recurrence import TOLERANCE
 
 ORBITS = 64
 T_MAX = 300.0

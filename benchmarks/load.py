@@ -21,7 +21,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from benchmarks.visitors import Record, Visitor
+from benchmarks.visitors import JobClient, Record
 
 LONGEST_WAIT_SECONDS = 2.0
 """Nobody may wait longer for the first frame of a map."""
@@ -114,7 +114,7 @@ class Outcome:
 async def load(servers: Sequence[Server], record: Record, sessions: int, seconds: float, seed: int) -> Outcome:
     """Let visitors come, dealt out to the processes in turn, stay and leave."""
     watching = [asyncio.create_task(server.watch()) for server in servers]
-    visitors = [Visitor(servers[place % len(servers)].address, seed + place, record) for place in range(sessions)]
+    visitors = [JobClient(servers[place % len(servers)].address, seed + place, record) for place in range(sessions)]
     for visitor in visitors:
         await visitor.open()
     there, used, begin = count_sessions(servers), count_cpu_seconds(servers), time.perf_counter()

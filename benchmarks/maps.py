@@ -9,7 +9,7 @@ import statistics
 import time
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.orbit_batches import default_executor
+from engine.execution import default_executor
 
 REPEATS = 7
 T_MAX = 1000.0

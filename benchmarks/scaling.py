@@ -12,7 +12,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from functools import cache
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.orbit_batches import default_executor
+from engine.execution import default_executor
 
 REPEATS = 3
 

@@ -16,11 +16,12 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 
 from engine import CASES, Plane, start_states
-from engine.lyapunov_orbits import closed_curves, exit_gates
-from engine.taylor import codegen, loop
-from engine.taylor.build import load_kernels
-from engine.taylor.events import NOT_COMPUTED
-from engine.taylor.kernel_cache import CACHE_VARIABLE
+from engine.dynamics.lyapunov_orbits import closed_curves, exit_gates
+from engine.taylor.bound_kernels import load_kernels
+from engine.taylor.jit.disk_cache import CACHE_VARIABLE
+from engine.taylor.kernels import propagate
+from engine.taylor.kernels.events import NOT_COMPUTED
+from engine.taylor.source import recurrence
 
 T_MAX = 1e5
 ORBITS = 64
@@ -48,7 +49,7 @@ def measure(case: str, order: int, tolerance: float) -> tuple[float, float, floa
 def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float, float, float]:
     os.environ[CACHE_VARIABLE] = cache
     potential = CASES[case]
-    codegen.ORDER = loop.ORDER = order
+    recurrence.ORDER = propagate.ORDER = order
     kernels = load_kernels(potential.terms, potential.channels)
     curves = closed_curves(potential)[None]
     gates = exit_gates(curves)

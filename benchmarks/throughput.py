@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.steps import ENERGIES, ORBITS, T_MAX, bounded_starts, measure
 from engine import CASES, Potential
-from engine.taylor.codegen import ORDER, TOLERANCE, generate_source
+from engine.taylor.source.recurrence import ORDER, TOLERANCE, generate_source
 from tests.peers.taylor_heyoka import equations
 
 REPEATS = 3

@@ -111,7 +111,7 @@ class Channel:
         self._socket.close()
 
 
-class Visitor:
+class JobClient:
     """One session, from its page to its end."""
 
     def __init__(self, address: str, seed: int, record: Record) -> None:

@@ -13,22 +13,22 @@ from typing import Any
 from engine import (
     CASES,
     ENTROPY_COUNTS_BOUNDED,
-    MERGING_COUNTS_BOUNDED,
+    WADA_COUNTS_BOUNDED,
     MapSpec,
     Plane,
     compute_basin_entropy,
     compute_map,
-    compute_merging,
     compute_origin_fates,
     compute_statistics,
     compute_trust,
     compute_uncertainty_exponent,
+    compute_wada_test,
     exit_labels,
     find_stable_manifolds,
-    fit_escape_laws,
+    fit_decay_laws,
     prepare_kernels,
 )
-from engine.orbit_batches import default_executor
+from engine.execution import default_executor
 
 REPEATS = 5
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.45)
@@ -47,14 +47,14 @@ def median_seconds(work: Callable[[], Any]) -> float:
 def main() -> None:
     prepare_kernels(SPEC.potential)
     frame = compute_map(SPEC)
-    entropy, merging = (exit_labels(frame, bounded=bounded) for bounded in (ENTROPY_COUNTS_BOUNDED, MERGING_COUNTS_BOUNDED))
+    entropy, merging = (exit_labels(frame.fate, bounded=bounded) for bounded in (ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED))
     counted = compute_statistics(frame)
     works: dict[str, Callable[[], Any]] = {
         "the map itself": lambda: compute_map(SPEC),
         "trust mask": lambda: compute_trust(frame),
         "basin entropy": lambda: compute_basin_entropy(*entropy),
-        "Wada merging test": lambda: compute_merging(*merging),
-        "escape laws with bootstrap": lambda: fit_escape_laws(counted, SPEC.t_max),
+        "Wada merging test": lambda: compute_wada_test(*merging),
+        "escape laws with bootstrap": lambda: fit_decay_laws(counted, SPEC.t_max),
         f"stable manifolds, {IMAGES} images, all channels": lambda: find_stable_manifolds(SPEC.potential, 0.45, IMAGES),
         "origin and fate, both maps": lambda: compute_origin_fates(SPEC),
         "uncertainty exponent": lambda: compute_uncertainty_exponent(SPEC),

@@ -13,7 +13,7 @@ from cli import options
 from cli.options import PlaneName
 
 if TYPE_CHECKING:
-    from app.findings import Findings
+    from app.rendering.map_analyses import MapAnalyses
     from engine import EscapeMap
 
 EXAMPLES = """Examples:
@@ -84,14 +84,14 @@ def draw_map(
     from app.exports import file_stem
     from cli import map_files
     from cli.clusters import cluster_executor
-    from cli.map_work import SecondLooks, compute_with_second_looks
+    from cli.map_work import FollowUpRequests, compute_with_second_looks
     from cli.potentials import name_in_files
     from cli.requests import build_map_spec
     from cli.work import working
     from cli.written_files import check_folder, write_files
 
     spec = build_map_spec(case, plane, energy, energies, window, resolution, t_max, certify, backward)
-    wanted = SecondLooks(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
+    wanted = FollowUpRequests(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
     wanted.check(spec)
     drawing = map_files.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, side)
     stem = output or Path(file_stem(spec, name_in_files(case)))
@@ -105,7 +105,7 @@ def draw_map(
     _answer(frame, findings, write_files(files), count_outside, as_json)
 
 
-def _answer(frame: EscapeMap, findings: Findings, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
+def _answer(frame: EscapeMap, findings: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
     from cli.answers import name_shares, print_json, print_sentences, print_table
     from cli.map_work import describe_findings
 

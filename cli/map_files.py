@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.exports import netcdf_bytes, png_bytes
-from app.findings import Findings
-from app.palette import Palette
-from app.pictures import TITLES
-from app.printed_pictures import LARGEST_SIDE, SMALLEST_SIDE
+from app.rendering.map_analyses import MapAnalyses
+from app.rendering.map_figure import LARGEST_SIDE, SMALLEST_SIDE
+from app.rendering.map_images import TITLES
+from app.rendering.palette import Palette
 from cli.requests import find_palette
 from cli.written_files import Content, add_ending
 from engine import EscapeMap, StableManifolds
@@ -35,7 +35,9 @@ class Drawing:
         return cls(tuple(dict.fromkeys(pictures)), find_palette(palette), side)
 
 
-def contents(stem: Path, formats: Sequence[str], frame: EscapeMap, findings: Findings, drawing: Drawing) -> dict[Path, Content]:
+def contents(
+    stem: Path, formats: Sequence[str], frame: EscapeMap, findings: MapAnalyses, drawing: Drawing
+) -> dict[Path, Content]:
     """What to write where: the map in each of the formats nc and png, and its manifolds as a table where there are any."""
     files: dict[Path, Content] = {}
     if "nc" in formats:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
-from app.findings import Findings
+from app.rendering.map_analyses import MapAnalyses
 from cli.work import Work
 from engine import (
     MOST_IMAGES,
@@ -15,15 +15,15 @@ from engine import (
     MapSpec,
     Plane,
     compute_map,
+    compute_regularity,
     compute_trust,
     find_stable_manifolds,
     join_origin_fates,
-    judge_bounded_orbits,
 )
 
 
 @dataclass(frozen=True)
-class SecondLooks:
+class FollowUpRequests:
     """What else is asked of a map: the character of bounded orbits, where all come from, doubtful pixels, images of manifolds."""
 
     judge: bool
@@ -46,13 +46,13 @@ class SecondLooks:
             raise ValueError("origins: follow orbits both ways; leave --backward out")
 
 
-def compute_with_second_looks(spec: MapSpec, wanted: SecondLooks, work: Work) -> tuple[EscapeMap, Findings]:
+def compute_with_second_looks(spec: MapSpec, wanted: FollowUpRequests, work: Work) -> tuple[EscapeMap, MapAnalyses]:
     """The whole map, and all that was asked of it; CancelledError when stopped."""
     frame = compute_whole_map(spec, work, "map")
     found: dict[str, Any] = {}
     if wanted.judge:
         work.begin("bounded orbits")
-        found["regularity"] = judge_bounded_orbits(frame, None, work.cancel, work.executor)
+        found["regularity"] = compute_regularity(frame, None, work.cancel, work.executor)
     if wanted.origins:
         found["origins"] = join_origin_fates(frame, compute_whole_map(replace(spec, backward=True), work, "origins"))
     if wanted.trust:
@@ -65,7 +65,7 @@ def compute_with_second_looks(spec: MapSpec, wanted: SecondLooks, work: Work) ->
             spec.potential, spec.energy, wanted.images, window=spec.window, executor=work.executor, cancel=work.cancel
         )
     work.stop_if_cancelled()
-    return frame, Findings(**found)
+    return frame, MapAnalyses(**found)
 
 
 def compute_whole_map(spec: MapSpec, work: Work, stage: str) -> EscapeMap:
@@ -79,7 +79,7 @@ def _tell(report: Callable[[float], None] | None) -> Callable[[EscapeMap], None]
     return None if report is None else lambda frame: report(frame.progress)
 
 
-def describe_findings(findings: Findings) -> list[str]:
+def describe_findings(findings: MapAnalyses) -> list[str]:
     """What was found, a sentence each."""
     sentences = []
     if findings.regularity is not None:

@@ -62,19 +62,19 @@ def _measure(frame: EscapeMap, exponent: bool, work: Work) -> dict[str, dict[str
     """Each measure by name, with its sentence and numbers."""
     from engine import (
         ENTROPY_COUNTS_BOUNDED,
-        MERGING_COUNTS_BOUNDED,
+        WADA_COUNTS_BOUNDED,
         compute_basin_entropy,
-        compute_merging,
         compute_statistics,
         compute_uncertainty_exponent,
+        compute_wada_test,
         exit_labels,
-        fit_escape_laws,
+        fit_decay_laws,
     )
 
     work.begin("entropy, boundaries and escape laws")
-    entropy = compute_basin_entropy(*exit_labels(frame, bounded=ENTROPY_COUNTS_BOUNDED))
-    merging = compute_merging(*exit_labels(frame, bounded=MERGING_COUNTS_BOUNDED))
-    laws = fit_escape_laws(compute_statistics(frame), frame.spec.t_max, cancel=work.cancel)
+    entropy = compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED))
+    merging = compute_wada_test(*exit_labels(frame.fate, bounded=WADA_COUNTS_BOUNDED))
+    laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, cancel=work.cancel)
     measures = {"basin_entropy": _numbers(entropy, _ENTROPY), "merging": _numbers(merging, _MERGING)}
     measures["escape_laws"] = _numbers(laws, _LAWS) | {
         name: None if fit is None else {one: getattr(fit, one) for one in _FIT}

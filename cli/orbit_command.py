@@ -49,7 +49,7 @@ def follow_orbit(
     from cli.requests import find_palette, find_start
     from cli.work import working
     from cli.written_files import add_ending, check_folder, write_files
-    from engine import Fate, compute_birkhoff_digits, integrate_orbit, judge_indicators
+    from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit
 
     potential, colours = find_potential(case), find_palette(palette)
     whole = find_start(case, plane, energy, start, state)
@@ -64,7 +64,7 @@ def follow_orbit(
     if output is not None:
         drawn, table = orbit_png(potential, orbit, colours), orbits_csv([orbit], most_rows)
         files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
-    _answer(orbit, judge_indicators(orbit, digits), files, as_json)
+    _answer(orbit, evaluate_indicators(orbit, digits), files, as_json)
 
 
 def _answer(orbit: Orbit, verdicts: Sequence[IndicatorVerdict], files: list[str], as_json: bool) -> None:

@@ -11,10 +11,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 from PIL.PngImagePlugin import PngInfo
 
-from app.orbit_drawing import LEAST_SALI, OrbitDrawing, draw_orbit
-from app.palette import LIGHT, Entry, Palette
-from app.printed_axes import WHITE, Axis, draw_flow, font_of, label_axis, typed
-from app.printed_lines import stroke
+from app.rendering.figure_axes import WHITE, Axis, draw_flow, font_of, label_axis, typed
+from app.rendering.figure_lines import stroke
+from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves
+from app.rendering.palette import LIGHT, Entry, Palette
 from engine import CHAOS_THRESHOLD, Orbit, Plane, Potential, find_lyapunov_orbits, trace_zero_velocity_curve
 
 SIDE = 600
@@ -47,7 +47,7 @@ class _Plot(NamedTuple):
 
 def orbit_png(potential: Potential, orbit: Orbit, palette: Palette) -> bytes:
     """A PNG file of an orbit: path, SALI and R² on white, its verdict below and in the text fields."""
-    drawing = draw_orbit(potential, orbit)
+    drawing = compute_orbit_curves(potential, orbit)
     left, gap = 5 * _LETTER, 7 * _LETTER
     page = Image.new("RGB", (left + SIDE + gap + SIDE + 2 * _LETTER, SIDE + 6 * _LETTER), WHITE)
     top, low = 2 * _LETTER, (SIDE - 5 * _LETTER) // 2
@@ -72,7 +72,7 @@ def _provenance(potential: Potential, orbit: Orbit) -> dict[str, str]:
     return {"potential": potential.name, "energy": repr(orbit.energy), "start": start, "verdict": orbit.describe()}
 
 
-def _path_plot(potential: Potential, drawing: OrbitDrawing, palette: Palette) -> _Plot:
+def _path_plot(potential: Potential, drawing: OrbitCurves, palette: Palette) -> _Plot:
     """The path, unless it is too long for a line, with the zero-velocity curve and the Lyapunov orbits."""
     orbit, window = drawing.orbit, drawing.window
     curve = trace_zero_velocity_curve(potential, Plane.X_Y, orbit.energy, window)
@@ -85,7 +85,7 @@ def _path_plot(potential: Potential, drawing: OrbitDrawing, palette: Palette) ->
     return _Plot(f"Path at h = {orbit.energy:.6g}", x, y, label_axis("x", *x), label_axis("y", *y), strokes)
 
 
-def _sali_plot(drawing: OrbitDrawing, palette: Palette) -> _Plot:
+def _sali_plot(drawing: OrbitCurves, palette: Palette) -> _Plot:
     t, sali = drawing.sali
     x = (math.log10(_EARLIEST_TIME), math.log10(max(float(drawing.orbit.t[-1]), 10.0 * _EARLIEST_TIME)))
     y = (math.log10(LEAST_SALI), math.log10(_LARGEST_SALI))
@@ -96,7 +96,7 @@ def _sali_plot(drawing: OrbitDrawing, palette: Palette) -> _Plot:
     )
 
 
-def _r2_plot(drawing: OrbitDrawing, palette: Palette) -> _Plot:
+def _r2_plot(drawing: OrbitCurves, palette: Palette) -> _Plot:
     x = 0.0, max(float(drawing.orbit.t[-1]), _EARLIEST_TIME)
     y = 0.0, 1.05 * max(float(drawing.orbit.r2.max()), 1e-3)
     history = _Stroke(np.column_stack(drawing.r2), palette.orbits[0])
@@ -111,7 +111,7 @@ def _powers(name: str, low: float, high: float) -> Axis:
     return Axis(name, [((k - low) / (high - low), f"1e{k}" if k else "1") for k in chosen])
 
 
-def _visits(drawing: OrbitDrawing, palette: Palette) -> Image.Image | None:
+def _visits(drawing: OrbitCurves, palette: Palette) -> Image.Image | None:
     """How often a long path comes by, in its colour."""
     if drawing.visits is None:
         return None

@@ -6,7 +6,7 @@ import re
 import reprlib
 from typing import Any
 
-from app.systems import TYPED, System, refusal
+from app.state.system import TYPED, System, refusal
 from engine import POTENTIALS, Potential, review_potential
 
 PARAMETERS = ("omega_1", "omega_2", "epsilon")

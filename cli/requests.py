@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.palette import PALETTES, Palette
+from app.rendering.palette import PALETTES, Palette
 from cli.options import Edges, PlaneName
 from cli.potentials import find_potential
 from engine import MapSpec, Plane, start_states

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from app.settings import Settings
+    from app.runtime.settings import Settings
 
 EXAMPLES = """Examples:
 
@@ -34,7 +34,7 @@ def serve_page(
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
     """Serve the page until Ctrl-C or SIGTERM; environment variables with the prefix ESCAPE_EXPLORER_ set its limits."""
-    from app.settings import read_settings
+    from app.runtime.settings import read_settings
 
     # Refused here already, before the seconds that a server takes to start.
     settings = read_settings(os.environ)

@@ -11,21 +11,21 @@ from PIL import Image, ImageDraw
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from app.findings import Findings
-from app.gallery import PRESETS, Preset
-from app.palette import LIGHT, PAPER, PATCH_EDGE
-from app.pictures import picture_pixels
-from app.view_state import ViewState
+from app.rendering.map_analyses import MapAnalyses
+from app.rendering.map_images import picture_pixels
+from app.rendering.palette import LIGHT, PAPER, PATCH_EDGE
+from app.state.presets import PRESETS, Preset
+from app.state.view_state import ViewState
 from engine import (
     EscapeMap,
     StableManifolds,
     compute_map,
     compute_origin_fates,
+    compute_regularity,
     compute_trust,
     find_lyapunov_orbits,
     find_stable_manifolds,
     integrate_orbit,
-    judge_bounded_orbits,
     start_states,
     trace_equipotentials,
 )
@@ -58,10 +58,10 @@ def _thumbnail(preset: Preset) -> Image.Image:
     return _with_lines(picture, frame, preset, findings.manifolds) if preset.picture == "curves" else picture
 
 
-def _findings(frame: EscapeMap, preset: Preset) -> Findings:
+def _findings(frame: EscapeMap, preset: Preset) -> MapAnalyses:
     spec = frame.spec
-    return Findings(
-        regularity=judge_bounded_orbits(frame) if preset.judge else None,
+    return MapAnalyses(
+        regularity=compute_regularity(frame) if preset.judge else None,
         trust=compute_trust(frame) if preset.trust else None,
         origins=compute_origin_fates(spec) if preset.origins else None,
         manifolds=find_stable_manifolds(spec.potential, preset.energy, 2) if preset.manifolds else None,

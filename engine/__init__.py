@@ -1,76 +1,85 @@
 """Escapes in open Hamiltonian systems with polynomial potentials: orbits, exits, maps. Computes, and knows of no screen."""
 
-from engine.certificates import Certificate, describe_certificate
-from engine.crossing_statistics import compute_crossing_statistics, tabulate_crossing_statistics
-from engine.energy_curves import (
+from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
+from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent, fit_uncertainty
+from engine.basins.wada import WadaTest, compute_wada_test
+from engine.dynamics.certificates import Certificate, describe_certificate
+from engine.dynamics.classification import Outcomes, classify_orbits
+from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust, describe_fate, judge_regularity
+from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.dynamics.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
+from engine.execution import count_cores
+from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
+from engine.jobs.client import MOST_REQUESTS, JobClient, Requests
+from engine.jobs.manager import JobRequest, Jobs
+from engine.jobs.requests import (
+    BasinMeasures,
+    BasinMeasuresRequest,
+    BirkhoffDigitsRequest,
+    DecayLawsRequest,
+    DivergentStartAnswer,
+    DivergentStartRequest,
+    EnergyCurvesRequest,
+    EnergyPointRequest,
+    OrbitRequest,
+    OriginFateRequest,
+    PotentialReviewAnswer,
+    PotentialReviewRequest,
+    Preview,
+    PreviewRequest,
+    RegularityRequest,
+    SeparationRequest,
+    StableManifoldsRequest,
+    TrustRequest,
+    UncertaintyExponentRequest,
+    UnresolvedMapSpec,
+    WarmupRequest,
+)
+from engine.jobs.stats import JobStats
+from engine.jobs.subscription import Subscription
+from engine.maps.compute import compute_map
+from engine.maps.origin_fates import OriginFateMap, compute_origin_fates, join_origin_fates
+from engine.maps.preview import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
+from engine.maps.regularity import RegularityMap, compute_regularity
+from engine.maps.result import EscapeMap, describe_codes
+from engine.maps.spec import LARGEST_SIDE, MapSpec
+from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
+from engine.maps.trust import TrustMap, compute_trust
+from engine.potentials.catalogue import POTENTIALS, PotentialEntry, channel_family
+from engine.potentials.formula_parser import LONGEST_TEXT, parse_formula, typeset, write_formula
+from engine.potentials.potential import CASES, FREQUENCIES, STRENGTHS, Potential
+from engine.potentials.validation_report import CriticalPoint, PointKind, PotentialReview, review_potential
+from engine.statistics.decay_law_fits import fit_decay_laws
+from engine.statistics.decay_laws import DecayLaw, DecayLaws, LawFit
+from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
+from engine.statistics.published_fits import PAPER_FITS, HyperbolicTangent, PaperFits, Polynomial
+from engine.statistics.share_fits import Deviation, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine.sweeps.crossing_statistics import compute_crossing_statistics, tabulate_crossing_statistics
+from engine.sweeps.energy_curves import (
     EnergyCurves,
     EnergyCurvesSpec,
     EnergyPoint,
     EnergyPointSpec,
     compute_energy_curves,
-    measure_energy,
+    compute_energy_point,
 )
-from engine.escape_law_fits import fit_escape_laws
-from engine.escape_laws import EscapeLaw, EscapeLaws, LawFit
-from engine.escape_maps import EscapeMap, describe_codes
-from engine.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
-from engine.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust, describe_fate, judge_regularity
-from engine.formulas import LONGEST_TEXT, parse_formula, typeset, write_formula
-from engine.indicators import BirkhoffDigits, IndicatorVerdict, Verdict, compute_birkhoff_digits, judge_indicators
-from engine.job_figures import JobFigures
-from engine.job_specs import (
-    BasinMeasures,
-    BasinMeasuresSpec,
-    DigitsSpec,
-    EscapeLawsSpec,
-    ManifoldsSpec,
-    MapWish,
-    OrbitSpec,
-    OriginSpec,
-    PreparationSpec,
-    Preview,
-    PreviewSpec,
-    RegularitySpec,
-    ReviewAnswer,
-    ReviewSpec,
-    SeparationSpec,
-    TrustSpec,
-    TwinAnswer,
-    TwinSpec,
-    UncertaintySpec,
+from engine.sweeps.run import SweepPlan, plan_sweep, run_sweep
+from engine.sweeps.spec import SweepSpec
+from engine.trajectories.chaos_indicators import (
+    BirkhoffDigits,
+    IndicatorVerdict,
+    Verdict,
+    compute_birkhoff_digits,
+    evaluate_indicators,
 )
-from engine.jobs import Jobs, JobSpec
-from engine.known_potentials import POTENTIALS, PotentialEntry, channel_family
-from engine.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
-from engine.map_specs import LARGEST_SIDE, LONGEST_TIME, MapSpec
-from engine.maps import compute_map
-from engine.metrics.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.metrics.labels import ENTROPY_COUNTS_BOUNDED, MERGING_COUNTS_BOUNDED, exit_labels
-from engine.metrics.merging import MergingTest, compute_merging
-from engine.metrics.uncertainty import UncertaintyExponent, compute_uncertainty_exponent, fit_uncertainty
-from engine.orbit_batches import count_cores
-from engine.orbits import Orbit, integrate_orbit
-from engine.origin_fates import OriginFateMap, compute_origin_fates, join_origin_fates
-from engine.outcomes import Outcomes, classify_orbits
-from engine.paper_fits import PAPER_FITS, HyperbolicTangent, PaperFits, Polynomial
-from engine.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
-from engine.potential_review import CriticalPoint, PointKind, PotentialReview, review_potential
-from engine.potentials import CASES, FREQUENCIES, STRENGTHS, Potential
-from engine.preparation import is_ready_for_maps, prepare_kernels
-from engine.previews import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
-from engine.radius_envelopes import RadiusEnvelope, sample_r2
-from engine.regularity_maps import RegularityMap, judge_bounded_orbits
-from engine.sections import read_section_points
-from engine.separations import LONGEST_SEPARATION, Separation, compute_separation
-from engine.share_fits import Deviation, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
-from engine.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
-from engine.super_sticky import SuperStickyHunt, hunt_super_sticky_orbits
-from engine.sweep_specs import SweepSpec
-from engine.sweeps import SweepPlan, plan_sweep, run_sweep
-from engine.tickets import Ticket
-from engine.trust_maps import TrustMap, compute_trust
-from engine.twins import Twin, find_twin
-from engine.visitors import MOST_REQUESTS, Requests, Visitor
+from engine.trajectories.nearest_divergent_start import Twin, find_twin
+from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
+from engine.trajectories.section_crossings import find_section_crossings
+from engine.trajectories.separation import LONGEST_SEPARATION, Separation, compute_separation
+from engine.trajectories.trajectory import Orbit, integrate_orbit
+from engine.validation import LONGEST_TIME
+from engine.warmup import is_ready_for_maps, prepare_kernels
 
 __all__ = [
     "CASES",
@@ -81,7 +90,6 @@ __all__ = [
     "LONGEST_SEPARATION",
     "LONGEST_TEXT",
     "LONGEST_TIME",
-    "MERGING_COUNTS_BOUNDED",
     "MOST_IMAGES",
     "MOST_REQUESTS",
     "PAPER_FITS",
@@ -89,40 +97,43 @@ __all__ = [
     "PREVIEW_SIDE",
     "PREVIEW_TIME",
     "STRENGTHS",
+    "WADA_COUNTS_BOUNDED",
     "BasinEntropy",
     "BasinMeasures",
-    "BasinMeasuresSpec",
+    "BasinMeasuresRequest",
     "BirkhoffDigits",
+    "BirkhoffDigitsRequest",
     "Certificate",
     "CriticalPoint",
+    "DecayLaw",
+    "DecayLaws",
+    "DecayLawsRequest",
     "Deviation",
-    "DigitsSpec",
+    "DivergentStartAnswer",
+    "DivergentStartRequest",
     "EnergyCurves",
+    "EnergyCurvesRequest",
     "EnergyCurvesSpec",
     "EnergyPoint",
+    "EnergyPointRequest",
     "EnergyPointSpec",
-    "EscapeLaw",
-    "EscapeLaws",
-    "EscapeLawsSpec",
     "EscapeMap",
     "EscapeStatistics",
     "Fate",
     "HyperbolicTangent",
     "IndicatorVerdict",
-    "JobFigures",
-    "JobSpec",
+    "JobClient",
+    "JobRequest",
+    "JobStats",
     "Jobs",
     "LawFit",
     "LyapunovOrbit",
     "ManifoldArc",
-    "ManifoldsSpec",
     "MapSpec",
-    "MapWish",
-    "MergingTest",
     "Orbit",
-    "OrbitSpec",
+    "OrbitRequest",
     "OriginFateMap",
-    "OriginSpec",
+    "OriginFateRequest",
     "Outcomes",
     "PaperFits",
     "Plane",
@@ -131,34 +142,34 @@ __all__ = [
     "Potential",
     "PotentialEntry",
     "PotentialReview",
-    "PreparationSpec",
+    "PotentialReviewAnswer",
+    "PotentialReviewRequest",
     "Preview",
-    "PreviewSpec",
+    "PreviewRequest",
     "RadiusEnvelope",
     "Regularity",
     "RegularityMap",
-    "RegularitySpec",
+    "RegularityRequest",
     "Requests",
-    "ReviewAnswer",
-    "ReviewSpec",
     "Separation",
-    "SeparationSpec",
+    "SeparationRequest",
     "ShareFit",
     "StableManifolds",
-    "SuperStickyHunt",
+    "StableManifoldsRequest",
+    "Subscription",
+    "SuperStickySearch",
     "SweepPlan",
     "SweepSpec",
-    "Ticket",
     "Trust",
     "TrustMap",
-    "TrustSpec",
+    "TrustRequest",
     "Twin",
-    "TwinAnswer",
-    "TwinSpec",
     "UncertaintyExponent",
-    "UncertaintySpec",
+    "UncertaintyExponentRequest",
+    "UnresolvedMapSpec",
     "Verdict",
-    "Visitor",
+    "WadaTest",
+    "WarmupRequest",
     "Window",
     "channel_family",
     "classify_orbits",
@@ -166,45 +177,45 @@ __all__ = [
     "compute_birkhoff_digits",
     "compute_crossing_statistics",
     "compute_energy_curves",
+    "compute_energy_point",
     "compute_map",
-    "compute_merging",
     "compute_origin_fates",
     "compute_preview",
+    "compute_radius_envelope",
+    "compute_regularity",
     "compute_separation",
     "compute_statistics",
     "compute_survival",
     "compute_trust",
     "compute_uncertainty_exponent",
+    "compute_wada_test",
     "count_cores",
     "default_window",
     "describe_certificate",
     "describe_codes",
     "describe_fate",
+    "evaluate_indicators",
     "exit_labels",
     "find_lyapunov_orbits",
+    "find_section_crossings",
     "find_stable_manifolds",
+    "find_super_sticky_orbits",
     "find_twin",
+    "fit_decay_laws",
     "fit_direct_shares",
-    "fit_escape_laws",
     "fit_escape_shares",
     "fit_uncertainty",
-    "hunt_super_sticky_orbits",
     "integrate_orbit",
     "is_ready_for_maps",
     "join_origin_fates",
-    "judge_bounded_orbits",
-    "judge_indicators",
     "judge_regularity",
     "measure_deviation",
-    "measure_energy",
     "parse_formula",
     "plan_sweep",
     "prepare_kernels",
     "preview_spec",
-    "read_section_points",
     "review_potential",
     "run_sweep",
-    "sample_r2",
     "start_states",
     "tabulate_crossing_statistics",
     "trace_equipotentials",

@@ -28,12 +28,12 @@ from engine import (
     compute_basin_entropy,
     compute_crossing_statistics,
     compute_map,
+    compute_regularity,
     compute_trust,
     exit_labels,
     find_lyapunov_orbits,
     fit_escape_shares,
     integrate_orbit,
-    judge_bounded_orbits,
     measure_deviation,
     start_states,
 )
@@ -68,7 +68,7 @@ print("bounded:", f"{shares[Fate.BOUNDED]:.4f}")
 for channel in range(1, CASE.channels + 1):
     print(f"channel {channel}: {shares[channel]:.4f}")
 print(f"worst energy error: {frame.worst_energy_error:.1e}")
-print(f"chaotic among the bounded: {judge_bounded_orbits(frame).chaotic_share:.4f}")
+print(f"chaotic among the bounded: {compute_regularity(frame).chaotic_share:.4f}")
 
 # %% [markdown]
 # The potential is even in x, so that (x, px) and (−x, −px) are starts of mirror images. Exits 1 and 2 have the same share, to
@@ -142,7 +142,7 @@ print(f"our curve: {fitted.deviation.describe()}")
 entropies = []
 for h in energies:
     coarse = compute_map(MapSpec(CASE, Plane.X_PX, float(h), (100, 100), t_max=T_MAX / 10.0))
-    entropies.append(compute_basin_entropy(*exit_labels(coarse, bounded=ENTROPY_COUNTS_BOUNDED)))
+    entropies.append(compute_basin_entropy(*exit_labels(coarse.fate, bounded=ENTROPY_COUNTS_BOUNDED)))
 for h, entropy in zip(energies, entropies, strict=True):
     print(f"h = {h:.2f}: S_b {entropy.s_b:.4f}, S_bb {entropy.s_bb:.4f}{', beyond ln 2' if entropy.beyond_ln2 else ''}")
 
@@ -194,6 +194,6 @@ plt.close(figure)
 # ## Where to go from here
 #
 # - `find_twin`: the nearest start that leaves elsewhere, and `compute_separation`: how the two part.
-# - `find_stable_manifolds`: the curves that the boundaries follow. `compute_merging`: are they Wada?
-# - `fit_escape_laws`: exponential or algebraic decay? `judge_indicators`: second opinions on one orbit.
+# - `find_stable_manifolds`: the curves that the boundaries follow. `compute_wada_test`: are they Wada?
+# - `fit_decay_laws`: exponential or algebraic decay? `evaluate_indicators`: second opinions on one orbit.
 # - `run_sweep`: the same map at hundreds of energies, into one store, resumed after a kill (`docs/long-runs.md`).

@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from engine import CASES, EscapeMap, Fate, Plane, SuperStickyHunt, compute_statistics, find_lyapunov_orbits
+from engine import CASES, EscapeMap, Fate, Plane, SuperStickySearch, compute_statistics, find_lyapunov_orbits
 from reproduction.map_shelf import MapShelf
 from reproduction.stated_numbers import STATED_NUMBERS, Quantity, Relation, StatedNumber
 from reproduction.unknown_windows import FittedWindow, fit_window
@@ -70,7 +70,7 @@ class Comparison:
 
 
 def compare_all(
-    shelf: MapShelf, hunt: SuperStickyHunt, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
+    shelf: MapShelf, hunt: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
 ) -> tuple[Comparison, ...]:
     """Measure all that the paper states.
 
@@ -95,7 +95,7 @@ def compare_all(
 class _Bench:
     """What the measurements share."""
 
-    def __init__(self, shelf: MapShelf, hunt: SuperStickyHunt, numbers: tuple[StatedNumber, ...]) -> None:
+    def __init__(self, shelf: MapShelf, hunt: SuperStickySearch, numbers: tuple[StatedNumber, ...]) -> None:
         self.shelf, self.hunt, self.numbers = shelf, hunt, numbers
         coarse = replace(shelf.quality, resolution=min(shelf.quality.resolution, JUDGED_SIDE))
         self.judged_shelf = MapShelf(coarse, shelf.executor, shelf.cancel)

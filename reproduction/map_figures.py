@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from app.palette import PAPER
+from app.rendering.palette import PAPER
 from engine import CASES, Fate, Plane
 from reproduction.map_panels import add_time_bar, common_longest, common_window, draw_limits, draw_map, show_window
 from reproduction.map_shelf import MapShelf

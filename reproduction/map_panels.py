@@ -10,18 +10,18 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 
-from app.findings import NOTHING_FOUND, Findings
-from app.map_columns import longest_typical_time
-from app.palette import PAPER
-from app.pictures import SHORTEST_TIME, picture_pixels, time_colours
+from app.rendering.image_columns import longest_typical_time
+from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
+from app.rendering.map_images import SHORTEST_TIME, picture_pixels, time_colours
+from app.rendering.palette import PAPER
 from engine import EscapeMap, Fate, Plane, Window, find_lyapunov_orbits, trace_zero_velocity_curve
 from reproduction.printing import EXIT, LIMIT, ORDINATES, label_axes, tidy_axes
 
 
 def draw_map(
-    axes: Axes, frame: EscapeMap, picture: str, longest: float | None = None, findings: Findings = NOTHING_FOUND
+    axes: Axes, frame: EscapeMap, picture: str, longest: float | None = None, findings: MapAnalyses = NO_ANALYSES
 ) -> None:
-    """The pixels of a picture of `app.pictures.TITLES`, with what limits them.
+    """The pixels of a picture of `app.rendering.map_images.TITLES`, with what limits them.
 
     `longest` is the end of the scale of escape times, the map's own where None. Starts outside are as white as forbidden ones, so
     that panels of different windows go together; in the picture of regular and chaotic orbits so are those that escape.

@@ -15,11 +15,11 @@ from engine import (
     MapSpec,
     Plane,
     RegularityMap,
-    SuperStickyHunt,
+    SuperStickySearch,
     Window,
     compute_map,
-    hunt_super_sticky_orbits,
-    judge_bounded_orbits,
+    compute_regularity,
+    find_super_sticky_orbits,
     tabulate_crossing_statistics,
 )
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
@@ -55,7 +55,7 @@ class MapShelf:
         self._maps: dict[MapSpec, EscapeMap] = {}
         self._curves: dict[tuple[str, Plane], xr.Dataset] = {}
         self._judged: dict[MapSpec, RegularityMap] = {}
-        self._hunt: SuperStickyHunt | None = None
+        self._hunt: SuperStickySearch | None = None
 
     def map(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
         """The map of a case of the paper.
@@ -99,13 +99,13 @@ class MapShelf:
             When stopped.
         """
         if frame.spec not in self._judged:
-            regularity = judge_bounded_orbits(frame, cancel=self.cancel, executor=self.executor)
+            regularity = compute_regularity(frame, cancel=self.cancel, executor=self.executor)
             if not regularity.complete:
                 raise CancelledError
             self._judged[frame.spec] = regularity
         return self._judged[frame.spec]
 
-    def hunt(self) -> SuperStickyHunt:
+    def hunt(self) -> SuperStickySearch:
         """The chaotic bounded orbits of case III at h = 0.26 on (x, px), followed on.
 
         Raises
@@ -116,7 +116,7 @@ class MapShelf:
         if self._hunt is None:
             side = self.quality.hunt_resolution
             frame = self._kept(replace(self._spec(STICKY_CASE, Plane.X_PX, STICKY_ENERGY, None), resolution=(side, side)))
-            self._hunt = hunt_super_sticky_orbits(
+            self._hunt = find_super_sticky_orbits(
                 frame, self.judged(frame), self.quality.hunt_t_max, executor=self.executor, cancel=self.cancel
             )
         return self._hunt

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.paper_energies import ENERGIES
+from app.state.energy_ranges import ENERGIES
 from engine import CASES, PAPER_FITS
 
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}

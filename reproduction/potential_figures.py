@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.palette import LIGHT, PAPER
+from app.rendering.palette import LIGHT, PAPER
 from engine import (
     CASES,
     LyapunovOrbit,

@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from app.palette import LIGHT, PATCH_EDGE, Entry
+from app.rendering.palette import LIGHT, PATCH_EDGE, Entry
 from engine import Plane
 
 RESOLUTION = 180

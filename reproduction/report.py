@@ -13,7 +13,7 @@ from importlib import metadata
 
 import numpy as np
 
-from engine import CASES, SuperStickyHunt
+from engine import CASES, SuperStickySearch
 from reproduction.comparisons import JUDGED_SIDE, PERCENT, POINTS, Comparison, compare_all
 from reproduction.fit_sections import write_fits, write_laws
 from reproduction.map_shelf import MapShelf
@@ -30,7 +30,7 @@ _COLUMNS = (
 _LISTED = 20
 
 
-def write_report(shelf: MapShelf, hunt: SuperStickyHunt, rows: tuple[Comparison, ...] | None = None) -> str:
+def write_report(shelf: MapShelf, hunt: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
     """The page, in Markdown.
 
     Parameters
@@ -104,7 +104,7 @@ def _table_row(row: Comparison, place: int, value: float) -> tuple[object, ...]:
     )  # fmt: skip
 
 
-def _introduce(shelf: MapShelf, hunt: SuperStickyHunt) -> str:
+def _introduce(shelf: MapShelf, hunt: SuperStickySearch) -> str:
     quality = shelf.quality
     return _INTRODUCTION.format(
         version=metadata.version("escape-explorer"),
@@ -194,7 +194,7 @@ def _count(rows: Sequence[Comparison]) -> int:
     return sum(row.agrees for row in rows)
 
 
-def _describe_hunt(hunt: SuperStickyHunt) -> str:
+def _describe_hunt(hunt: SuperStickySearch) -> str:
     places = hunt.leavers[-_LISTED:]
     rows = [
         (f"{hunt.escape_time[k]:.0f}", f"{hunt.fate[k]}", f"{hunt.crossings[k]}", f"{hunt.x[k]:.6f}", f"{hunt.ordinate[k]:.6f}")

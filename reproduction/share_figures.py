@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.palette import PAPER
+from app.rendering.palette import PAPER
 from engine import CASES, Fate, Plane, Potential
 from reproduction.map_shelf import MapShelf
 from reproduction.printing import PLANES, add_panel_key, label_axes, name_panels, new_figure, tidy_axes

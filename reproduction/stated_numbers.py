@@ -68,7 +68,7 @@ class StatedNumber:
     counting
         Which starts a share is out of.
     remark
-        Why ours differs, where it differs.
+        AnalysisPresenter ours differs, where it differs.
     """
 
     case: str

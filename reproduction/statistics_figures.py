@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.palette import LIGHT, MEASURED, PAPER, THRESHOLD
+from app.rendering.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares, tabulate_crossing_statistics
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import nine_energies

@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.findings import Findings
-from app.palette import MEASURED, PAPER, THRESHOLD
-from engine import Plane, RadiusEnvelope, SuperStickyHunt, find_lyapunov_orbits, sample_r2
+from app.rendering.map_analyses import MapAnalyses
+from app.rendering.palette import MEASURED, PAPER, THRESHOLD
+from engine import Plane, RadiusEnvelope, SuperStickySearch, compute_radius_envelope, find_lyapunov_orbits
 from reproduction.map_panels import draw_limits, draw_map, show_window
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
@@ -46,7 +46,7 @@ def draw_characters(shelf: MapShelf) -> Figure:
     title = f"Case {STICKY_CASE}, {PLANES[Plane.X_PX]} plane, $h = {STICKY_ENERGY}$: bounded orbits"
     figure = new_figure(6.8, 7.2, title, equal=True)
     axes = figure.subplots()
-    draw_map(axes, frame, "characters", findings=Findings(regularity=regularity))
+    draw_map(axes, frame, "characters", findings=MapAnalyses(regularity=regularity))
     draw_limits(axes, frame, frame.spec.window)
     show_window(axes, Plane.X_PX, frame.spec.window)
     add_key(figure, [*patches(PAPER.character_entries[1:3]), *limiting_lines(Plane.X_PX)])
@@ -72,7 +72,7 @@ def draw_super_sticky(shelf: MapShelf) -> Figure:
     return figure
 
 
-def find_shown(hunt: SuperStickyHunt) -> int | None:
+def find_shown(hunt: SuperStickySearch) -> int | None:
     """The place in a hunt of the orbit to draw: the last to leave by `LONGEST_DRAWN`, else the first; None when none leaves."""
     leavers = hunt.leavers
     if not leavers.size:
@@ -81,14 +81,14 @@ def find_shown(hunt: SuperStickyHunt) -> int | None:
     return int(early[-1] if early.size else leavers[0])
 
 
-def _follow_late_orbit(hunt: SuperStickyHunt, shelf: MapShelf) -> RadiusEnvelope | None:
+def _follow_late_orbit(hunt: SuperStickySearch, shelf: MapShelf) -> RadiusEnvelope | None:
     place = find_shown(hunt)
     if place is None:
         return None
-    return sample_r2(hunt.spec.potential, hunt.states[place], hunt.t_max, _INTERVALS, cancel=shelf.cancel)
+    return compute_radius_envelope(hunt.spec.potential, hunt.states[place], hunt.t_max, _INTERVALS, cancel=shelf.cancel)
 
 
-def _describe(hunt: SuperStickyHunt, orbit: RadiusEnvelope | None) -> str:
+def _describe(hunt: SuperStickySearch, orbit: RadiusEnvelope | None) -> str:
     if orbit is None:
         return f"no chaotic orbit of this map leaves by {hunt.t_max / 1e6:g} million time units"
     return f"an orbit that leaves through channel {orbit.fate} at $t = {orbit.escape_time:.0f}$"
@@ -115,7 +115,7 @@ def _draw_band(axes: Axes, ends: np.ndarray, low: np.ndarray, high: np.ndarray) 
     axes.fill_between(ends, least, greatest, step="post", color=MEASURED, linewidth=0.2)
 
 
-def _draw_exits(axes: Axes, hunt: SuperStickyHunt) -> None:
+def _draw_exits(axes: Axes, hunt: SuperStickySearch) -> None:
     """The band that the Lyapunov orbits span."""
     assert not isinstance(hunt.spec.energy, tuple)
     orbits = find_lyapunov_orbits(hunt.spec.potential, hunt.spec.energy)

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.palette import LAW_COLOURS, MEASURED
-from engine import EscapeLaws, LawFit, Plane, compute_statistics, fit_escape_laws
+from app.rendering.palette import LAW_COLOURS, MEASURED
+from engine import DecayLaws, LawFit, Plane, compute_statistics, fit_decay_laws
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import three_energies
 from reproduction.printing import PLANES, add_panel_key, label_axes, name_panels, new_figure, tidy_axes
@@ -26,13 +26,13 @@ def draw_survival(case: str, shelf: MapShelf) -> Figure:
     panels = list(figure.subplots(1, len(energies), sharex=True))
     for axes, energy in zip(panels, energies, strict=True):
         statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
-        _draw_laws(axes, fit_escape_laws(statistics, shelf.quality.t_max, cancel=shelf.cancel), shelf.quality.t_max)
+        _draw_laws(axes, fit_decay_laws(statistics, shelf.quality.t_max, cancel=shelf.cancel), shelf.quality.t_max)
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
     name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure
 
 
-def _draw_laws(axes: Axes, laws: EscapeLaws, t_max: float) -> None:
+def _draw_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
     times = np.concatenate([[1.0], laws.times[laws.times > 1.0], [t_max]])
     steps = np.concatenate([[1.0], laws.survival[laws.times > 1.0], laws.survival[-1:] if laws.times.size else [1.0]])
     positive = steps > 0.0

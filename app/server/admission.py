@@ -7,9 +7,9 @@ from typing import Any
 
 from tornado.web import HTTPError
 
-from app.server.figures import these_figures
-from app.server.readiness import why_no_entry
-from app.server.site import this_site
+from app.runtime.health import why_no_entry
+from app.runtime.metrics import process_metrics
+from app.runtime.process_state import process_state
 
 
 def admit(request: Any) -> None:
@@ -23,7 +23,7 @@ def admit(request: Any) -> None:
     # A connection belongs to a page that was let in, or to one that comes back after a restart.
     if request.path.endswith("/ws"):
         return
-    reason = why_no_entry(this_site())
+    reason = why_no_entry(process_state())
     if reason is not None:
-        these_figures().refused.inc()
+        process_metrics().refused.inc()
         raise HTTPError(http.client.SERVICE_UNAVAILABLE, reason=reason)

@@ -14,7 +14,7 @@ import secrets
 from tornado.httputil import HTTPHeaders, HTTPServerRequest
 from tornado.web import OutputTransform
 
-from app.settings import current_settings
+from app.runtime.settings import current_settings
 
 _SCRIPT = re.compile(rb"<script(?=[\s>])", re.IGNORECASE)
 

@@ -14,7 +14,7 @@ from typing import Any
 import panel as pn
 from panel.io.state import set_curdoc
 
-from app.server.site import Site
+from app.runtime.process_state import ProcessState
 
 FAREWELL = "The server is restarting. Reload this page in a minute: its address holds the view."
 
@@ -26,7 +26,7 @@ _LAST_SECONDS = 4.0
 log = logging.getLogger(f"bokeh.{__name__}")
 
 
-def stop_gracefully_on_sigterm(site: Site, stop_loop: Callable[[], None]) -> None:
+def stop_gracefully_on_sigterm(site: ProcessState, stop_loop: Callable[[], None]) -> None:
     """Take the place of Bokeh's own handler of SIGTERM, which only stops the loop; to be called on the loop's thread."""
     loop = asyncio.get_running_loop()
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
@@ -39,7 +39,7 @@ def stop_gracefully_on_sigterm(site: Site, stop_loop: Callable[[], None]) -> Non
     loop.add_signal_handler(signal.SIGTERM, stop)
 
 
-def begin_stop(site: Site) -> None:
+def begin_stop(site: ProcessState) -> None:
     """Let nobody in, tell those who are there, drop all jobs, and see to it that the process ends."""
     if site.stopping.is_set():
         return
@@ -52,7 +52,7 @@ def begin_stop(site: Site) -> None:
         site.jobs.stop()
 
 
-def end_stop(site: Site) -> None:
+def end_stop(site: ProcessState) -> None:
     """End the process now that Bokeh has let go of everything: the interpreter would take seconds to take itself apart."""
     if site.stopping.is_set():
         logging.shutdown()

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from playwright.sync_api import expect
 
-from app.gallery import PRESETS
+from app.state.presets import PRESETS
 from tests.browser.explorer_page import ExplorerPage
 
 DEEP = next(preset for preset in PRESETS if preset.key == "closer")

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from playwright.sync_api import expect
 
-from app.palette import OUTCOMES
+from app.rendering.palette import OUTCOMES
 from engine import CASES, Fate, MapSpec, Plane, Window, compute_preview, default_window, preview_spec
 from tests.browser.explorer_page import ExplorerPage
 

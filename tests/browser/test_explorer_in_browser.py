@@ -18,8 +18,8 @@ from engine import (
     Plane,
     Regularity,
     compute_map,
+    compute_regularity,
     integrate_orbit,
-    judge_bounded_orbits,
 )
 from tests.browser.explorer_page import ExplorerPage
 
@@ -211,7 +211,7 @@ def test_regular_and_chaotic_orbits_can_be_told_apart(open_explorer: Callable[..
     expect(title).to_be_visible()
     expect(explorer.text(re.compile(r"\d% of the bounded orbits are chaotic"))).to_be_visible()
     codes = explorer.column("character")
-    expected = judge_bounded_orbits(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (113, 113), t_max=1e3)))
+    expected = compute_regularity(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (113, 113), t_max=1e3)))
     chaotic = expected.character == Regularity.CHAOTIC
     assert chaotic.any()
     assert len(set(codes[chaotic])) == 1

@@ -6,7 +6,7 @@ import re
 
 from playwright.sync_api import expect
 
-from app.gallery import PRESETS
+from app.state.presets import PRESETS
 from tests.browser.explorer_page import ExplorerPage
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.formulas import write_formula
-from engine.known_potentials import POTENTIALS
-from engine.potential_review import review_potential
-from engine.potentials import Potential
+from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.formula_parser import write_formula
+from engine.potentials.potential import Potential
+from engine.potentials.validation_report import review_potential
 
 # Kernels are compiled for each potential: these are in every run, the others, the paper's cases among them, which the other tests
 # are about, where time does not matter.

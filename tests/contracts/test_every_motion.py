@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import classify_orbits, find_lyapunov_orbits
-from engine.potentials import Potential
-from engine.rotations import count_rotations
+from engine.potentials.potential import Potential
+from engine.potentials.symmetry import count_rotations
 from tests.contracts.potentials import each_compiled
 from tests.peers import taylor_heyoka
 from tests.peers.dop853 import equations, variational_equations

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import sympy
 
-from engine.formulas import parse_formula, write_formula
-from engine.potential_review import PointKind, review_potential
-from engine.potentials import Potential
+from engine.potentials.formula_parser import parse_formula, write_formula
+from engine.potentials.potential import Potential
+from engine.potentials.validation_report import PointKind, review_potential
 from tests.contracts.potentials import each_potential
 
 X, Y = sympy.symbols("x y")

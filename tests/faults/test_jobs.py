@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.sentences import sentence
-from engine import CASES, EscapeMap, Jobs, MapSpec, OrbitSpec, Plane, compute_map
+from app.job_clients.error_messages import sentence
+from engine import CASES, EscapeMap, Jobs, MapSpec, OrbitRequest, Plane, compute_map
 
 MAP = MapSpec(CASES["I"], Plane.X_PX, 0.3, (48, 48), t_max=100.0)
 OTHER = MapSpec(CASES["I"], Plane.X_PX, 0.31, (48, 48), t_max=100.0)
@@ -125,9 +125,9 @@ def test_an_orbit_that_fails_is_answered_with_its_error(monkeypatch: pytest.Monk
     def fail(*arguments: Any, **named: Any) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("engine.job_specs.integrate_orbit", fail)
+    monkeypatch.setattr("engine.jobs.requests.integrate_orbit", fail)
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(OrbitSpec(CASES["I"], (0.1, 0.0, 0.0, 0.5), 50.0), inbox.result, inbox.error)
+    jobs.request(OrbitRequest(CASES["I"], (0.1, 0.0, 0.0, 0.5), 50.0), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert [type(error) for error in inbox.errors] == [MemoryError]
     wait_until_idle(jobs)

@@ -13,13 +13,13 @@ from typing import Any
 
 import pytest
 
-from engine.taylor import kernel_cache
-from engine.taylor.compilation import kernel
-from engine.taylor.kernel_cache import CACHE_VARIABLE, ENDING
+from engine.taylor.jit import disk_cache
+from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.disk_cache import CACHE_VARIABLE, ENDING
 
 _PROGRAM = """
 import sys
-from engine.taylor.compilation import kernel
+from engine.taylor.jit.decorator import kernel
 
 @kernel
 def scaled(x):
@@ -43,7 +43,7 @@ def fresh_kernel() -> Callable[[float], float]:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
-    kernel_cache._warn_once.cache_clear()
+    disk_cache._warn_once.cache_clear()
     return tmp_path / "cache" / "kernels"
 
 
@@ -110,7 +110,7 @@ def test_a_cache_that_cannot_be_a_folder_is_done_without(
     obstacle = tmp_path / "file"
     obstacle.write_text("")
     monkeypatch.setenv(CACHE_VARIABLE, str(obstacle))
-    kernel_cache._warn_once.cache_clear()
+    disk_cache._warn_once.cache_clear()
     assert [fresh_kernel()(2.0), fresh_kernel()(2.0)] == [6.0, 6.0]
     assert len([sentence for sentence in said(caplog) if "cannot be kept" in sentence]) == 1
     assert obstacle.read_text() == ""
@@ -123,7 +123,7 @@ def test_a_disk_that_takes_nothing_is_done_without(
     def refuse(*arguments: Any) -> None:
         raise OSError(reason, os.strerror(reason))
 
-    monkeypatch.setattr(kernel_cache.os, "replace", refuse)
+    monkeypatch.setattr(disk_cache.os, "replace", refuse)
     assert fresh_kernel()(2.0) == 6.0
     (sentence,) = said(caplog)
     assert os.strerror(reason) in sentence
@@ -132,7 +132,7 @@ def test_a_disk_that_takes_nothing_is_done_without(
 
 def test_a_cache_that_can_only_be_read_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh_kernel()(2.0)
-    monkeypatch.setattr(kernel_cache.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
+    monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1

@@ -14,13 +14,13 @@ import pytest
 from hypothesis import given
 from playwright.sync_api import Browser
 
-from app.orbit_requests import ChosenOrbit
-from app.sentences import as_markdown
-from app.views.energy_curves import EnergyCurvesView
-from app.views.measures import MeasuresView
-from app.views.orbit_desk import DeskActions, OrbitDesk
-from app.views.potential_panel import PotentialPanel
-from app.views.progress import ProgressView
+from app.job_clients.error_messages import as_markdown
+from app.job_clients.orbit_requests import ChosenOrbit
+from app.views.analysis.basin_measures import BasinMeasuresView
+from app.views.analysis.energy_curves import EnergyCurvesView
+from app.views.analysis.potential_panel import PotentialPanel
+from app.views.components.progress import ProgressView
+from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from tests.fuzz.hostile import texts
 
 HOSTILE = (
@@ -61,12 +61,12 @@ def test_a_warning_on_the_page_is_written_that_way() -> None:
 
 
 def _desk() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    desk = OrbitDesk(DeskActions(*[lambda *_: None] * len(fields(DeskActions))))
+    desk = OrbitControls(OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
     return desk.say, desk.note
 
 
 def _verdict() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    desk = OrbitDesk(DeskActions(*[lambda *_: None] * len(fields(DeskActions))))
+    desk = OrbitControls(OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
     return lambda said: desk.show([ChosenOrbit((0.1, 0.2), problem=said)], 0), desk.text
 
 
@@ -76,7 +76,7 @@ def _curves() -> tuple[Callable[[str], None], pn.pane.HTML]:
 
 
 def _measures() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    measures = MeasuresView(lambda *_: None)
+    measures = BasinMeasuresView(lambda *_: None)
     return measures.say, measures.text
 
 

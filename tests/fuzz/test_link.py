@@ -11,10 +11,10 @@ from urllib.parse import parse_qsl, urlencode
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.link import LINKED, read_link, write_link
-from app.sentences import as_markdown
-from app.systems import SYSTEM, TYPED
-from app.view_state import ViewState
+from app.job_clients.error_messages import as_markdown
+from app.state.permalink import LINKED, read_link, write_link
+from app.state.system import SYSTEM, TYPED
+from app.state.view_state import ViewState
 from engine import CASES
 from tests.fuzz.hostile import LONGEST_SENTENCE, STRINGS, answer_or_refusal, floats, formulas, texts
 

@@ -9,9 +9,9 @@ from urllib.parse import parse_qsl
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.link import read_link, write_link
-from app.systems import TYPED, System, refusal
-from app.view_state import ViewState
+from app.state.permalink import read_link, write_link
+from app.state.system import TYPED, System, refusal
+from app.state.view_state import ViewState
 from cli.potentials import PARAMETERS, find_potential, name_in_files
 from engine import POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
 from tests.fuzz.hostile import LONGEST_SENTENCE, answer_or_refusal, anything, case_strings, either, formulas

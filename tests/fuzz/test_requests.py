@@ -23,23 +23,23 @@ from engine import (
     compute_basin_entropy,
     compute_birkhoff_digits,
     compute_map,
-    compute_merging,
+    compute_radius_envelope,
     compute_separation,
     compute_statistics,
     compute_uncertainty_exponent,
+    compute_wada_test,
     default_window,
     find_lyapunov_orbits,
     find_stable_manifolds,
     find_twin,
+    fit_decay_laws,
     fit_direct_shares,
-    fit_escape_laws,
     fit_escape_shares,
     fit_uncertainty,
     integrate_orbit,
     measure_deviation,
     plan_sweep,
     preview_spec,
-    sample_r2,
     start_states,
     trace_equipotentials,
     trace_zero_velocity_curve,
@@ -135,7 +135,7 @@ def test_digits(state: Any, t_max: Any) -> None:
 @given(states, times, either(st.integers(1, 20)))
 def test_the_envelope_of_r2(state: Any, t_max: Any, intervals: Any) -> None:
     short = t_max if not (isinstance(t_max, int | float) and 100.0 < t_max <= LONGEST_TIME) else 100.0
-    answer_or_refusal(lambda: sample_r2(CASE, state, short, intervals), ["state", "t_max", "intervals", "energy"])
+    answer_or_refusal(lambda: compute_radius_envelope(CASE, state, short, intervals), ["state", "t_max", "intervals", "energy"])
 
 
 @given(energies)
@@ -190,7 +190,7 @@ def test_the_plan_of_a_sweep(cores: Any) -> None:
 def test_measures_of_a_picture(picture: Any, valid: Any, box: Any) -> None:
     names = ["labels", "valid", "box"]
     answer_or_refusal(lambda: compute_basin_entropy(picture, valid, box), names)
-    answer_or_refusal(lambda: compute_merging(picture, valid), names)
+    answer_or_refusal(lambda: compute_wada_test(picture, valid), names)
     frame = small_map()
     answer_or_refusal(lambda: compute_basin_entropy(frame.fate, frame.fate >= 0, box), names)
 
@@ -210,7 +210,7 @@ def test_fits_of_escape_times(t_max: Any, window: Any, resamples: Any, seed: Any
         return
     statistics = compute_statistics(small_map())
     names = ["t_max", "window", "resamples", "seed"]
-    answer_or_refusal(lambda: fit_escape_laws(statistics, t_max, window=window, resamples=resamples, seed=seed), names)
+    answer_or_refusal(lambda: fit_decay_laws(statistics, t_max, window=window, resamples=resamples, seed=seed), names)
 
 
 @given(either(st.integers(5, 12)), either(st.integers(3, 6)), either(st.floats(1.0, 10.0)), counts)

@@ -8,7 +8,7 @@ from dataclasses import asdict, fields
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.settings import Settings, read_settings, variable_of
+from app.runtime.settings import Settings, read_settings, variable_of
 from tests.fuzz.hostile import answer_or_refusal, floats, texts
 
 VARIABLES = [variable_of(setting.name) for setting in fields(Settings)]

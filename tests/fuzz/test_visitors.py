@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine import CASES, Jobs, MapSpec, OrbitSpec, Plane, Ticket, Visitor
+from engine import CASES, JobClient, Jobs, MapSpec, OrbitRequest, Plane, Subscription
 from tests.fuzz.hostile import anything
 
-ORBITS = [OrbitSpec(CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0) for k in range(4)]
-BROKEN = OrbitSpec(CASES["I"], (float("nan"), 0.0, 0.1, 0.5), 20.0)
+ORBITS = [OrbitRequest(CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0) for k in range(4)]
+BROKEN = OrbitRequest(CASES["I"], (float("nan"), 0.0, 0.1, 0.5), 20.0)
 MAPS = [MapSpec(CASES["I"], Plane.X_PX, 0.19 + 0.001 * k, (6, 6), t_max=20.0) for k in range(3)]
 asked = st.sampled_from(["take back", "leave", BROKEN, *ORBITS, *MAPS])
 
@@ -43,9 +43,9 @@ class Inbox:
 
 @given(st.integers(1, 4), st.lists(asked, max_size=12))
 def test_what_is_under_way_stays_within_the_limit(most: int, actions: list[Any]) -> None:
-    visitor = Visitor(jobs(), most)
-    tickets: list[Ticket] = []
-    inboxes: list[tuple[Any, Ticket, Inbox]] = []
+    visitor = JobClient(jobs(), most)
+    tickets: list[Subscription] = []
+    inboxes: list[tuple[Any, Subscription, Inbox]] = []
     for action in actions:
         if action == "take back":
             for ticket in tickets[-1:]:
@@ -82,4 +82,4 @@ def test_a_limit_that_is_none(most: Any) -> None:
     if isinstance(most, int) and 1 <= most <= 1000:
         return
     with pytest.raises((ValueError, TypeError)):
-        Visitor(jobs(), most)
+        JobClient(jobs(), most)

@@ -1,0 +1,72 @@
+"""The energy, played: a sweep upward through the slider's range, one quick look after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+SWEEP_SECONDS = 20.0
+"""A sweep over the whole range lasts this long, or longer where quick looks take their time."""
+
+TICK_MS = 80
+
+
+class Timer(Protocol):
+    """What calls back in time: a Bokeh document."""
+
+    def add_periodic_callback(self, callback: Callable[[], None], period_milliseconds: int) -> Any:
+        """Call again and again."""
+
+    def remove_periodic_callback(self, callback_obj: Any) -> None:
+        """Call no more."""
+
+
+class EnergyAnimation:
+    """Plays from an energy to the end of the range, and from its beginning when it stands at the end.
+
+    Parameters
+    ----------
+    timer
+        The session's document.
+    is_busy
+        Whether the last energy is still being drawn: then a tick is left out.
+    on_energy
+        Called with each energy in turn.
+    on_stop
+        Called with the last one.
+    """
+
+    def __init__(
+        self, timer: Timer, is_busy: Callable[[], bool], on_energy: Callable[[float], None], on_stop: Callable[[float], None]
+    ) -> None:
+        self._timer, self._is_busy, self._on_energy, self._on_stop = timer, is_busy, on_energy, on_stop
+        self._callback: Any = None
+        self._energy = self._end = self._step = 0.0
+
+    @property
+    def playing(self) -> bool:
+        """Whether it runs."""
+        return self._callback is not None
+
+    def start(self, energy: float, low: float, high: float) -> None:
+        """Play from an energy on."""
+        if self.playing:
+            return
+        self._energy = energy if low <= energy < high else low
+        self._end, self._step = high, (high - low) * TICK_MS / (1000.0 * SWEEP_SECONDS)
+        self._callback = self._timer.add_periodic_callback(self._tick, TICK_MS)
+
+    def stop(self) -> None:
+        """Stay where it is."""
+        if self.playing:
+            self._timer.remove_periodic_callback(self._callback)
+            self._callback = None
+            self._on_stop(self._energy)
+
+    def _tick(self) -> None:
+        if not self.playing or self._is_busy():
+            return
+        self._energy = min(self._energy + self._step, self._end)
+        self._on_energy(self._energy)
+        if self._energy >= self._end:
+            self.stop()

@@ -1,0 +1,101 @@
+"""The system in view: one of the known potentials or a typed one, with its parameters; and the energies worth a look."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from app.rendering.palette import MOST_CHANNELS
+from app.state.energy_ranges import ENERGIES, EnergyRange
+from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
+
+TYPED = "typed"
+"""Stands for a potential that a visitor typed, where others have their name."""
+
+SYSTEM = ("case", "formula", "omega_1", "omega_2", "epsilon")
+"""The attributes of a view state that make up its system."""
+
+# Of the escape energy: where the slider begins, where a look begins, and where the slider ends.
+_LOW, _FIRST, _HIGH = 0.8, 1.5, 4.0
+# Of the way from the escape energy to that above which the exits do not stay apart.
+_BELOW_HIGHEST = 0.99
+# Of the escape energy: a span as narrow as this is all rounding.
+_NARROWEST = 1e-9
+
+
+@dataclass(frozen=True)
+class System:
+    """Which potential, and the parameters ω1, ω2 and ε of Zotos (2014), V = ½(ω1² x² + ω2² y²) + ε V1.
+
+    Attributes
+    ----------
+    case
+        A key of `engine.POTENTIALS`, or TYPED.
+    formula
+        V as it was typed, for TYPED; else nothing.
+    omega_1, omega_2, epsilon
+        As of `Potential.with_parameters`.
+    """
+
+    case: str
+    formula: str = ""
+    omega_1: float = 1.0
+    omega_2: float = 1.0
+    epsilon: float = 1.0
+
+    @property
+    def potential(self) -> Potential:
+        """The potential; ValueError, in a sentence, where the formula or a parameter is of no use."""
+        return _potential(self)
+
+    @property
+    def changed(self) -> dict[str, float]:
+        """The parameters that are not 1."""
+        given = {"omega_1": self.omega_1, "omega_2": self.omega_2, "epsilon": self.epsilon}
+        return {name: value for name, value in given.items() if value != 1.0}
+
+    @property
+    def title(self) -> str:
+        """What people call it, its parameters left out."""
+        return "Typed potential" if self.case == TYPED else POTENTIALS[self.case].title
+
+    @property
+    def formula_shown(self) -> str:
+        """V as text, with the parameters put in."""
+        if self.case == TYPED or self.changed:
+            return write_formula(self.potential)
+        return POTENTIALS[self.case].formula
+
+    @property
+    def energies(self) -> EnergyRange:
+        """The energies that the slider spans: the paper's, or as many times the escape energy."""
+        if self.case in CASES and not self.changed:
+            return ENERGIES[self.case]
+        return _energies(self.potential)
+
+
+@lru_cache(maxsize=64)
+def _potential(system: System) -> Potential:
+    plain = parse_formula(system.formula) if system.case == TYPED else POTENTIALS[system.case].potential
+    return plain.with_parameters(system.omega_1, system.omega_2, system.epsilon)
+
+
+@lru_cache(maxsize=64)
+def _energies(potential: Potential) -> EnergyRange:
+    escape = potential.escape_energy
+    span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * escape)
+    first, high = min(_FIRST * escape, escape + 0.5 * span), min(_HIGH * escape, escape + span)
+    # So many that rounding keeps all of these apart.
+    decimals = max(2 - math.floor(math.log10(escape)), 1 - math.floor(math.log10(high - escape)))
+    low, first, high = (round(energy, decimals) for energy in (_LOW * escape, first, high))
+    return EnergyRange(low, high, (), first, decimals)
+
+
+def refusal(found: PotentialReview) -> str | None:
+    """Why the page cannot show a potential, in a sentence; None when it can."""
+    if found.refusal is None and found.channels > MOST_CHANNELS:
+        return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
+    if found.refusal is None and found.escape_energy <= 0.0:
+        return f"Its escape energy is {found.escape_energy:.6g}; leave out the constant term, so that it is above 0."
+    return found.refusal

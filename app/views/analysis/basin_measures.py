@@ -1,0 +1,137 @@
+"""How mixed and how fractal the basins are: entropies, merging, uncertainty exponent; and by which law orbits leave."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+import numpy as np
+import panel as pn
+import panel_material_ui as pmui
+from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
+
+from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
+from app.views.components.collapsible_section import Section
+from app.views.components.legends import legend
+from app.views.components.plots import FRAME, set_decades, set_range, square_figure, with_help
+from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
+
+_LAW_POINTS = 200
+_MEASURING = "Following pairs of starts …"
+
+
+class BasinMeasuresView:
+    """A column of sentences, the uncertain share against separation, and the survival; `on_exponent` begins the measuring."""
+
+    def __init__(self, on_exponent: Callable[[], None]) -> None:
+        self.button = pmui.Button(
+            label="Measure the uncertainty exponent", variant="outlined", size="small", sx={"textTransform": "none"}
+        )
+        self.button.on_click(lambda event: on_exponent())
+        self.text = pn.pane.HTML("", name="measures", width=FRAME + 60)
+        self._sentences: dict[str, str] = {}
+        both = {"x_axis_type": "log", "y_axis_type": "log"}
+        self.uncertainty = square_figure(
+            "uncertainty", "Uncertain pairs of starts", x_axis_label="separation", y_axis_label="uncertain share",
+            x_range=Range1d(1e-10, 1.0), y_range=Range1d(1e-3, 1.0), **both,
+        )  # fmt: skip
+        self.survival = square_figure(
+            "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
+            x_range=Range1d(1.0, 100.0), y_range=Range1d(1e-3, 1.0), **both,
+        )  # fmt: skip
+        self.pairs = ColumnDataSource({"separation": [], "share": [], "colour": []}, name="pairs")
+        self._line = ColumnDataSource({"separation": [], "share": []}, name="exponent_line")
+        self.steps = ColumnDataSource({"t": [], "share": []}, name="survival_steps")
+        self._laws = {law: ColumnDataSource({"t": [], "share": []}, name=f"{law}_law") for law in LAW_COLOURS}
+        self._draw()
+        columns = [
+            pn.Column(self.button, self.text, width=FRAME + 75, margin=(0, 6)),
+            with_help(pn.pane.Bokeh(self.uncertainty, margin=0), "uncertainty"),
+            with_help(pn.pane.Bokeh(self.survival, margin=0), "survival", self._law_legend()),
+        ]
+        self.section = Section("Basin measures", columns, (self.uncertainty, self.survival))
+
+    def begin(self) -> None:
+        """Another map: what was measured of the last one says nothing of it."""
+        if self._sentences:
+            self._sentences = {}
+            self.show_exponent(None)
+            self._write()
+
+    def show_basins(self, measures: BasinMeasures) -> None:
+        """What the pixels say."""
+        self._sentences |= {"Basin entropy": measures.entropy.describe(), "Wada": measures.merging.describe()}
+        self._write()
+
+    def show_laws(self, laws: DecayLaws) -> None:
+        """S(t) with the fits."""
+        self._sentences["Escape law"] = laws.describe()
+        self.steps.data = {"t": laws.times, "share": laws.survival}
+        for fit, source in zip((laws.exponential, laws.power_law), self._laws.values(), strict=True):
+            source.data = _law_line(fit)
+        seen = laws.survival > 0.0
+        if np.count_nonzero(seen) > 1 and laws.times[seen][-1] > 0.0:
+            latest = float(laws.times[seen][-1])
+            set_range(self.survival.x_range, min(1.0, 0.1 * latest), 1.5 * latest)
+            set_decades(self.survival.y_range, float(laws.survival[seen].min()), 1.0)
+        self._write()
+
+    def wait_for_exponent(self) -> None:
+        """Pairs of starts are on their way."""
+        self.button.disabled = True
+        self._sentences["Uncertainty exponent"] = _MEASURING
+        self._write()
+
+    def show_exponent(self, found: UncertaintyExponent | None) -> None:
+        """Shares and fit; None for none."""
+        self.button.disabled = False
+        self._sentences.pop("Uncertainty exponent", None)
+        if found is None:
+            self.pairs.data, self._line.data = {"separation": [], "share": [], "colour": []}, {"separation": [], "share": []}
+            return
+        shares = found.shares
+        positive = shares > 0.0
+        self.pairs.data = {
+            "separation": found.separations[positive], "share": shares[positive],
+            "colour": np.where(found.used[positive], MEASURED, SET_ASIDE),
+        }  # fmt: skip
+        ends = found.separations[found.used]
+        fitted = ends if np.isfinite(found.exponent) else ends[:0]
+        self._line.data = {"separation": fitted, "share": found.amplitude * fitted**found.exponent}
+        set_range(self.uncertainty.x_range, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
+        if positive.any():
+            set_decades(self.uncertainty.y_range, float(shares[positive].min()), float(shares.max()))
+        self._sentences["Uncertainty exponent"] = found.describe()
+        self._write()
+
+    def say(self, sentence: str) -> None:
+        """What went wrong."""
+        self.button.disabled = False
+        self._sentences["Uncertainty exponent"] = sentence
+        self._write()
+
+    def _draw(self) -> None:
+        style: dict[str, Any] = {"x": "separation", "y": "share"}
+        self.uncertainty.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
+        self.uncertainty.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
+        self.survival.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
+        for law, source in self._laws.items():
+            self.survival.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
+
+    def _law_legend(self) -> pn.viewable.Viewable:
+        entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
+        return pn.pane.HTML(legend(entries), width=FRAME + 60, margin=(0, 5))
+
+    def _write(self) -> None:
+        body = "".join(f"<p style='margin:4px 0'><b>{name}.</b> {escape(said)}</p>" for name, said in self._sentences.items())
+        self.text.object = f"<div style='font-size:14px'>{body}</div>"
+
+
+def _law_line(fit: LawFit | None) -> dict[str, np.ndarray]:
+    if fit is None:
+        return {"t": np.zeros(0), "share": np.zeros(0)}
+    t = np.geomspace(fit.t_low, fit.t_high, _LAW_POINTS)
+    share = fit.curve(t)
+    drawn = share > 0.0
+    return {"t": t[drawn], "share": share[drawn]}

@@ -1,0 +1,169 @@
+"""Curves against energy: shares, entropies, uncertainty exponent, escape times; a click opens the map of that energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+
+import numpy as np
+import panel as pn
+import panel_material_ui as pmui
+from bokeh.events import Tap
+from bokeh.models import ColumnDataSource, HoverTool, Line, MultiLine, Range1d, Scatter, Segment, Span
+from bokeh.plotting import figure
+
+from app.rendering.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
+from app.views.components.collapsible_section import Section
+from app.views.components.legends import legend
+from app.views.components.plots import FRAME, set_range, square_figure, with_help
+from engine import EnergyCurves
+
+TITLES = {
+    "shares": "Shares of the interior starts",
+    "entropies": "Basin entropy",
+    "exponents": "Uncertainty exponent",
+    "escapes": "Escape time",
+}
+START, STOP = "Sweep the energies", "Stop"
+_SECOND = LAW_COLOURS["exponential"]
+_NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": []}
+_DASH = "8 8"
+_COLUMNS = ("h", "s_b", "s_bb", "exponent", "exponent_low", "exponent_high", "mean_escape_time", "median_escape_time")
+
+
+class EnergyCurvesView:
+    """Four figures with one energy axis.
+
+    Parameters
+    ----------
+    on_sweep
+        Called when the button is pressed.
+    on_energy
+        Called with the energy of the point clicked.
+    """
+
+    def __init__(self, on_sweep: Callable[[], None], on_energy: Callable[[float], None]) -> None:
+        self._palette = PAPER
+        self._on_energy = on_energy
+        self.shown: EnergyCurves | None = None
+        self.running = False
+        self.button = pmui.Button(label=START, variant="outlined", size="small", width=200, sx={"textTransform": "none"})
+        self.button.on_click(lambda event: on_sweep())
+        self.text = pn.pane.HTML("", name="sweep", margin=(8, 10))
+        energies = Range1d(0.0, 1.0)
+        self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="energy_points")
+        self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
+        self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
+        logarithmic = {"escapes": {"y_axis_type": "log"}}
+        self.figures = {
+            name: square_figure(name, title, x_axis_label="h", x_range=energies, **logarithmic.get(name, {}))
+            for name, title in TITLES.items()
+        }
+        self._legend = pn.pane.HTML(width=FRAME + 60, margin=(0, 5))
+        self._draw()
+        for plot in self.figures.values():
+            plot.add_layout(self._here)
+            plot.on_event(Tap, lambda event: self.open_near(event.x))
+        self.section = Section("Against energy", self._layout(), tuple(self.figures.values()))
+
+    def follow_energy(self, energy: float) -> None:
+        """Mark the energy in view."""
+        self._here.location = energy
+
+    def show_running(self, running: bool) -> None:
+        """Name the button after what it does next."""
+        self.running = running
+        self.button.label = STOP if running else START
+
+    def show(self, curves: EnergyCurves | None) -> None:
+        """Draw what is known; None takes it away."""
+        self.shown = curves
+        if curves is None:
+            self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, _NO_SHARES
+            self.text.object = ""
+            return
+        self.points.data = {name: curves.energies if name == "h" else curves.curve(name) for name in _COLUMNS}
+        shares = curves.shares.T
+        colours = [self._palette.bounded, *self._palette.channels[: len(shares) - 1]]
+        # Mirror images have the same share: dashed curves, drawn last, let solid ones be seen through.
+        order = sorted(range(len(shares)), key=_is_dashed)
+        self._shares.data = {
+            "xs": [curves.energies] * len(shares),
+            "ys": [shares[k] for k in order],
+            "colour": [colours[k] for k in order],
+            "dash": [_DASH if _is_dashed(k) else "solid" for k in order],
+        }
+        swept = curves.spec.energies
+        if len(swept) > 1:
+            set_range(self.figures["shares"].x_range, swept[0], swept[-1])
+        self.text.object = f"<span style='font-size:14px'>{_progress(curves)}</span>"
+        self._legend.object = legend(self._entries(len(shares) - 1))
+
+    def say(self, sentence: str) -> None:
+        """What went wrong."""
+        self.text.object = f"<span style='font-size:14px'>{escape(sentence)}</span>"
+
+    def open_near(self, energy: float) -> None:
+        """Open the map of the measured energy next to this one."""
+        energies = np.asarray(self.points.data["h"])
+        if energies.size:
+            self._on_energy(float(energies[np.argmin(np.abs(energies - energy))]))
+
+    def set_palette(self, palette: Palette) -> None:
+        """Colours of the channels."""
+        self._palette = palette
+        if self.shown is not None:
+            self.show(self.shown)
+
+    def _entries(self, channels: int) -> list[Entry]:
+        return [Entry("bounded", self._palette.bounded), *self._palette.channel_entries(channels)]
+
+    def _layout(self) -> list[pn.viewable.Viewable]:
+        said = {
+            "shares": [self._legend],
+            "entropies": [_key({"S_b": MEASURED, "S_bb": _SECOND, "ln 2": THRESHOLD})],
+            "exponents": [_key({"α with its 95 % interval": MEASURED})],
+            "escapes": [_key({"mean": MEASURED, "median": _SECOND})],
+        }
+        columns = [with_help(pn.pane.Bokeh(plot, margin=0), name, *said[name]) for name, plot in self.figures.items()]
+        return [pn.Row(self.button, self.text, sizing_mode="stretch_width"), *columns]
+
+    def _draw(self) -> None:
+        shares = self.figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
+        assert shares is not None
+        drawn = {
+            "entropies": {"s_b": MEASURED, "s_bb": _SECOND},
+            "exponents": {"exponent": MEASURED},
+            "escapes": {"mean_escape_time": MEASURED, "median_escape_time": _SECOND},
+        }
+        for name, curves in drawn.items():
+            for column, colour in curves.items():
+                _draw_curve(self.figures[name], self.points, column, colour)
+        interval = Segment(x0="h", x1="h", y0="exponent_low", y1="exponent_high", line_color=MEASURED, line_alpha=0.6)
+        self.figures["exponents"].add_glyph(self.points, interval)
+        ln2 = Span(location=float(np.log(2.0)), dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
+        self.figures["entropies"].add_layout(ln2)
+
+
+def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str) -> None:
+    plot.add_glyph(source, Line(x="h", y=column, line_color=colour, line_width=2))
+    points = plot.add_glyph(source, Scatter(x="h", y=column, size=5, fill_color=colour, line_color=colour))
+    tooltips = [("h", "@h{0.0000}"), (column.replace("_", " "), f"@{column}{{0.0000}}")]
+    plot.add_tools(HoverTool(tooltips=tooltips, renderers=[points], mode="vline", visible=False))
+
+
+def _is_dashed(code: int) -> bool:
+    """Whether the curve of a channel, or with 0 of bounded starts, is dashed."""
+    return code > 0 and code % 2 == 0
+
+
+def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
+    return pn.pane.HTML(legend(Entry(label, colour) for label, colour in entries.items()), width=FRAME + 60, margin=(0, 5))
+
+
+def _progress(curves: EnergyCurves) -> str:
+    done, wanted = len(curves.points), len(curves.spec.energies)
+    plane = curves.spec.plane.value
+    if curves.complete:
+        return f"{wanted} energies on {plane}. Click a curve to open the map of that energy."
+    return f"{done} of {wanted} energies on {plane} …"

@@ -1,0 +1,112 @@
+"""The curves over the pictures: zero-velocity curve, equipotentials, Lyapunov orbits with their channel numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from bokeh.models import ColumnDataSource, MultiLine, Text
+from bokeh.plotting import figure
+
+from app.rendering.palette import DARK, LIGHT, PAPER, Entry, Inks, Palette
+from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials
+
+# Energies of the faint equipotentials, in units of the escape energy.
+_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
+
+
+class CurveLayers:
+    """Sources of the curves, drawn into any number of figures."""
+
+    def __init__(self) -> None:
+        self._limit = ColumnDataSource({"xs": [], "ys": []}, name="zero_velocity_curve")
+        self._levels = ColumnDataSource({"xs": [], "ys": []}, name="equipotentials")
+        self._critical = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
+        self._exits = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
+        self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
+        self._palette: Palette = PAPER
+        self._inks: Inks = LIGHT
+        # Glyphs whose ink depends on the page, by the name of that ink.
+        self._inked: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
+
+    def draw(self, plot: figure, *, full: bool) -> None:
+        """Add the curves to a figure; the equipotentials only when `full`."""
+        if full:
+            self._draw_inked(plot, self._levels, "equipotential", 1.0)
+            self._draw_inked(plot, self._critical, "critical_equipotential", 1.5)
+        self._draw_inked(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
+        plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
+        plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
+        if full:
+            number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
+            number.text_font_style = "bold"
+            plot.add_glyph(self._labels, number)
+
+    def _draw_inked(self, plot: figure, source: ColumnDataSource, ink: str, width: float) -> None:
+        line = MultiLine(line_color=getattr(self._inks, ink), line_width=width)
+        plot.add_glyph(source, line)
+        self._inked[ink].append(line)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Colours of the exits, from the next `show` on."""
+        self._palette = palette
+
+    def set_dark(self, dark: bool) -> None:
+        """Inks for a dark page, or for a light one."""
+        self._inks = DARK if dark else LIGHT
+        for ink, glyphs in self._inked.items():
+            for glyph in glyphs:
+                glyph.line_color = getattr(self._inks, ink)
+
+    def show(self, spec: MapSpec, *, quickly: bool = False) -> None:
+        """The curves of a map's plane, window and energy; `quickly` leaves the equipotentials as they are."""
+        limit, critical, *others = _trace(spec, () if quickly or spec.plane is Plane.X_H else (1.0, *_LEVELS))
+        self._limit.data = _lines(limit)
+        orbits = find_lyapunov_orbits(spec.potential, _energy(spec)) if spec.plane is Plane.X_Y else ()
+        # Every message takes its time, those that say nothing too.
+        if orbits or self._exits.data["xs"]:
+            self._show_exits(orbits)
+        if not quickly:
+            self._critical.data = _lines(critical)
+            self._levels.data = _lines([line for lines in others for line in lines])
+
+    def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
+        colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
+        self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
+        middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
+        self._labels.data = {
+            "x": [0.86 * point[0] for point in middles],
+            "y": [0.86 * point[1] for point in middles],
+            "text": [str(orbit.channel) for orbit in orbits],
+            "colour": colours,
+        }
+
+    def entries(self, spec: MapSpec) -> list[Entry]:
+        """Legend of the curves that this plane shows."""
+        limiting = {Plane.X_Y: "V = h", Plane.X_PX: "½px² + V(x, 0) = h", Plane.X_H: "V(x, 0) = h"}[spec.plane]
+        entries = [Entry(f"limiting curve {limiting}", self._inks.limiting_curve)]
+        if spec.plane is not Plane.X_H:
+            entries += [Entry("the same at the escape energy", self._inks.critical_equipotential)]
+            entries += [Entry("at other energies", self._inks.equipotential)]
+        if spec.plane is Plane.X_Y:
+            entries += [Entry(f"Lyapunov orbit {k}", self._palette.channels[k - 1]) for k in _open_channels(spec)]
+        return entries
+
+
+def _energy(spec: MapSpec) -> float:
+    return 0.0 if isinstance(spec.energy, tuple) else spec.energy
+
+
+def _trace(spec: MapSpec, levels: tuple[float, ...]) -> list[list[np.ndarray]]:
+    """The limiting curve, and the equipotentials of these energies in units of the escape energy; an empty one where none are."""
+    energies = (_energy(spec), *(level * spec.potential.escape_energy for level in levels))
+    return [*trace_equipotentials(spec.potential, spec.plane, energies, spec.window), *([] if levels else [[]])]
+
+
+def _open_channels(spec: MapSpec) -> tuple[int, ...]:
+    return () if isinstance(spec.energy, tuple) else spec.potential.open_channels(spec.energy)
+
+
+def _lines(pieces: list[np.ndarray]) -> dict[str, list[np.ndarray]]:
+    return {"xs": [piece[:, 0] for piece in pieces], "ys": [piece[:, 1] for piece in pieces]}

@@ -1,0 +1,95 @@
+"""What second looks lay over the pictures: pixels that are not to be trusted, and the stable manifolds."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine
+from bokeh.plotting import figure
+
+from app.rendering.palette import DOUBT, LIGHT, MANIFOLD, PAPER, Entry, Palette
+from engine import MapSpec, StableManifolds, Trust, TrustMap
+
+_CLEAR = "#00000000"
+# Of the first image and the later ones, which lie ever closer together.
+_WIDTHS, _ALPHAS = (1.6, 0.8, 0.5), (1.0, 0.55, 0.3)
+_HALO_WIDTH = 3.2
+
+
+class Overlays:
+    """Sources of the overlays, drawn into any number of figures; they belong to one map and go with it."""
+
+    def __init__(self) -> None:
+        self.doubts = ColumnDataSource(_no_doubts(), name="doubts")
+        self.manifolds = ColumnDataSource(_no_curves(), name="manifolds")
+        self._mapper = LinearColorMapper(palette=[_CLEAR, DOUBT], low=-0.5, high=1.5)
+        self._palette = PAPER
+        self._found: StableManifolds | None = None
+        self._spec: MapSpec | None = None
+
+    def draw(self, plot: figure, *, doubts: bool, coloured: bool) -> None:
+        """Add the overlays to a figure: the doubtful pixels, and the manifolds, each in its channel's colour or with a halo."""
+        if doubts:
+            plot.add_glyph(self.doubts, Image(image="doubt", dw="dw", dh="dh", color_mapper=self._mapper))
+        style: dict[str, Any] = {"line_width": "width", "line_alpha": "alpha"}
+        if coloured:
+            plot.add_glyph(self.manifolds, MultiLine(line_color="colour", **style))
+            return
+        plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width", line_alpha="alpha"))
+        plot.add_glyph(self.manifolds, MultiLine(line_color=MANIFOLD, **style))
+
+    def begin(self, spec: MapSpec) -> None:
+        """Another map: what was found of the last one says nothing of it."""
+        if spec == self._spec:
+            return
+        self._spec = spec
+        self.show_trust(None)
+        self.show_manifolds(None)
+
+    def show_trust(self, trust: TrustMap | None) -> None:
+        """Mark the doubtful pixels; None takes the marks away."""
+        if trust is not None:
+            window = trust.spec.window
+            self.doubts.data = {
+                "doubt": [(trust.trust == Trust.DOUBTFUL).astype(np.uint8)],
+                "x": [window.x_low], "y": [window.ordinate_low],
+                "dw": [window.x_high - window.x_low], "dh": [window.ordinate_high - window.ordinate_low],
+            }  # fmt: skip
+        elif self.doubts.data["x"]:
+            self.doubts.data = _no_doubts()
+
+    def show_manifolds(self, manifolds: StableManifolds | None) -> None:
+        """Draw the manifolds; None takes them away."""
+        self._found = manifolds
+        if manifolds is not None:
+            # The first image last, over the others.
+            arcs = sorted(manifolds.arcs, key=lambda arc: -arc.image)
+            self.manifolds.data = {
+                "xs": [arc.x for arc in arcs],
+                "ys": [arc.px for arc in arcs],
+                "colour": [self._palette.channels[arc.channel - 1] for arc in arcs],
+                "width": [_WIDTHS[min(arc.image, len(_WIDTHS)) - 1] for arc in arcs],
+                "alpha": [_ALPHAS[min(arc.image, len(_ALPHAS)) - 1] for arc in arcs],
+                "halo_width": [_HALO_WIDTH if arc.image == 1 else 0.0 for arc in arcs],
+            }
+        elif self.manifolds.data["xs"]:
+            self.manifolds.data = _no_curves()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Colours of the channels."""
+        self._palette = palette
+        self.show_manifolds(self._found)
+
+    def entries(self) -> list[Entry]:
+        """Legend of what is laid over the basins now."""
+        entries = [Entry("not to be trusted", DOUBT)] if self.doubts.data["x"] else []
+        return entries + ([Entry("stable manifolds", MANIFOLD)] if self._found is not None else [])
+
+
+def _no_doubts() -> dict[str, list[Any]]:
+    return {name: [] for name in ("doubt", "x", "y", "dw", "dh")}
+
+
+def _no_curves() -> dict[str, list[Any]]:
+    return {name: [] for name in ("xs", "ys", "colour", "width", "alpha", "halo_width")}

@@ -1,0 +1,155 @@
+"""The chosen orbits in three panes, each in its colour: paths over the zero-velocity curve, SALI(t), and R²(t)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import panel as pn
+from bokeh.models import BasicTickFormatter, ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
+
+from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
+from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
+from app.views.components.curve_layers import CurveLayers
+from app.views.components.plots import set_decades, set_range, square_figure, with_help
+from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
+
+TITLES = {
+    "path": "The orbits",
+    "sali": f"SALI (chaotic at or below {CHAOS_THRESHOLD:g})",
+    "r2": "R² = x² + y²",
+    "exponent": "Lyapunov exponent until t",
+}
+_HISTORIES = ("sali", "exponent", "r2")
+_OTHERS_ALPHA = 0.35
+_NO_LINE = np.zeros(0), np.zeros(0)
+
+
+class OrbitPlots:
+    """The three figures; empty until an orbit is shown."""
+
+    def __init__(self) -> None:
+        ranges = {"x_range": Range1d(-1.0, 1.0), "y_range": Range1d(-1.0, 1.0)}
+        logarithmic = {"x_axis_type": "log", "y_axis_type": "log"}
+        axes = {"x_range": Range1d(0.1, 10.0), "y_range": Range1d(LEAST_SALI, 10.0)}
+        self.path = square_figure("path", TITLES["path"], x_axis_label="x", y_axis_label="y", **ranges)
+        self.sali = square_figure("sali", TITLES["sali"], x_axis_label="t", y_axis_label="SALI", **logarithmic, **axes)
+        self.exponent = square_figure(
+            "exponent", TITLES["exponent"], x_axis_label="t", y_axis_label="(1/t) ln|w|", **logarithmic,
+            x_range=axes["x_range"], y_range=Range1d(1e-4, 10.0),
+        )  # fmt: skip
+        self.r2 = square_figure(
+            "r2", TITLES["r2"], x_axis_label="t", y_axis_label="R²", x_range=Range1d(0.0, 10.0), y_range=Range1d(0.0, 1.0)
+        )
+        self.r2.xaxis.formatter = BasicTickFormatter(use_scientific=False)
+        self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._paths, self._histories = _lines("paths"), {name: _lines(f"{name}_histories") for name in _HISTORIES}
+        self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
+        self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
+        self._trails = _lines("trails")
+        self.outlines = CurveLayers()
+        self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
+        self._drawings: list[tuple[int, OrbitCurves]] = []
+        self._palette = PAPER
+        # Of which energy there are curves, as several orbits share theirs.
+        self._outlined: tuple[Potential, float, Palette] | None = None
+        self._draw()
+        self.set_palette(PAPER)
+
+    def layout(self) -> list[pn.viewable.Viewable]:
+        """The figures, each with its explanation."""
+        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in (self.path, self.sali, self.r2, self.exponent)]
+
+    def show(self, potential: Potential, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
+        """Draw orbits by their places; None where there is none, or not yet. The chosen one stands out."""
+        self._drawings = [(slot, drawing) for slot, drawing in enumerate(drawings) if drawing is not None]
+        # The chosen one last, over the others.
+        self._drawings.sort(key=lambda item: item[0] == chosen)
+        alphas = [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in self._drawings]
+        for name in _HISTORIES:
+            self._histories[name].data = self._columns([getattr(drawing, name) for _, drawing in self._drawings], alphas)
+        self._show_paths(potential, alphas)
+        self._scale_times()
+
+    def set_time(self, t: float | None) -> None:
+        """Put every orbit's point where it is at a time, with its trail; None takes the points away."""
+        moments = [(slot, moment(drawing.orbit, t)) for slot, drawing in self._drawings] if t is not None else []
+        slots = [slot for slot, _ in moments]
+        self._points.data = {"x": [now.x[-1] for _, now in moments], "y": [now.y[-1] for _, now in moments], "slot": slots}
+        trails = {"xs": [now.x for _, now in moments], "ys": [now.y for _, now in moments]}
+        self._trails.data = {**trails, "slot": slots, "alpha": [1.0] * len(slots)}
+        self._now.update(visible=bool(moments), location=t or 0.0)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Draw in other colours."""
+        self._palette = palette
+        self._mapper.palette = list(palette.orbits)
+        self.outlines.set_palette(palette)
+
+    def _draw(self) -> None:
+        colour = {"field": "slot", "transform": self._mapper}
+        style = {"line_color": colour, "line_alpha": "alpha"}
+        path = self.path
+        self.outlines.draw(path, full=False)
+        path.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh"))
+        path.add_glyph(self._paths, MultiLine(**style))
+        path.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
+        path.add_glyph(self._trails, MultiLine(line_width=2.5, **style))
+        path.add_glyph(self._points, Scatter(size=11, fill_color=colour, line_color=MARK_EDGE, line_width=1.5))
+        for name, plot in zip(_HISTORIES, (self.sali, self.exponent, self.r2), strict=True):
+            plot.add_glyph(self._histories[name], MultiLine(**style))
+            plot.add_layout(self._now)
+        self.sali.add_layout(
+            Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
+        )
+
+    def _scale_times(self) -> None:
+        """The axes of the histories: of SALI after the longest orbit, of R² after the one that is looked at."""
+        if not self._drawings:
+            return
+        everything = [drawing for _, drawing in self._drawings]
+        latest = max(float(drawing.orbit.t[-1]) for drawing in everything)
+        earliest = min((float(drawing.sali[0][0]) for drawing in everything if drawing.sali[0].size), default=0.1)
+        widest = max(float(drawing.r2[1].max()) for drawing in everything)
+        if latest > earliest:
+            set_range(self.sali.x_range, earliest, latest)
+            ends = [drawing.exponent[1] for drawing in everything if drawing.exponent[1].size]
+            set_decades(self.exponent.y_range, min(float(end[-1]) for end in ends), 1.0)
+        end_of_chosen = float(everything[-1].orbit.t[-1])
+        for edges, end in ((self.r2.x_range, end_of_chosen or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
+            set_range(edges, 0.0, end)
+
+    def _show_paths(self, potential: Potential, alphas: list[float]) -> None:
+        if not self._drawings:
+            self._paths.data, self._shades.data = self._columns([], []), {name: [] for name in self._shades.data}
+            return
+        drawn = self._drawings[-1][1]
+        window, (x, y) = drawn.window, (self.path.x_range, self.path.y_range)
+        outlined = (potential, drawn.orbit.energy, self._palette)
+        if outlined != self._outlined:
+            self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))
+            self._outlined = outlined
+        for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
+            set_range(edges, low, high)
+        lines = [_NO_LINE if one.visits is not None else (one.orbit.x, one.orbit.y) for _, one in self._drawings]
+        self._paths.data = self._columns(lines, alphas)
+        images = [one.shaded(self._palette.orbits[slot]) for slot, one in self._drawings if one.visits is not None]
+        place = {"x": window.x_low, "y": window.ordinate_low, "dw": window.x_high - window.x_low}
+        place["dh"] = window.ordinate_high - window.ordinate_low
+        self._shades.data = {"image": images, **{name: [value] * len(images) for name, value in place.items()}}
+
+    def _columns(self, lines: list[tuple[np.ndarray, np.ndarray]], alphas: list[float]) -> dict[str, list[object]]:
+        slots: list[object] = [slot for slot, _ in self._drawings]
+        xs, ys = ([line[axis].astype(np.float32) for line in lines] for axis in (0, 1))
+        return {"xs": [*xs], "ys": [*ys], "slot": slots, "alpha": [*alphas]}
+
+
+def prepare() -> None:
+    """Draw a long path once: datashader compiles its own code at first use."""
+    potential = CASES["III"]
+    state = start_states(potential, Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
+    compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))
+
+
+def _lines(name: str) -> ColumnDataSource:
+    return ColumnDataSource({"xs": [], "ys": [], "slot": [], "alpha": []}, name=name)

@@ -1,0 +1,55 @@
+"""Points of orbits on the surface of section y = 0, py > 0, by fixed-step integration."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import Executor
+
+import numpy as np
+
+from engine.dynamics.compiled import fixed_step_size, kernels_of
+from engine.dynamics.fixed_step_batches import glide
+from engine.potentials.potential import Potential
+
+
+def find_section_points(
+    potential: Potential,
+    states: np.ndarray,
+    count: int,
+    duration: float,
+    *,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> np.ndarray:
+    """The first `count` upward crossings of y = 0 of each orbit, the start not counted.
+
+    Exits are not seen: the points of an orbit that leaves end, or turn to nonsense far outside, where it does.
+
+    Parameters
+    ----------
+    potential
+        The `Potential`.
+    states
+        (n, 4) x, y, px, py, finite.
+    count
+        How many points to look for, 1 or more.
+    duration
+        For how long, dimensionless.
+    executor
+        Any `concurrent.futures.Executor`; None for the pool of this process.
+    cancel
+        When set, points not yet found stay NaN.
+
+    Returns
+    -------
+    (n, count, 2) x and px; NaN where fewer were found.
+    """
+    return glide(_pierce, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
+
+
+def _pierce(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
+    points = np.full((tile.shape[1], count, 2), np.nan)
+    found = np.zeros(tile.shape[1], np.int64)
+    steps = int(np.ceil(duration / fixed_step_size(potential)))
+    kernels_of(potential).pierce(fixed_step_size(potential), steps, tile, points, found)
+    return points

@@ -1,0 +1,147 @@
+"""The request for a map: frozen, validated and hashable, so that it is also the key under which the answer is kept."""
+
+from __future__ import annotations
+
+import operator
+from dataclasses import dataclass
+from importlib import metadata
+from typing import Any
+
+import numpy as np
+
+from engine.dynamics.planes import Plane, Window, default_window, start_states
+from engine.potentials.potential import Potential
+from engine.taylor.source.recurrence import ORDER, TOLERANCE
+from engine.validation import LARGEST_NUMBER, read_array, read_number, read_t_max, shown
+
+LARGEST_SIDE = 4096
+"""Most columns or rows of a map."""
+
+FINEST_PIXEL = 1e-15
+"""Least distance of neighbouring pixels: some units in the last place of coordinates of order 1."""
+
+
+@dataclass(frozen=True)
+class MapSpec:
+    """A map of escapes: which orbits, seen how finely, followed how long.
+
+    Parameters
+    ----------
+    potential
+        The `Potential`.
+    plane
+        Plane of initial conditions.
+    energy
+        h, finite, dimensionless; on (x, h) a (low, high) pair. At or below the escape energy nothing leaves.
+    resolution
+        (columns, rows), each 1 to 4096.
+    window
+        `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior. On (x, h) the ordinate
+        is the energy.
+    t_max
+        How long an orbit is followed, 0 < t_max ≤ 1e8.
+    certify
+        Whether an orbit may be called bounded before t_max when there is a certificate that it never leaves.
+    backward
+        Whether orbits are followed into the past. Potentials do not depend on velocity, so that this is the way of
+        (x, y, −px, −py) into the future: fates are then channels that orbits came in by, times how long ago, and crossings
+        those that the reversed orbit makes upward.
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter, its value and what is legal.
+    """
+
+    potential: Potential
+    plane: Plane
+    energy: float | tuple[float, float]
+    resolution: tuple[int, int] = (225, 225)
+    window: Window = None  # type: ignore[assignment]  # None is replaced below
+    t_max: float = 1e5
+    certify: bool = True
+    backward: bool = False
+
+    def __post_init__(self) -> None:
+        plane = Plane(self.plane)
+        energy = _checked_energy(plane, self.energy)
+        for name, value in (("plane", plane), ("energy", energy), ("resolution", _checked_resolution(self.resolution))):
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "t_max", read_t_max(self.t_max))
+        for name in ("certify", "backward"):
+            object.__setattr__(self, name, bool(getattr(self, name)))
+        window: Any = self.window
+        if window is None:
+            window = default_window(self.potential, plane, energy)
+        object.__setattr__(self, "window", _checked_window(window, self.resolution))
+
+    def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
+        """x (columns,) and ordinate (rows,) of the pixel centres."""
+        return self.window.pixel_centres(*self.resolution)
+
+    def start_states(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
+        """(n, 4) states x, y, px, py from which orbits through points (n,), (n,) of the plane go; py NaN where forbidden."""
+        energy = 0.0 if isinstance(self.energy, tuple) else self.energy
+        states = start_states(self.potential, self.plane, energy, x, ordinate)
+        if self.backward:
+            states[:, 2:] *= -1.0
+        return states
+
+    def provenance(self) -> dict[str, Any]:
+        """The request in plain values, with the integrator that answers it and its version."""
+        window = self.window
+        return {
+            "potential": self.potential.name,
+            "terms": "; ".join(f"{c!r} x^{i} y^{j}" for i, j, c in self.potential.terms),
+            "energy": self.energy,
+            "plane": self.plane.value,
+            "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
+            "resolution": self.resolution,
+            "t_max": self.t_max,
+            "certify": int(self.certify),
+            "backward": int(self.backward),
+            "integrator": f"Taylor series of order {ORDER}, tolerance {TOLERANCE:g}",
+            "version": metadata.version("escape-explorer"),
+        }
+
+    def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
+        """(row, column) of the pixel that holds a point of the plane; None outside the window."""
+        window, (columns, rows) = self.window, self.resolution
+        column = int(np.floor((x - window.x_low) / (window.x_high - window.x_low) * columns))
+        row = int(np.floor((ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows))
+        return (row, column) if 0 <= row < rows and 0 <= column < columns else None
+
+
+def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
+    if plane is not Plane.X_H:
+        return read_number("energy", energy, f"one finite number on {plane.value}")
+    values = read_array("energy", energy).ravel()
+    if values.size != 2 or not (np.all(np.abs(values) <= LARGEST_NUMBER) and values[0] < values[1]):
+        raise ValueError(f"energy={shown(energy)}: on {plane.value} it must be a pair (low, high) of finite numbers")
+    return float(values[0]), float(values[1])
+
+
+def _checked_window(window: Any, resolution: tuple[int, int]) -> Window:
+    checked = window if isinstance(window, Window) else _window_from(window)
+    for centres in checked.pixel_centres(*resolution):
+        if centres.size > 1 and np.min(np.diff(centres)) < FINEST_PIXEL * max(1.0, float(np.max(np.abs(centres)))):
+            raise ValueError(f"window={checked}: double precision ends here; its pixels are less than {FINEST_PIXEL:g} apart")
+    return checked
+
+
+def _window_from(edges: Any) -> Window:
+    try:
+        x_low, x_high, ordinate_low, ordinate_high = map(float, edges)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"window={shown(edges)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
+    return Window(x_low, x_high, ordinate_low, ordinate_high)
+
+
+def _checked_resolution(resolution: Any) -> tuple[int, int]:
+    try:
+        sides = tuple(operator.index(side) for side in resolution)
+    except TypeError:
+        sides = ()
+    if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
+        raise ValueError(f"resolution={shown(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
+    return sides

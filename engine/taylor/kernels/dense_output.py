@@ -1,0 +1,135 @@
+"""One orbit in full: its path from the dense output, and its deviation vectors from the linearised recurrence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
+from threading import Event
+from types import ModuleType
+
+import numpy as np
+
+from engine.taylor.jit.decorator import kernel
+from engine.taylor.source.recurrence import ORDER, TOLERANCE
+
+_CHUNK = 8192
+
+
+def stop_if(cancel: Event | None) -> None:
+    """Raise CancelledError when nobody waits any more."""
+    if cancel is not None and cancel.is_set():
+        raise CancelledError
+
+
+def trace_pieces(
+    kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
+) -> Iterator[tuple[np.ndarray, float]]:
+    """(m, 5) x, y, px, py, t at the start of each step of a piece of the way up to `t_end`, and the time at which it ends."""
+    gates = np.full((channels, 3), np.inf)
+    gates[:, :2] = 0.0
+    begin, start, count = 0.0, state, _CHUNK
+    while count == _CHUNK:
+        stop_if(cancel)
+        piece = np.empty((_CHUNK, 5))
+        count = kernels.trace(start, begin, t_end, tolerance, gates, piece)
+        # A full piece ends where the next begins.
+        whole = count == _CHUNK
+        start, begin = piece[count - 1, :4].copy(), float(piece[count - 1, 4])
+        yield (piece[: count - 1], begin) if whole else (piece[:count], t_end)
+
+
+def trace_steps(
+    kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
+) -> np.ndarray:
+    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
+    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, cancel, tolerance)])
+
+
+def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cancel: Event | None = None) -> np.ndarray:
+    """(4, n) x, y, px, py at increasing `times`, from the series of the steps they fall into."""
+    row = np.searchsorted(steps[:, 4], times, side="right") - 1
+    path = np.empty((4, times.size))
+    for begin in range(0, len(steps), _CHUNK):
+        stop_if(cancel)
+        part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
+        jets = np.empty((2, ORDER + 1, part.shape[1]))
+        kernels.jets(part.shape[1], *part[:4], *jets)
+        inside = slice(*np.searchsorted(row, [begin, begin + part.shape[1]]))
+        local = row[inside] - begin
+        path[:, inside] = _evaluate(jets, local, times[inside] - part[4, local])
+    return path
+
+
+@kernel
+def _evaluate(jets, row, tau):
+    order = jets.shape[1] - 1
+    out = np.empty((4, row.size))
+    for n in range(row.size):
+        for axis in range(2):
+            value = jets[axis, order, row[n]]
+            slope = 0.0
+            for k in range(order - 1, -1, -1):
+                slope = slope * tau[n] + value
+                value = value * tau[n] + jets[axis, k, row[n]]
+            out[axis, n] = value
+            out[axis + 2, n] = slope
+    return out
+
+
+def carry_deviations(
+    kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, cancel: Event | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of the first of two deviation vectors, at `times` along a path (4, n).
+
+    vectors (2, 4) = δx, δy, δpx, δpy at the start of the path. The map of deviations over each interval is found for all
+    intervals at once, then they are applied in turn, each vector brought back to unit length every time. `times` may be at
+    most a step of the integrator apart.
+    """
+    sali = np.empty(times.size)
+    stretch = np.ones(times.size)
+    w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
+    sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
+    for begin in range(0, times.size - 1, _CHUNK):
+        stop_if(cancel)
+        end = min(begin + _CHUNK, times.size - 1)
+        matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
+        _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
+    return sali, 0.5 * np.cumsum(np.log(stretch))
+
+
+def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """(4, 4, n): [row, column, interval] of the linearised flow over each interval."""
+    n = durations.size
+    state = [np.ascontiguousarray(row) for row in path]
+    matrices = np.zeros((4, 4, n))
+    for column in range(4):
+        w = np.zeros((4, n))
+        w[column] = 1.0
+        kernels.tangent(n, durations, *state, *w)
+        matrices[:, column] = w
+    return matrices
+
+
+@kernel
+def _apply(matrices, w, sali, stretch):
+    """Apply the maps in turn to w (2, 4); `stretch` becomes the squared length of the first vector after each, from length 1."""
+    moved = np.empty((2, 4))
+    for n in range(sali.size):
+        for v in range(2):
+            square = 0.0
+            for row in range(4):
+                total = 0.0
+                for column in range(4):
+                    total += matrices[row, column, n] * w[v, column]
+                moved[v, row] = total
+                square += total * total
+            for row in range(4):
+                w[v, row] = moved[v, row] / np.sqrt(square)
+            if v == 0:
+                stretch[n] = square
+        apart = 0.0
+        opposed = 0.0
+        for row in range(4):
+            apart += (w[0, row] - w[1, row]) ** 2
+            opposed += (w[0, row] + w[1, row]) ** 2
+        sali[n] = np.sqrt(min(apart, opposed))

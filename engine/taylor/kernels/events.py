@@ -1,0 +1,159 @@
+"""What happened within one step, read off its dense output: exits through a channel, upward crossings of y = 0.
+
+An exit curve is a row of numbers. In the axes of its saddle, u outward along the unstable direction and q across (90°
+counterclockwise from u), the Lyapunov orbit is the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond
+its ends, on the walls, it goes on straight up the hill, where no orbit can be. A closed channel has f = 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.taylor.jit.decorator import kernel
+
+# Columns of an exit curve.
+SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(
+    11
+)
+
+# Outcomes of an orbit; one that has left carries the number of its channel, 1 or more.
+BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
+
+CURVE_DEGREE = 16
+CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
+
+# A step is looked at in this many parts; within one, ẏ is taken to change its sign at most once.
+_PARTS = 8
+_ROOT_ITERATIONS = 80
+_ROOT_ACCURACY = 1e-15
+
+
+@kernel
+def exit_distance(x, y, curve):
+    """How far (x, y) lies beyond an exit curve, along the channel: positive outside, negative inside."""
+    dx = x - curve[SADDLE_X]
+    dy = y - curve[SADDLE_Y]
+    u = curve[OUTWARD_X] * dx + curve[OUTWARD_Y] * dy
+    q = curve[OUTWARD_X] * dy - curve[OUTWARD_Y] * dx
+    s = (q - curve[MIDDLE]) / curve[HALF_WIDTH]
+    beyond = 0.0
+    if s < -1.0:
+        beyond = curve[SLOPE_LOW] * (s + 1.0)
+        s = -1.0
+    elif s > 1.0:
+        beyond = curve[SLOPE_HIGH] * (s - 1.0)
+        s = 1.0
+    f = curve[COEFFICIENTS + CURVE_DEGREE]
+    for k in range(CURVE_DEGREE - 1, -1, -1):
+        f = f * s + curve[COEFFICIENTS + k]
+    return u - (f + beyond)
+
+
+@kernel
+def outside_channel(x, y, curves):
+    """The channel beyond whose exit curve (x, y) lies, 0 inside: the channel whose saddle lies nearest in direction decides."""
+    nearest = -1
+    largest = -np.inf
+    for k in range(curves.shape[0]):
+        towards = curves[k, BEARING_X] * x + curves[k, BEARING_Y] * y
+        if towards > largest:
+            largest = towards
+            nearest = k
+    if nearest >= 0 and exit_distance(x, y, curves[nearest]) > 0.0:
+        return nearest + 1
+    return 0
+
+
+@kernel
+def find_outside(x, y, curves, curve_row):
+    """(n,) the channel beyond which each point lies, 0 inside; curves (rows, channels, columns), curve_row (n,)."""
+    channels = np.empty(x.shape[0], np.int8)
+    for i in range(x.shape[0]):
+        channels[i] = outside_channel(x[i], y[i], curves[curve_row[i]])
+    return channels
+
+
+@kernel
+def series_value(jet, i, tau):
+    """A series at time tau after the start of its step."""
+    value = jet[jet.shape[0] - 1, i]
+    for k in range(jet.shape[0] - 2, -1, -1):
+        value = value * tau + jet[k, i]
+    return value
+
+
+@kernel
+def series_slope(jet, i, tau):
+    """The time derivative of a series at time tau after the start of its step."""
+    order = jet.shape[0] - 1
+    slope = order * jet[order, i]
+    for k in range(order - 1, 0, -1):
+        slope = slope * tau + k * jet[k, i]
+    return slope
+
+
+@kernel
+def find_extremum(jet, i, low, high):
+    """Where the slope changes its sign between low and high."""
+    rising = series_slope(jet, i, low) > 0.0
+    for _ in range(_ROOT_ITERATIONS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if (series_slope(jet, i, middle) > 0.0) == rising:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@kernel
+def count_upward_crossings(y_jet, i, duration):
+    """How often y goes from below 0 to 0 or above within `duration` of the start of a step, double ones included."""
+    count = 0
+    low = 0.0
+    y_low = series_value(y_jet, i, low)
+    slope_low = series_slope(y_jet, i, low)
+    for part in range(1, _PARTS + 1):
+        high = duration * part / _PARTS
+        y_high = series_value(y_jet, i, high)
+        slope_high = series_slope(y_jet, i, high)
+        # An orbit that starts on y = 0 on its way down is below it from then on.
+        below = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
+        if below and y_high >= 0.0:
+            count += 1
+        elif y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
+            turning = series_value(y_jet, i, find_extremum(y_jet, i, low, high))
+            if (turning < 0.0) != (y_low < 0.0):
+                count += 1
+        low, y_low, slope_low = high, y_high, slope_high
+    return count
+
+
+@kernel
+def find_exit_time(x_jet, y_jet, i, duration, curve):
+    """When, after the start of a step that ends outside, the orbit crosses the exit curve (Illinois method)."""
+    low, high = 0.0, duration
+    at_low = exit_distance(series_value(x_jet, i, low), series_value(y_jet, i, low), curve)
+    at_high = exit_distance(series_value(x_jet, i, high), series_value(y_jet, i, high), curve)
+    if at_low >= 0.0:
+        return low
+    side = 0
+    for _ in range(_ROOT_ITERATIONS):
+        tau = (low * at_high - high * at_low) / (at_high - at_low)
+        if not (low < tau < high) or high - low < _ROOT_ACCURACY:
+            break
+        value = exit_distance(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve)
+        if abs(value) < _ROOT_ACCURACY:
+            return tau
+        if value > 0.0:
+            high, at_high = tau, value
+            if side > 0:
+                at_low *= 0.5
+            side = 1
+        else:
+            low, at_low = tau, value
+            if side < 0:
+                at_high *= 0.5
+            side = -1
+    return high

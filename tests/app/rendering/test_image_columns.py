@@ -1,0 +1,130 @@
+"""Frames become images: the right code for each pixel, the right way up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.rendering import palette
+from app.rendering.image_columns import character_column, longest_typical_time, map_columns, passage_column
+from app.rendering.palette import PAPER
+from engine import (
+    CASES,
+    Certificate,
+    EscapeMap,
+    Fate,
+    MapSpec,
+    Plane,
+    Regularity,
+    compute_map,
+    compute_origin_fates,
+    compute_regularity,
+)
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    spec = MapSpec(CASES["II"], Plane.X_PX, 0.18, (81, 61), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0)
+    return compute_map(spec)
+
+
+def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
+    colours = np.array(PAPER.fate_colours)[map_columns(escape_map)["fate"][0]]
+    for channel in (1, 2, 3):
+        assert set(colours[escape_map.fate == channel]) == {PAPER.channels[channel - 1]}
+    for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE):
+        assert set(colours[escape_map.fate == fate]) == {PAPER.outcomes[fate].colour}
+
+
+@pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (10, "3–10"), (11, "> 10")])
+def test_escaped_pixels_are_classed_by_crossings(escape_map: EscapeMap, crossings: int, label: str) -> None:
+    where = (escape_map.fate > 0) & (escape_map.crossings == crossings)
+    assert where.any()
+    codes = map_columns(escape_map)["crossing_class"][0][where]
+    labels = [*palette.OUTCOMES.values(), *(label for _, label in palette.CROSSING_CLASSES)]
+    assert {labels[code] for code in codes} == {label}
+
+
+def test_images_are_small_types_with_row_0_lowest(escape_map: EscapeMap) -> None:
+    columns = map_columns(escape_map)
+    assert [columns[name][0].dtype for name in ("fate", "crossing_class", "escape_time", "crossings")] == [
+        np.uint8,
+        np.uint8,
+        np.float32,
+        np.uint8,
+    ]
+    assert (columns["x"], columns["y"], columns["dw"], columns["dh"]) == ([-1.0], [-0.8], [2.4], [1.6])
+    np.testing.assert_array_equal(columns["escape_time"][0], escape_map.escape_time.astype(np.float32))
+
+
+def test_a_bounded_pixel_knows_its_certificate(escape_map: EscapeMap) -> None:
+    codes = map_columns(escape_map)["crossing_class"][0]
+    bounded = escape_map.fate == Fate.BOUNDED
+    assert bounded.any()
+    first = len(palette.OUTCOMES) + len(palette.CROSSING_CLASSES)
+    np.testing.assert_array_equal(codes[bounded] - first, escape_map.certificate[bounded])
+    assert {PAPER.crossing_colours[code] for code in codes[bounded]} == {PAPER.bounded}
+
+
+def test_a_full_frame_of_225_by_225_is_half_a_megabyte_at_most(escape_map: EscapeMap) -> None:
+    images = [column[0] for column in map_columns(escape_map, characters=False).values() if isinstance(column[0], np.ndarray)]
+    assert sum(image.nbytes for image in images) * 225**2 / escape_map.fate.size < 500_000
+
+
+def character_colour(character: Regularity) -> str:
+    return PAPER.character_entries[list(palette.CHARACTERS).index(character)].colour
+
+
+def character_colours(columns: dict) -> np.ndarray:
+    return np.array(PAPER.character_colours)[columns["character"][0]]
+
+
+def test_regular_and_chaotic_orbits_have_colours_of_their_own() -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
+    regularity = compute_regularity(whole)
+    colours = character_colours(character_column(whole, regularity))
+    for character in (Regularity.REGULAR, Regularity.CHAOTIC):
+        assert set(colours[regularity.character == character]) == {character_colour(character)}
+    assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
+
+
+def test_what_is_certified_as_a_torus_is_shown_as_regular_at_once() -> None:
+    whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
+    colours = character_colours(map_columns(whole))
+    certified = whole.certificate == Certificate.QUASI_PERIODIC
+    assert certified.any()
+    assert set(colours[certified]) == {character_colour(Regularity.REGULAR)}
+    assert set(colours[whole.certificate == Certificate.ENCLOSED]) == {character_colour(Regularity.NOT_JUDGED)}
+    assert set(colours[whole.fate >= 1]) == {character_colour(Regularity.NO_QUESTION)}
+
+
+def test_a_coarse_frame_fills_the_picture() -> None:
+    frames: list[EscapeMap] = []
+    compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 120), t_max=50.0), on_frame=frames.append)
+    coarse = frames[0]
+    assert coarse.stride > 1
+    columns, window = map_columns(coarse), coarse.spec.window
+    shown = columns["fate"][0]
+    assert shown.size < coarse.fate.size / 4
+    assert not np.any(shown == list(palette.OUTCOMES).index(Fate.NOT_COMPUTED))
+    assert columns["x"][0] + columns["dw"][0] >= window.x_high
+    assert columns["y"][0] + columns["dh"][0] >= window.ordinate_high
+
+
+def test_the_time_scale_ends_at_a_round_number_above_nearly_all_times(escape_map: EscapeMap) -> None:
+    high = longest_typical_time(escape_map)
+    assert high in {step * 10.0**k for step in (1.0, 2.0, 5.0) for k in range(1, 6)}
+    assert np.mean(escape_map.escape_time[escape_map.fate > 0] <= high) >= 0.99
+
+
+def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
+    origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.3, (45, 45), t_max=200.0))
+    colours = np.array(PAPER.passage_colours)[passage_column(origins)["passage"][0]]
+    seen = 0
+    for origin in range(5):
+        for fate in range(5):
+            where = (origins.origin == origin) & (origins.fate == fate)
+            assert set(colours[where]) <= {PAPER.passage_colour(origin, fate)}
+            seen += int(where.sum())
+    assert seen == np.sum(origins.fate >= 0)
+    assert set(colours[origins.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}

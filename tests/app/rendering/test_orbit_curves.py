@@ -1,0 +1,73 @@
+"""What is drawn of an orbit shows all that can be seen of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.rendering.orbit_curves import MOST_LINE_POINTS, TRAIL, OrbitCurves, compute_orbit_curves, envelope, moment
+from engine import CASES, Plane, integrate_orbit, start_states
+
+
+def drawing_of(t_max: float) -> OrbitCurves:
+    state = start_states(CASES["III"], Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
+    return compute_orbit_curves(CASES["III"], integrate_orbit(CASES["III"], state, t_max))
+
+
+@pytest.fixture(scope="module")
+def short() -> OrbitCurves:
+    return drawing_of(200.0)
+
+
+@pytest.fixture(scope="module")
+def long() -> OrbitCurves:
+    return drawing_of(2000.0)
+
+
+def test_a_short_path_is_a_line(short: OrbitCurves) -> None:
+    assert short.orbit.t.size <= MOST_LINE_POINTS
+    assert short.visits is None
+
+
+def test_a_long_path_is_shaded_where_it_comes_by(long: OrbitCurves) -> None:
+    assert long.visits is not None
+    rows, columns = long.visits.shape
+    window = long.window
+    column = ((long.orbit.x - window.x_low) / (window.x_high - window.x_low) * columns).astype(int)
+    row = ((long.orbit.y - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows).astype(int)
+    assert np.mean(long.visits[row, column] > 0) > 0.99
+    assert np.mean(long.visits > 0) < 0.9
+
+
+def test_shading_has_the_orbit_s_colour_and_the_visits_opacity(long: OrbitCurves) -> None:
+    pixels = long.shaded("#102030").view(np.uint8).reshape(*long.visits.shape, 4)  # type: ignore[union-attr]
+    assert set(map(tuple, pixels[..., :3].reshape(-1, 3).tolist())) == {(0x10, 0x20, 0x30)}
+    np.testing.assert_array_equal(pixels[..., 3], long.visits)
+
+
+def test_the_section_has_a_point_for_each_crossing(short: OrbitCurves) -> None:
+    assert short.section.shape == (short.orbit.crossings, 2)
+
+
+@pytest.mark.parametrize("t", [0.0, 3.3, 150.0, 1e9])
+def test_a_moment_ends_where_the_orbit_is(short: OrbitCurves, t: float) -> None:
+    now, orbit = moment(short.orbit, t), short.orbit
+    here = min(int(np.searchsorted(orbit.t, t, side="right")) - 1, orbit.t.size - 1)
+    assert (now.x[-1], now.y[-1]) == (orbit.x[here], orbit.y[here])
+    assert (now.x.size - 1) * orbit.t[1] <= TRAIL + 1e-9
+
+
+def test_an_envelope_keeps_every_extreme() -> None:
+    t = np.linspace(0.0, 100.0, 50_000)
+    values = np.sin(t * 37.0)
+    values[31_234] = 5.0
+    thin_t, thin = envelope(t, values, logarithmic=False)
+    assert thin.size < 3000
+    assert thin.max() == 5.0
+    assert (thin_t[0], thin_t[-1]) == (0.0, 100.0)
+    assert np.all(np.diff(thin_t) > 0)
+
+
+def test_a_short_history_is_kept_as_it_is() -> None:
+    t = np.linspace(0.0, 1.0, 500)
+    assert envelope(t, t, logarithmic=False)[0] is t

@@ -1,0 +1,50 @@
+"""What whoever runs the server may set."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import pytest
+
+from app.runtime.settings import LogFormat, Settings, read_settings, variable_of
+
+
+def test_without_variables_every_setting_has_its_default() -> None:
+    assert read_settings({"PATH": "/bin", "ESCAPE_EXPLORER_CACHE": "/tmp", "ESCAPE_EXPLORER_LOG": ""}) == Settings()
+
+
+def test_variables_are_read() -> None:
+    settings = read_settings(
+        {
+            "ESCAPE_EXPLORER_LONGEST_T_MAX": "1e5",
+            "ESCAPE_EXPLORER_MOST_SESSIONS": "3",
+            "ESCAPE_EXPLORER_LOG": "json",
+            "ESCAPE_EXPLORER_ONLY_IDLE": "Yes",
+            "ESCAPE_EXPLORER_FRAME_ANCESTORS": "https://a.example",
+        }
+    )
+    assert (settings.longest_t_max, settings.most_sessions, settings.log) == (1e5, 3, LogFormat.JSON)
+    assert settings.only_idle is True
+    assert settings.frame_ancestors == ("https://a.example",)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("largest_resolution", "15"),
+        ("longest_t_max", "nan"),
+        ("most_sessions", "0"),
+        ("cache_bytes", "1e9"),
+        ("threads", "two"),
+        ("log", "xml"),
+        ("only_idle", "1"),
+        ("frame_ancestors", "https://a.example; script-src *"),
+    ],
+)
+def test_a_value_that_is_none_is_refused_by_name(name: str, text: str) -> None:
+    with pytest.raises(ValueError, match=f"^{variable_of(name)}=.*: must be "):
+        read_settings({variable_of(name): text})
+
+
+def test_every_setting_can_be_set() -> None:
+    assert all("reading" in setting.metadata for setting in fields(Settings))

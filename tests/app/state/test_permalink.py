@@ -1,0 +1,116 @@
+"""A link opens the very view it was taken from, and a bad one says what is wrong with it."""
+
+from __future__ import annotations
+
+from urllib.parse import parse_qsl
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.rendering.palette import MOST_ORBITS, PALETTES
+from app.state.permalink import LONGEST_VALUE, read_link, write_link
+from app.state.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, ViewState
+from engine import CASES, Plane, Window
+
+numbers = st.floats(-1e3, 1e3, allow_nan=False)
+pairs = st.tuples(numbers, numbers).filter(lambda pair: pair[0] < pair[1])
+windows = st.none() | st.builds(lambda x, y: Window(*x, *y), pairs, pairs)
+
+
+def parameters(link: str) -> dict[str, str]:
+    assert link.startswith("?")
+    return dict(parse_qsl(link[1:], strict_parsing=True))
+
+
+@given(
+    st.sampled_from(list(CASES)),
+    st.sampled_from(list(Plane)),
+    numbers,
+    st.sampled_from(list(T_MAX_CHOICES.values())),
+    st.sampled_from(list(RESOLUTION_CHOICES.values())),
+    windows,
+    st.lists(st.tuples(numbers, numbers), max_size=MOST_ORBITS).map(tuple),
+    st.sets(st.sampled_from(SWITCHES)),
+    st.sampled_from(list(PALETTES)),
+    st.integers(0, MOST_ORBITS - 1),
+)
+def test_a_link_holds_the_view_to_the_last_digit(
+    case, plane, energy, t_max, resolution, window, starts, switched_on, palette, look
+) -> None:
+    chosen = {
+        "case": case, "plane": plane, "energy": energy, "t_max": t_max, "resolution": resolution,
+        "window": window, "starts": starts, "palette": palette,
+        "chosen": look if look < len(starts) else 0, **{name: name in switched_on for name in SWITCHES},
+    }  # fmt: skip
+    values, problems = read_link(parameters(write_link(ViewState(**chosen))))
+    assert not problems
+    again = ViewState(**values)
+    assert {name: getattr(again, name) for name in chosen} == chosen
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("case", "IV"),
+        ("case", "__class__"),
+        ("plane", "(x, px)"),
+        ("h", "nan"),
+        ("h", "1e999"),
+        ("h", "one"),
+        ("h", "1" * (LONGEST_VALUE + 1)),
+        ("t_max", "1e300"),
+        ("resolution", "100000"),
+        ("window", "1,2,3"),
+        ("window", "1,0,0,1"),
+        ("window", "0,inf,0,1"),
+        ("orbits", "0.1"),
+        ("orbits", "0.1,0.2;0.3"),
+        ("orbits", ";".join(["0.1,0.2"] * (MOST_ORBITS + 1))),
+        ("orbits", "<script>alert(1)</script>"),
+        ("palette", "neon"),
+        ("look", "6"),
+        ("judge", "maybe"),
+    ],
+)
+def test_a_value_of_no_use_is_named_and_left_out(name: str, text: str) -> None:
+    values, problems = read_link({name: text})
+    assert values == {}
+    assert len(problems) == 1
+    assert f"{name}=" in problems[0]
+    assert "must be" in problems[0]
+
+
+def test_no_markup_of_a_visitor_s_is_shown() -> None:
+    _, problems = read_link({"h": "<b>[here](javascript:alert(1))</b>"})
+    assert not set("<>[]():") & set(problems[0].replace("h=", "").split(" is of no use:")[0])
+
+
+def test_an_orbit_to_look_at_that_is_not_there_is_the_first() -> None:
+    assert read_link({"orbits": "0.1,0.2", "look": "3"})[0]["chosen"] == 0
+
+
+def test_one_bad_value_does_not_spoil_the_others() -> None:
+    values, problems = read_link({"case": "III", "h": "high", "resolution": "450"})
+    assert values["case"] == "III"
+    assert values["resolution"] == 450
+    assert len(problems) == 1
+
+
+def test_a_case_without_an_energy_begins_where_its_button_does() -> None:
+    assert read_link({"case": "III"})[0]["energy"] == 0.35
+
+
+def test_what_nobody_knows_is_ignored() -> None:
+    assert read_link({"utm_source": "mail"}) == ({}, [])
+
+
+@given(
+    st.dictionaries(
+        st.sampled_from(["case", "plane", "h", "t_max", "resolution", "window", "orbits", "palette", "look", *SWITCHES]),
+        st.text(),
+    )
+)
+def test_any_text_is_read_or_refused(hostile: dict[str, str]) -> None:
+    values, _ = read_link(hostile)
+    ViewState(**values)

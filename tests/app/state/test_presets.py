@@ -1,0 +1,151 @@
+"""Every card of the gallery opens a view that is legal, can be linked to, and shows what its caption says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import app
+from app.rendering.map_images import TITLES
+from app.rendering.palette import MOST_ORBITS
+from app.state.permalink import LINKED, read_link, write_link
+from app.state.presets import GROUPS, PRESETS, Preset
+from app.state.view_state import ViewState
+from app.views.panels.gallery import Gallery
+from engine import CASES, Fate, Orbit, Plane, classify_orbits, compute_map, integrate_orbit, start_states
+
+THUMBNAILS = Path(app.__file__).parent / "static" / "gallery"
+LARGEST_THUMBNAIL = 15_000
+
+each_preset = pytest.mark.parametrize("preset", PRESETS, ids=lambda preset: preset.key)
+
+
+def named(key: str) -> Preset:
+    return next(preset for preset in PRESETS if preset.key == key)
+
+
+def start_of(preset: Preset, x: float, ordinate: float) -> np.ndarray:
+    return start_states(CASES[preset.case], preset.plane, preset.energy, np.array([x]), np.array([ordinate]))[0]
+
+
+def fates(preset: Preset) -> list[int]:
+    states = np.array([start_of(preset, *start) for start in preset.starts])
+    return [int(fate) for fate in classify_orbits(CASES[preset.case], preset.energy, states, preset.t_max).fate]
+
+
+def followed(preset: Preset) -> Orbit:
+    return integrate_orbit(CASES[preset.case], start_of(preset, *preset.starts[0]), preset.t_max)
+
+
+def test_no_two_cards_share_a_key_or_a_title() -> None:
+    assert len({preset.key for preset in PRESETS}) == len({preset.title for preset in PRESETS}) == len(PRESETS)
+
+
+def test_the_paper_and_many_places_in_all_three_cases_are_there() -> None:
+    places = [preset for preset in PRESETS if preset.group == "Places"]
+    assert len(places) >= 12
+    assert {preset.group for preset in PRESETS} == set(GROUPS)
+    assert {preset.case for preset in places} == {preset.case for preset in PRESETS if preset not in places} == set(CASES)
+    assert {preset.plane for preset in PRESETS} == set(Plane)
+    assert {preset.picture for preset in PRESETS} == set(TITLES)
+
+
+@each_preset
+def test_a_card_opens_a_legal_view(preset: Preset) -> None:
+    spec = ViewState(**preset.values()).map_spec()
+    assert spec.t_max == preset.t_max
+    assert spec.window == preset.window or preset.window is None
+
+
+@each_preset
+def test_a_link_to_what_a_card_opens_reads_back(preset: Preset) -> None:
+    link = write_link(ViewState(**preset.values()))
+    values, problems = read_link(dict(parse_qsl(link[1:], strict_parsing=True)))
+    assert not problems
+    assert set(preset.values()) <= set(LINKED)
+    again = ViewState(**values)
+    assert {name: getattr(again, name) for name in preset.values()} == preset.values()
+
+
+@each_preset
+def test_a_thumbnail_is_small(preset: Preset) -> None:
+    file = THUMBNAILS / f"{preset.key}.png"
+    assert file.stat().st_size <= LARGEST_THUMBNAIL
+    with Image.open(file) as picture:
+        assert picture.size == (160, 160)
+
+
+def test_every_thumbnail_has_a_card() -> None:
+    assert {file.stem for file in THUMBNAILS.iterdir()} == {preset.key for preset in PRESETS}
+
+
+@each_preset
+def test_starts_lie_in_view_and_are_allowed(preset: Preset) -> None:
+    spec = ViewState(**preset.values()).map_spec()
+    assert 1 <= len(set(preset.starts)) == len(preset.starts) <= MOST_ORBITS
+    for x, ordinate in preset.starts:
+        energy = ordinate if preset.plane is Plane.X_H else preset.energy
+        assert spec.pixel_at(x, ordinate) is not None
+        assert classify_orbits(spec.potential, energy, start_of(preset, x, ordinate)[None], 10.0).fate[0] >= Fate.BOUNDED
+
+
+@pytest.mark.parametrize(
+    ("key", "expected"),
+    [
+        ("two-exits", [1, 2]),
+        ("four-exits", [1, 2, 3, 4]),
+        ("three-meet", [1, 2, 3]),
+        ("crossroads", [0, 1, 2, 3, 4]),
+        ("closer", [1, 2, 3, 4]),
+        ("shares", [1, 2, 0]),
+        ("owl", [0, 0, 0, 0]),
+        ("ajar", [1, 2, 3, 0]),
+    ],
+)
+def test_orbits_end_as_the_caption_says(key: str, expected: list[int]) -> None:
+    assert fates(named(key)) == expected
+
+
+def test_the_shares_are_those_in_the_caption() -> None:
+    preset = named("shares")
+    found = compute_map(ViewState(**preset.values()).map_spec())
+    shares = found.fractions()
+    direct = np.mean((found.fate > Fate.BOUNDED)[found.interior] & (found.crossings == 0)[found.interior])
+    assert shares[Fate.BOUNDED] < 0.001
+    assert round(shares[1], 2) == 0.55
+    assert round(shares[2], 2) == 0.45
+    assert direct == pytest.approx(0.75, abs=0.03)
+
+
+def test_stability_ends_at_the_ceiling() -> None:
+    preset = named("ceiling")
+    spec = replace(ViewState(**preset.values()).map_spec(), resolution=(2, 400))
+    found = compute_map(replace(spec, window=replace(spec.window, x_low=-1e-3, x_high=1e-3)))
+    highest = found.ordinate[(found.fate == Fate.BOUNDED).all(axis=1)].max()
+    assert highest == pytest.approx(0.5817, abs=5e-4)
+
+
+@pytest.mark.slow
+def test_the_clinging_orbit_looks_regular_for_long_and_leaves_late() -> None:
+    orbit = followed(named("super-sticky"))
+    assert orbit.fate >= 1
+    # Chaos lets other processors disagree on the last digits, and with them on the moment it leaves.
+    assert 22_000 < orbit.escape_time < 60_000
+    early = orbit.t < 20_000
+    assert orbit.sali[early].min() > 1e-4
+    assert orbit.r2[early].max() < 0.91
+
+
+def test_only_keys_of_cards_are_heard() -> None:
+    opened: list[Preset] = []
+    gallery = Gallery(opened.append)
+    messages: list[Any] = ["owl", "no such key", None, 7, ["owl"], {"owl": 1}]
+    for message in messages:
+        gallery._hear(message)
+    assert opened == [named("owl")]

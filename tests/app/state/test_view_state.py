@@ -1,0 +1,97 @@
+"""The view state turns choices into requests."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.rendering.palette import MOST_ORBITS
+from app.state.energy_ranges import ENERGIES
+from app.state.view_state import ViewState
+from engine import CASES, Plane
+
+
+def test_the_request_is_what_was_chosen() -> None:
+    spec = ViewState(case="III", plane=Plane.X_Y, energy=0.45, t_max=1e3, resolution=113).map_spec()
+    assert (spec.potential, spec.plane, spec.energy, spec.resolution, spec.t_max) == (
+        CASES["III"],
+        Plane.X_Y,
+        0.45,
+        (113, 113),
+        1e3,
+    )
+
+
+@pytest.mark.parametrize("case", list(CASES))
+def test_the_energy_plane_spans_from_the_escape_energy_to_the_end_of_the_slider(case: str) -> None:
+    spec = ViewState(case=case, plane=Plane.X_H).map_spec()
+    assert spec.energy == (CASES[case].escape_energy, ENERGIES[case].high)
+
+
+def test_a_start_gets_its_py_from_the_energy() -> None:
+    spec = ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_spec((0.1, 0.05))
+    assert spec is not None
+    state = spec.state
+    assert state[:3] == (0.1, 0.0, 0.05)
+    assert CASES["I"].energy(np.array(state)) == pytest.approx(0.2, abs=1e-15)
+
+
+def test_on_the_energy_plane_the_ordinate_is_the_energy() -> None:
+    spec = ViewState(case="II", plane=Plane.X_H).orbit_spec((0.1, 0.3))
+    assert spec is not None
+    assert CASES["II"].energy(np.array(spec.state)) == pytest.approx(0.3, abs=1e-15)
+
+
+def test_a_forbidden_start_has_no_orbit() -> None:
+    assert ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_spec((0.0, 2.0)) is None
+
+
+def starts_of(count: int) -> list[tuple[float, float]]:
+    return [(0.01 * k, 0.0) for k in range(count)]
+
+
+def test_each_start_is_added_after_the_others_and_looked_at() -> None:
+    view = ViewState()
+    for start in starts_of(3):
+        view.add_start(start)
+        assert view.chosen_start == start
+    assert view.starts == tuple(starts_of(3))
+
+
+def test_with_all_places_taken_a_start_takes_the_one_after_the_chosen() -> None:
+    view = ViewState()
+    for start in starts_of(MOST_ORBITS + 2):
+        view.add_start(start)
+    first, second, *rest = view.starts
+    assert [first, second] == starts_of(MOST_ORBITS + 2)[-2:]
+    assert rest == starts_of(MOST_ORBITS)[2:]
+
+
+def test_a_start_that_is_there_already_is_looked_at() -> None:
+    view = ViewState(starts=tuple(starts_of(3)), chosen=2)
+    view.add_start(starts_of(3)[0])
+    assert view.starts == tuple(starts_of(3))
+    assert view.chosen == 0
+
+
+@pytest.mark.parametrize(("place", "chosen"), [(0, 1), (2, 1)])
+def test_a_removed_start_leaves_one_to_look_at(place: int, chosen: int) -> None:
+    view = ViewState(starts=tuple(starts_of(3)), chosen=2)
+    view.remove_start(place)
+    assert len(view.starts) == 2
+    assert view.chosen == chosen
+
+
+def test_without_starts_nothing_is_looked_at() -> None:
+    view = ViewState(starts=tuple(starts_of(1)))
+    view.remove_start(0)
+    assert view.chosen_start is None
+
+
+@pytest.mark.parametrize("case", list(CASES))
+def test_the_slider_spans_the_escape_energy_and_every_energy_of_the_paper(case: str) -> None:
+    energies = ENERGIES[case]
+    assert energies.low < CASES[case].escape_energy < min(energies.marked)
+    assert len(energies.marked) == 9
+    assert max(energies.marked) <= energies.high
+    assert energies.low < energies.first < energies.high

@@ -1,0 +1,178 @@
+"""Files to take along: whoever reads them back has the very numbers."""
+
+from __future__ import annotations
+
+import csv
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from PIL import Image
+
+from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from app.rendering.map_analyses import MapAnalyses
+from app.rendering.map_figure import draw_picture
+from app.rendering.map_images import TITLES
+from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
+from app.state.system import TYPED, System
+from engine import CASES, EscapeMap, MapSpec, Orbit, Plane, compute_map, compute_origin_fates, compute_trust, integrate_orbit
+
+START = (0.1, 0.0, 0.05, 0.6)
+SPECS = {
+    "a window": MapSpec(CASES["II"], Plane.X_PX, 0.18, (20, 15), window=(-1.0, 1.4, -0.8, 0.8), t_max=200.0),
+    "the whole interior": MapSpec(CASES["II"], Plane.X_Y, 0.1 + 0.2, (11, 11), t_max=100.0),
+    "energies": MapSpec(CASES["II"], Plane.X_H, (1 / 6, 0.4), (11, 11), t_max=100.0),
+    "a deep zoom": MapSpec(CASES["II"], Plane.X_PX, 0.18, (7, 7), (0.1, 0.1 + 1e-10, 1 / 3, 1 / 3 + 1e-10), 100.0, certify=False),
+    "NumPy's numbers": MapSpec(
+        CASES["II"], Plane.X_PX, np.float64(0.2), (np.int64(9), 9), tuple(np.linspace(-0.3, 0.3, 2)) * 2, np.float64(50.0)
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    return compute_map(SPECS["a window"])
+
+
+@pytest.fixture(scope="module")
+def orbit() -> Orbit:
+    return integrate_orbit(CASES["I"], START, 100.0)
+
+
+def test_a_png_has_the_pictures_side_by_side(escape_map: EscapeMap) -> None:
+    chosen = ["times", "basins"]
+    with Image.open(BytesIO(png_bytes(escape_map, chosen, COLOUR_BLIND_SAFE, 120, starts=[(0.1, 0.1)]))) as image:
+        page = np.asarray(image.convert("RGB"))
+    parts = [np.asarray(draw_picture(escape_map, name, COLOUR_BLIND_SAFE, 120, starts=[(0.1, 0.1)])) for name in chosen]
+    assert page.shape[1] == sum(part.shape[1] for part in parts)
+    for part, left in zip(parts, (0, parts[0].shape[1]), strict=True):
+        np.testing.assert_array_equal(page[: part.shape[0], left : left + part.shape[1]], part)
+
+
+def test_a_png_says_what_made_it(escape_map: EscapeMap) -> None:
+    with Image.open(BytesIO(png_bytes(escape_map, list(TITLES), PAPER, 100))) as image:
+        notes = image.info
+    assert notes["Software"].startswith("escape-explorer ")
+    assert {name: notes[name] for name in escape_map.provenance()} == {k: str(v) for k, v in escape_map.provenance().items()}
+
+
+def test_a_png_without_pictures_is_refused(escape_map: EscapeMap) -> None:
+    with pytest.raises(ValueError, match=r"pictures=\[\]: must be at least one of curves"):
+        png_bytes(escape_map, [], PAPER, 200)
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_netcdf_gives_the_map_back(name: str) -> None:
+    dataset = compute_map(SPECS[name]).to_xarray()
+    with xr.open_dataset(BytesIO(netcdf_bytes(compute_map(SPECS[name]))), engine="h5netcdf") as back:
+        xr.testing.assert_equal(back, dataset)
+        assert {name: variable.dtype for name, variable in back.items()} == {name: v.dtype for name, v in dataset.items()}
+        assert set(back.attrs) == set(dataset.attrs)
+        for key, value in dataset.attrs.items():
+            np.testing.assert_array_equal(back.attrs[key], value)
+        for key, variable in dataset.variables.items():
+            assert back[key].attrs == variable.attrs
+
+
+def test_netcdf_takes_along_what_second_looks_have_found() -> None:
+    frame = compute_map(SPECS["a window"])
+    findings = MapAnalyses(trust=compute_trust(frame), origins=compute_origin_fates(frame.spec))
+    with xr.open_dataset(BytesIO(netcdf_bytes(frame, findings)), engine="h5netcdf") as back:
+        np.testing.assert_array_equal(back["trust"], findings.trust.trust)
+        np.testing.assert_array_equal(back["origin"], findings.origins.origin)
+        assert "character" not in back
+        assert "3: doubtful" in back["trust"].attrs["codes"]
+
+
+def table(text: str) -> tuple[list[str], list[dict[str, str]]]:
+    lines = text.splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    return comments, list(csv.DictReader(lines[len(comments) :]))
+
+
+def test_a_table_of_orbits_gives_them_back_to_the_bit(orbit: Orbit) -> None:
+    other = integrate_orbit(CASES["III"], (0.1, 0.0, 0.05, 0.9), 50.0)
+    comments, rows = table(orbits_csv([orbit, other]))
+    for number, one in enumerate((orbit, other), 1):
+        own = [row for row in rows if row["orbit"] == str(number)]
+        for column in ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2"):
+            np.testing.assert_array_equal([float(row[column]) for row in own], getattr(one, column))
+        assert f"# orbit {number}: {one.describe()}" in comments
+        assert f"# orbit {number}: energy {one.energy!r}" in comments
+    assert "# orbit 1: start x = 0.1, y = 0.0, px = 0.05, py = 0.6" in comments
+
+
+def test_a_long_orbit_is_thinned_evenly_and_says_so(orbit: Orbit) -> None:
+    comments, rows = table(orbits_csv([orbit, orbit], most_rows=100))
+    assert 50 < len(rows) <= 100
+    times = np.array([float(row["t"]) for row in rows if row["orbit"] == "2"])
+    assert times[0] == 0.0
+    np.testing.assert_allclose(np.diff(times), times[1], rtol=1e-9)
+    stride = int(np.flatnonzero(orbit.t == times[1])[0])
+    assert f"# orbit 2: one in {stride} of {orbit.t.size} samples" in comments
+
+
+def test_too_few_rows_for_all_orbits_are_refused(orbit: Orbit) -> None:
+    with pytest.raises(ValueError, match="most_rows=1: must be at least 1, and one for each of 2 orbits"):
+        orbits_csv([orbit, orbit], most_rows=1)
+
+
+def test_no_orbits_make_an_empty_table() -> None:
+    comments, rows = table(orbits_csv([]))
+    assert (len(comments), rows) == (1, [])
+
+
+@pytest.mark.parametrize("name", SPECS)
+def test_the_python_lines_make_the_same_map_and_orbits(name: str) -> None:
+    spec = SPECS[name]
+    made: dict[str, Any] = {}
+    exec(python_lines(spec, System("II"), [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
+    assert made["spec"] == spec
+    whole = compute_map(spec)
+    for image in ("fate", "escape_time", "crossings", "x", "ordinate"):
+        np.testing.assert_array_equal(getattr(made["escape_map"], image), getattr(whole, image))
+    for one, start in zip(made["orbits"], (START, (1 / 3, 0.0, 0.0, 0.3)), strict=True):
+        expected = integrate_orbit(CASES["II"], start, spec.t_max)
+        assert one.fate == expected.fate
+        np.testing.assert_array_equal(one.x, expected.x)
+
+
+@pytest.mark.parametrize(
+    "system",
+    [System("C5"), System("One exit", epsilon=0.5), System("III", omega_1=1.1), System(TYPED, "x²/2 + y²/2 − x²y", 1.0, 0.9)],
+)
+def test_the_python_lines_make_the_same_potential(system: System) -> None:
+    head = python_lines(SPECS["a window"], system).split("spec = ")[0]
+    made: dict[str, Any] = {}
+    exec(head, made)
+    assert made["potential"] == system.potential
+
+
+def test_the_python_lines_without_orbits_ask_for_none() -> None:
+    lines = python_lines(SPECS["a window"], System("II"))
+    assert "integrate_orbit" not in lines
+    assert "orbits" not in lines
+
+
+@pytest.mark.parametrize("start", [(0.1, 0.0, 0.0), (0.1, 0.0, 0.0, float("nan"))])
+def test_python_lines_for_a_start_that_is_none_are_refused(start: tuple[float, ...]) -> None:
+    with pytest.raises(ValueError, match="must be four finite numbers x, y, px, py"):
+        python_lines(SPECS["a window"], System("II"), [start])
+
+
+@pytest.mark.parametrize(
+    ("name", "stem"),
+    [
+        ("a window", "escapes-II-x_px-h0.18"),
+        ("the whole interior", "escapes-II-x_y-h0.30000000000000004"),
+        ("energies", "escapes-II-x_h-h0.16666666666666666-0.4"),
+    ],
+)
+def test_files_are_named_after_case_plane_and_energy(name: str, stem: str) -> None:
+    assert file_stem(SPECS[name], "II") == stem
+
+
+def test_a_file_name_has_no_character_that_a_disk_minds() -> None:
+    assert file_stem(SPECS["a window"], '../a "b"') == "escapes-.._a__b_-x_px-h0.18"

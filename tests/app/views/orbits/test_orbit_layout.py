@@ -1,0 +1,16 @@
+"""Panes come with the orbits that they need."""
+
+from __future__ import annotations
+
+from app.views.orbits.orbit_layout import OrbitLayout
+from app.views.orbits.orbit_plots import OrbitPlots
+from app.views.orbits.separation_plot import SeparationPlot
+
+
+def test_panes_come_and_go_with_the_orbits() -> None:
+    row = OrbitLayout(OrbitPlots(), SeparationPlot())
+    shown = []
+    for orbits in (0, 1, 2, 5, 0):
+        row.follow(orbits)
+        shown.append(len(row.layout().objects))
+    assert shown == [3, 4, 5, 5, 3]

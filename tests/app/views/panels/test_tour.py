@@ -1,0 +1,50 @@
+"""The tour walks through its steps and ends."""
+
+from __future__ import annotations
+
+from app.views.panels.tour import STEPS, Tour
+
+
+def test_a_tour_runs_only_once_started() -> None:
+    tour = Tour()
+    assert not tour.running
+    tour.start()
+    assert tour.running
+    assert tour.step is STEPS[0]
+
+
+def test_steps_follow_one_another_and_the_last_one_ends_the_tour() -> None:
+    tour = Tour()
+    tour.start()
+    seen = []
+    while tour.running:
+        seen.append(tour.step)
+        tour.next()
+    assert seen == list(STEPS)
+
+
+def test_going_back_stays_within_the_tour() -> None:
+    tour = Tour()
+    tour.start()
+    tour.next()
+    tour.back()
+    tour.back()
+    assert tour.step is STEPS[0]
+    assert tour.running
+
+
+def test_a_tour_begins_anew_wherever_it_was_left() -> None:
+    tour = Tour()
+    tour.start()
+    tour.next()
+    tour.stop()
+    assert not tour.running
+    tour.start()
+    assert tour.step is STEPS[0]
+
+
+def test_a_tour_is_short_and_its_steps_are_brief() -> None:
+    assert 5 <= len(STEPS) <= 7
+    for step in STEPS:
+        assert 1 <= step.text.count(". ") + 1 <= 3
+        assert step.text.endswith(".")

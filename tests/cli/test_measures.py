@@ -1,0 +1,116 @@
+"""``lyapunov``, ``measures`` and ``curves``: the engine's numbers in tables, sentences and JSON."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from engine import (
+    CASES,
+    EnergyCurvesSpec,
+    MapSpec,
+    Plane,
+    compute_basin_entropy,
+    compute_energy_curves,
+    compute_map,
+    compute_statistics,
+    compute_uncertainty_exponent,
+    compute_wada_test,
+    exit_labels,
+    find_lyapunov_orbits,
+    fit_decay_laws,
+)
+
+Run = Callable[..., tuple[int, str, str]]
+
+MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)
+SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.2, (25, 25), t_max=100.0)
+SWEEP = ("I", "--low", 0.12, "--high", 0.2, "--count", 3, "--resolution", 15, "--t-max", 50, "--no-exponent")
+SWEEP_SPEC = EnergyCurvesSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.12, 0.2, 3)), (15, 15), 50.0, exponent=False)
+
+
+def test_lyapunov_orbits_come_as_numbers(run: Run, tmp_path: Path) -> None:
+    _, out, _ = run("lyapunov", "III", "--energy", 0.3, "--json", "--output", tmp_path / "paths.csv")
+    wanted = find_lyapunov_orbits(CASES["III"], 0.3)
+    found = json.loads(out)["orbits"]
+    assert [(one["channel"], one["period"]) for one in found] == [(orbit.channel, orbit.period) for orbit in wanted]
+    with (tmp_path / "paths.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["x"]) for row in rows] == np.concatenate([orbit.x for orbit in wanted]).tolist()
+
+
+def test_lyapunov_orbits_end_on_the_zero_velocity_curve(run: Run) -> None:
+    _, out, _ = run("lyapunov", "II", "--energy", 0.2, "--json")
+    ends = np.array([one["ends"] for one in json.loads(out)["orbits"]])
+    np.testing.assert_allclose(CASES["II"].value(ends[..., 0], ends[..., 1]), 0.2, rtol=0, atol=1e-12)
+
+
+def test_lyapunov_orbits_come_as_a_table(run: Run) -> None:
+    _, out, _ = run("lyapunov", "II", "--energy", 0.2)
+    assert out.count(f"{find_lyapunov_orbits(CASES['II'], 0.2)[0].period:.11g}") == 3
+
+
+def test_below_the_escape_energy_there_is_no_lyapunov_orbit(run: Run) -> None:
+    code, out, _ = run("lyapunov", "I", "--energy", 0.1)
+    assert code == 0
+    assert out == "No Lyapunov orbits: h = 0.1 is not above the escape energy 0.125.\n"
+
+
+def test_measures_are_the_engines_sentences(run: Run) -> None:
+    _, out, _ = run("measures", *MAP)
+    frame = compute_map(SPEC)
+    assert out.splitlines() == [
+        compute_basin_entropy(*exit_labels(frame.fate, bounded=True)).describe(),
+        compute_wada_test(*exit_labels(frame.fate, bounded=False)).describe(),
+        fit_decay_laws(compute_statistics(frame), 100.0).describe(),
+        compute_uncertainty_exponent(SPEC).describe(),
+    ]
+
+
+def test_measures_come_as_numbers(run: Run) -> None:
+    _, out, _ = run("measures", *MAP, "--no-exponent", "--json")
+    answer, frame = json.loads(out), compute_map(SPEC)
+    assert answer["basin_entropy"]["s_b"] == compute_basin_entropy(*exit_labels(frame.fate, bounded=True)).s_b
+    assert answer["merging"]["radius"] == compute_wada_test(*exit_labels(frame.fate, bounded=False)).radius
+    laws = fit_decay_laws(compute_statistics(frame), 100.0)
+    assert laws.exponential is not None
+    assert answer["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
+    assert "uncertainty_exponent" not in answer
+
+
+def test_curves_are_the_engines(run: Run, tmp_path: Path) -> None:
+    assert run("curves", *SWEEP, "--output", tmp_path / "curves")[0] == 0
+    with xr.open_dataset(tmp_path / "curves.nc", engine="h5netcdf") as found:
+        xr.testing.assert_equal(found.load(), compute_energy_curves(SWEEP_SPEC).to_xarray())
+
+
+def test_the_table_of_curves_holds_the_same_numbers(run: Run, tmp_path: Path) -> None:
+    run("curves", *SWEEP, "--output", tmp_path / "curves")
+    with (tmp_path / "curves.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    curves = compute_energy_curves(SWEEP_SPEC)
+    for name, wanted in (("h", curves.energies), ("channel_2", curves.shares[:, 2]), ("s_b", curves.curve("s_b"))):
+        assert [float(row[name]) for row in rows] == wanted.tolist()
+
+
+def test_numbers_that_are_not_there_are_null(run: Run, tmp_path: Path) -> None:
+    _, out, _ = run("curves", *SWEEP, "--json", "--output", tmp_path / "curves")
+    lowest = json.loads(out)["points"][0]
+    assert math.isnan(compute_energy_curves(SWEEP_SPEC).curve("mean_escape_time")[0])
+    assert lowest["mean_escape_time"] is None
+    assert lowest["bounded"] == 1.0
+
+
+@pytest.mark.parametrize("command", [("measures", *MAP), ("curves", *SWEEP)])
+def test_a_pipe_hears_of_no_progress(
+    command: tuple[object, ...], run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(*command, "--json")[2] == ""

@@ -1,0 +1,79 @@
+"""``serve``: Panel's server, told where the page lies."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.runtime.settings import Settings
+from cli.serve_command import app_folder, serve_arguments, server_environment
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+def test_the_page_is_found_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert (app_folder() / "main.py").is_file()
+    assert app_folder().is_absolute()
+
+
+def test_nobody_else_can_reach_the_page_unless_asked_for() -> None:
+    command = serve_arguments(5006, "127.0.0.1", [], show=False, settings=Settings())
+    assert command[command.index("--address") + 1] == "127.0.0.1"
+    assert not any("origin" in argument or argument == "--show" for argument in command)
+
+
+def test_the_server_gets_what_was_asked_for(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[tuple[Any, ...]] = []
+    monkeypatch.setattr(os, "name", "posix")
+    monkeypatch.setattr(os, "execve", lambda *call: calls.append(call))
+    monkeypatch.setattr(subprocess, "call", lambda *call, **more: 0)
+    run(
+        "serve",
+        "--port",
+        8080,
+        "--address",
+        "0.0.0.0",
+        "--allow-websocket-origin",
+        "a",
+        "--allow-websocket-origin",
+        "b:1",
+        "--show",
+    )
+    program, command, environment = calls[0]
+    assert program == command[0] == sys.executable
+    assert command[-9:] == [
+        "--port", "8080", "--address", "0.0.0.0", "--allow-websocket-origin=a", "--allow-websocket-origin=b:1",
+        "--unused-session-lifetime=60000", "--keep-alive=20000", "--show",
+    ]  # fmt: skip
+    assert environment == server_environment()
+
+
+def test_the_server_finds_the_packages_though_another_app_lies_where_it_starts(tmp_path: Path) -> None:
+    (tmp_path / "app").mkdir()
+    (tmp_path / "app" / "__init__.py").write_text("")
+    command = serve_arguments(5006, "127.0.0.1", [], show=False, settings=Settings())
+    python = command[: command.index("-m")]
+    script = "import importlib.util as u; print(u.find_spec('app').origin)"
+    ended = subprocess.run(
+        [*python, "-c", script], cwd=tmp_path, env=server_environment(), capture_output=True, text=True, check=True
+    )
+    assert ended.stdout.strip() == str(app_folder() / "__init__.py")
+
+
+@pytest.mark.parametrize("port", [0, 70000])
+def test_a_port_that_is_none_is_refused(port: int, run: Run) -> None:
+    assert run("serve", "--port", port)[0] == 2
+
+
+def test_a_setting_that_is_none_is_refused_before_the_server_starts(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ESCAPE_EXPLORER_MOST_SESSIONS", "many")
+    code, _, said = run("serve")
+    assert code == 2
+    assert "ESCAPE_EXPLORER_MOST_SESSIONS='many': must be a whole number from 1 to 100000" in said

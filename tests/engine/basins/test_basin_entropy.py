@@ -1,0 +1,241 @@
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engine import CASES, MapSpec, Plane, compute_map
+from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
+
+LN2 = math.log(2.0)
+
+
+def entropy_of(*shares: float) -> float:
+    return math.fsum(-share * math.log(share) for share in shares if share)
+
+
+def random_labels(side: int, labels: int, seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).integers(labels, size=(side, side))
+
+
+def box_by_box(labels: np.ndarray, valid: np.ndarray, box: int) -> list[float]:
+    """The entropies of the boxes that count, as one would write them down first."""
+    rows, columns = labels.shape
+    entropies = []
+    for row, column in product(range(0, rows - box + 1, box), range(0, columns - box + 1, box)):
+        part = np.s_[row : row + box, column : column + box]
+        if valid[part].all():
+            counts = Counter(labels[part].ravel().tolist())
+            entropies.append(entropy_of(*(count / box**2 for count in counts.values())))
+    return entropies
+
+
+def multinomial_entropy(labels: int, starts: int) -> float:
+    """Expected entropy of the shares of labels drawn with equal chances."""
+    chance = 1.0 / labels
+    return labels * math.fsum(
+        math.comb(starts, k) * chance**k * (1 - chance) ** (starts - k) * entropy_of(k / starts) for k in range(1, starts + 1)
+    )
+
+
+def grebogi_basins(side: int) -> np.ndarray:
+    """The two basins of the map of Grebogi, McDonald, Ott & Yorke (1983), with fixed points at θ = 0 and π."""
+    theta, x = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, side), np.linspace(-0.5, 0.5, side))
+    for _ in range(150):
+        theta, x = theta + 1.32 * np.sin(2.0 * theta) - 0.9 * np.sin(4.0 * theta) - x * np.sin(theta), -0.3 * np.cos(theta)
+    assert np.abs(np.sin(theta)).max() < 1e-6
+    basins: np.ndarray = (np.cos(theta) > 0).astype(int)
+    return basins
+
+
+# Numbers.
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3, 4])
+def test_a_straight_boundary_has_the_entropy_of_the_two_parts_of_its_boxes(columns: int) -> None:
+    labels = np.zeros((20, 25), int)
+    labels[:, 10 + columns :] = 7
+    result = compute_basin_entropy(labels)
+    assert result.s_bb == pytest.approx(entropy_of(columns / 5, 1 - columns / 5), rel=1e-14)
+    assert result.s_b == pytest.approx(result.s_bb / 5, rel=1e-14)
+    assert (result.boxes, result.boundary_boxes, result.labels) == (20, 4, 2)
+
+
+def test_one_box_written_down_by_hand() -> None:
+    labels = np.array([[1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [2, 2, 2, 2, 2], [3, 3, 3, 3, 3], [3, 3, 3, 4, 4]])
+    result = compute_basin_entropy(labels)
+    assert result.s_b == pytest.approx(entropy_of(10 / 25, 5 / 25, 8 / 25, 2 / 25), rel=1e-14)
+    assert math.isnan(result.s_b_error)
+
+
+def test_one_label_has_no_entropy_at_all() -> None:
+    result = compute_basin_entropy(np.full((20, 20), 3))
+    assert result.s_b == 0.0
+    assert result.boundary_boxes == 0
+    assert math.isnan(result.s_bb)
+
+
+@pytest.mark.parametrize("box", [2, 3, 5, 8])
+@pytest.mark.parametrize("seed", range(3))
+def test_any_picture_agrees_with_counting_box_by_box(box: int, seed: int) -> None:
+    labels = random_labels(41, 4, seed)[:, :37] - 2
+    labels[:20] = np.minimum(labels[:20], -1)
+    valid = np.random.default_rng(seed).random(labels.shape) > 0.02
+    entropies = box_by_box(labels, valid, box)
+    result = compute_basin_entropy(labels, valid, box)
+    assert result.boxes == len(entropies)
+    assert result.s_b == pytest.approx(np.mean(entropies), rel=1e-12)
+    assert result.s_bb == pytest.approx(np.mean([entropy for entropy in entropies if entropy]), rel=1e-12)
+
+
+@pytest.mark.parametrize("labels", [2, 3, 4])
+def test_random_labels_have_the_entropy_of_a_multinomial(labels: int) -> None:
+    result = compute_basin_entropy(random_labels(500, labels))
+    assert result.s_b == pytest.approx(multinomial_entropy(labels, 25), abs=4.0 * result.s_b_error)
+    assert result.s_b_error < 1e-3
+
+
+def test_the_standard_error_is_that_of_independent_boxes() -> None:
+    results = [compute_basin_entropy(random_labels(50, 3, seed)) for seed in range(200)]
+    stated = np.sqrt(np.mean([result.s_b_error**2 for result in results]))
+    assert np.std([result.s_b for result in results]) == pytest.approx(stated, rel=0.2)
+
+
+def test_a_circle_has_the_entropy_of_straight_lines_in_all_directions() -> None:
+    place = np.arange(1500.0)
+    inside = np.hypot(*np.meshgrid(place - 749.3, place - 749.7)) < 600.0
+    rng = np.random.default_rng(0)
+    angle, offset = rng.uniform(0.0, 2.0 * np.pi, (100_000, 1)), rng.uniform(-3.0, 3.0, (100_000, 1))
+    x, y = (side.ravel() for side in np.meshgrid(np.arange(-2, 3), np.arange(-2, 3)))
+    share = np.mean(x * np.cos(angle) + y * np.sin(angle) > offset, axis=1)
+    expected = np.mean([entropy_of(part, 1.0 - part) for part in share[(share > 0) & (share < 1)]])
+    result = compute_basin_entropy(inside.astype(int))
+    assert result.s_bb == pytest.approx(expected, abs=4.0 * result.s_bb_error)
+    assert not result.beyond_ln2
+
+
+def test_grebogis_map_has_the_entropies_that_attractors_jl_expects() -> None:
+    """test/basins/uncertainty_tests.jl there: 300 × 300 starts, boxes of 6 × 6."""
+    result = compute_basin_entropy(grebogi_basins(300), box=6)
+    assert 0.40 <= result.s_b <= 0.42
+    assert 0.60 <= result.s_bb <= 0.61
+
+
+# The ln 2 criterion.
+
+
+def test_three_basins_at_random_are_beyond_ln2() -> None:
+    labels = random_labels(100, 3)
+    labels[:, :50] = 0
+    result = compute_basin_entropy(labels)
+    assert result.s_b < LN2 < result.s_bb
+    assert result.beyond_ln2
+
+
+def test_two_basins_in_equal_parts_are_not_beyond_ln2() -> None:
+    labels = np.indices((60, 60)).sum(axis=0) % 2
+    result = compute_basin_entropy(labels, box=6)
+    assert result.s_bb == pytest.approx(LN2, rel=1e-14)
+    assert not result.beyond_ln2
+
+
+def test_thin_stripes_are_beyond_ln2_until_the_picture_resolves_them() -> None:
+    stripes = np.arange(60) % 3 * np.ones((60, 1), int)
+    assert compute_basin_entropy(stripes).beyond_ln2
+    assert not compute_basin_entropy(stripes.repeat(10, axis=0).repeat(10, axis=1), box=6).beyond_ln2
+
+
+def test_sectors_that_meet_in_a_point_are_not_beyond_ln2() -> None:
+    y, x = np.indices((300, 300)) - 149.2
+    sectors = ((np.arctan2(y, x) + np.pi) * 3.0 / (2.0 * np.pi)).astype(int)
+    result = compute_basin_entropy(sectors)
+    assert result.labels == 3
+    assert not result.beyond_ln2
+
+
+# What cannot matter, and what does not count.
+
+
+@pytest.mark.parametrize("turned", [np.fliplr, np.flipud, np.transpose, np.rot90, lambda labels: 5 - 3 * labels])
+def test_turned_mirrored_and_relabelled_pictures_have_the_same_entropies(turned: Callable[[np.ndarray], np.ndarray]) -> None:
+    labels = random_labels(60, 3)
+    labels[:, :30] = 1
+    one, other = compute_basin_entropy(labels), compute_basin_entropy(turned(labels))
+    for name in ("s_b", "s_bb", "s_b_error", "s_bb_error"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-12)
+
+
+def test_labels_that_do_not_count_change_nothing() -> None:
+    labels = random_labels(60, 3)
+    valid = np.ones(labels.shape, bool)
+    valid[:, 7] = False
+    changed = np.where(valid, labels, 99)
+    assert compute_basin_entropy(changed, valid) == compute_basin_entropy(labels, valid)
+
+
+def test_where_nothing_counts_there_is_no_entropy() -> None:
+    result = compute_basin_entropy(random_labels(20, 3), np.zeros((20, 20), bool))
+    assert result.boxes == 0
+    assert math.isnan(result.s_b)
+    assert not result.beyond_ln2
+
+
+@pytest.mark.parametrize(
+    ("parameter", "labels", "valid", "box"),
+    [
+        ("labels", np.zeros(9, int), None, 2),
+        ("labels", np.zeros((9, 9)), None, 2),
+        ("valid", np.zeros((9, 9), int), np.ones((9, 8), bool), 2),
+        ("valid", np.zeros((9, 9), int), np.ones((9, 9), int), 2),
+        ("box", np.zeros((9, 9), int), None, 1),
+        ("box", np.zeros((9, 6), int), None, 7),
+        ("box", np.zeros((9, 9), int), None, 2.5),
+    ],
+)
+def test_what_is_not_legal_is_named(parameter: str, labels: Any, valid: Any, box: Any) -> None:
+    with pytest.raises(ValueError, match=f"^{parameter}"):
+        compute_basin_entropy(labels, valid, box)
+
+
+# Words, and a map.
+
+
+@pytest.mark.parametrize(
+    ("labels", "words"),
+    [
+        (np.zeros((10, 10), int), "no box holds more than one label"),
+        (random_labels(10, 2), "no question"),
+        (random_labels(100, 3), "S_bb > ln 2"),
+        (np.arange(21).repeat(7) // 7 * np.ones((147, 1), int), "leaves open"),
+    ],
+)
+def test_the_sentence_says_what_follows(labels: np.ndarray, words: str) -> None:
+    assert words in compute_basin_entropy(labels).describe()
+
+
+def test_the_sentence_without_boxes_says_so() -> None:
+    assert compute_basin_entropy(np.zeros((9, 9), int), np.zeros((9, 9), bool)).describe().startswith("No basin entropy")
+
+
+@pytest.fixture(scope="module")
+def henon_heiles() -> BasinEntropy:
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (150, 150), t_max=1e3))
+    return compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED))
+
+
+def test_the_boundaries_of_henon_heiles_are_beyond_ln2(henon_heiles: BasinEntropy) -> None:
+    """They are fractal: Aguirre, Vallejo & Sanjuán 2001, Phys. Rev. E 64, 066208."""
+    assert henon_heiles.beyond_ln2
+
+
+def test_with_two_exits_alone_a_map_cannot_be_beyond_ln2() -> None:
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (100, 100), t_max=1e3))
+    result = compute_basin_entropy(*exit_labels(frame.fate, bounded=False))
+    assert result.labels == 2
+    assert 0.0 < result.s_bb <= LN2

@@ -1,0 +1,291 @@
+from __future__ import annotations
+
+import threading
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
+from engine.dynamics.batch import OrbitBatch, propagate_batch
+from engine.dynamics.classification import read_outcomes
+from engine.dynamics.lyapunov_orbits import exit_curves
+from engine.dynamics.planes import find_mirror_images
+from engine.execution import SerialExecutor
+from engine.maps.spec import FINEST_PIXEL
+from engine.maps.trust import (
+    SECOND_TOLERANCE,
+    SHIFT,
+    Trust,
+    TrustMap,
+    compute_trust,
+    find_unlike_neighbours,
+    shifted_starts,
+)
+from engine.taylor.source.recurrence import TOLERANCE
+
+SAMPLE = 60
+ZOOM = Window(0.25739561116 - 5e-10, 0.25739561116 + 5e-10, 0.13079102903 - 5e-10, 0.13079102903 + 5e-10)
+
+
+@cache
+def trusted(
+    name: str = "III",
+    energy: float | tuple[float, float] = 0.45,
+    plane: Plane = Plane.X_PX,
+    side: int = 61,
+    t_max: float = 1000.0,
+    certify: bool = True,
+    window: Window = None,  # type: ignore[assignment]
+) -> tuple[EscapeMap, TrustMap]:
+    spec = MapSpec(CASES[name], plane, energy, (side, side), window, t_max, certify)
+    whole = compute_map(spec)
+    return whole, compute_trust(whole)
+
+
+def run_again(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Fates, and crossings before the escape, of orbits followed to t_max at one go, energy by energy."""
+    potential = whole.spec.potential
+    energies = ordinate if whole.spec.plane is Plane.X_H else np.full(x.size, whole.spec.energy)
+    fate, crossings = np.zeros((2, x.size), np.int64)
+    for energy in np.unique(energies):
+        which = energies == energy
+        curves = exit_curves(potential, float(energy))[None]
+        batch = OrbitBatch.from_starts(whole.spec.start_states(x[which], ordinate[which]), np.zeros(which.sum(), np.int64))
+        propagate_batch(potential, curves, batch, np.arange(which.sum()), whole.spec.t_max, final=True, tolerance=tolerance)
+        outcomes = read_outcomes(potential, energies[which], batch)
+        fate[which], crossings[which] = outcomes.fate, np.where(outcomes.fate >= 1, outcomes.crossings, 0)
+    return fate, crossings
+
+
+@pytest.mark.parametrize(
+    ("name", "energy", "plane"),
+    [("I", 0.2, Plane.X_Y), ("II", 0.2, Plane.X_PX), ("III", 0.45, Plane.X_PX), ("III", (0.3, 0.7), Plane.X_H)],
+)
+def test_doubtful_is_what_changes_when_followed_again_at_one_go(
+    name: str, energy: float | tuple[float, float], plane: Plane
+) -> None:
+    whole, trust = trusted(name, energy, plane, side=41, t_max=500.0)
+    rows, columns = np.nonzero(np.isin(trust.trust, (Trust.CONFIRMED, Trust.DOUBTFUL)))
+    # Of two mirror images the first is tested.
+    images = find_mirror_images(whole.spec.potential, plane, whole.x, whole.ordinate)
+    pixels = rows * whole.x.size + columns
+    first = np.ones(pixels.size, bool) if images is None else pixels <= images[pixels]
+    rows, columns = rows[first], columns[first]
+    x, ordinate, fate = whole.x[columns], whole.ordinate[rows], whole.fate[rows, columns]
+    crossings = np.where(fate >= 1, whole.crossings[rows, columns], 0)
+    changed = np.zeros(x.size, bool)
+    again = (shifted_starts(whole.spec, x, ordinate), TOLERANCE), ((x, ordinate), SECOND_TOLERANCE)
+    for (start_x, start_ordinate), tolerance in again:
+        other_fate, other_crossings = run_again(whole, start_x, start_ordinate, tolerance)
+        changed |= (other_fate != fate) | (other_crossings != crossings)
+    np.testing.assert_array_equal(trust.trust[rows, columns] == Trust.DOUBTFUL, changed)
+    assert changed.any()
+    assert not changed.all()
+
+
+@pytest.mark.slow
+def test_a_second_opinion_agrees_on_confirmed_pixels_and_not_on_doubtful_ones() -> None:
+    pytest.importorskip("heyoka")
+    from tests.peers import taylor_heyoka
+    from tests.peers.exit_lines import exit_lines
+
+    whole, trust = trusted()
+    potential, energy = whole.spec.potential, 0.45
+    disagreeing = {}
+    for code in (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED, Trust.DOUBTFUL):
+        rows, columns = np.nonzero(trust.trust == code)
+        chosen = np.random.default_rng(5).permutation(rows.size)[:SAMPLE]
+        rows, columns = rows[chosen], columns[chosen]
+        starts = whole.spec.start_states(whole.x[columns], whole.ordinate[rows])
+        answers = taylor_heyoka.classify(potential, exit_lines(potential, energy), starts, whole.spec.t_max)
+        fate = whole.fate[rows, columns]
+        other = (answers.fate != fate) | ((fate >= 1) & (answers.crossings != whole.crossings[rows, columns]))
+        disagreeing[code] = float(other.mean())
+    assert disagreeing[Trust.LIKE_NEIGHBOURS] == 0.0
+    assert disagreeing[Trust.CONFIRMED] <= 0.01
+    assert disagreeing[Trust.DOUBTFUL] >= 0.1
+
+
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.2), ("II", 0.2), ("III", 0.45)])
+def test_doubtful_pixels_leave_late(name: str, energy: float) -> None:
+    whole, trust = trusted(name, energy, side=101)
+    doubtful = whole.escape_time[(trust.trust == Trust.DOUBTFUL) & (whole.fate >= 1)]
+    confirmed = whole.escape_time[(trust.trust == Trust.CONFIRMED) & (whole.fate >= 1)]
+    # To grow from 1e-11 to order 1 takes 25 e-foldings, even where the exponent is 0.5.
+    assert doubtful.min() > 50.0
+    assert doubtful.min() > np.median(confirmed)
+    assert np.median(doubtful) > 3.0 * np.median(confirmed)
+
+
+def test_an_orbit_that_leaves_early_is_never_doubtful() -> None:
+    _, trust = trusted(t_max=40.0)
+    assert trust.complete
+    assert trust.doubtful_share == 0.0
+    assert trust.tested_share > 0.3
+
+
+def test_the_deeper_the_zoom_the_more_is_doubtful() -> None:
+    _, whole_picture = trusted()
+    _, zoom = trusted(window=ZOOM)
+    assert zoom.doubtful_share > 3.0 * whole_picture.doubtful_share
+
+
+def test_pixels_are_tested_where_a_neighbour_says_something_else() -> None:
+    whole, trust = trusted("III", 0.45, side=31)
+    rows, columns = whole.fate.shape
+    for row, column in np.ndindex(rows, columns):
+        fate = whole.fate[row, column]
+        if fate < Fate.BOUNDED:
+            assert trust.trust[row, column] == Trust.NO_QUESTION
+            continue
+        near = np.s_[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        fates, crossings = whole.fate[near], whole.crossings[near]
+        other = (fates >= 0) & ((fates != fate) | ((fate >= 1) & (crossings != whole.crossings[row, column])))
+        tested = trust.trust[row, column] in (Trust.CONFIRMED, Trust.DOUBTFUL)
+        assert tested == other.any()
+
+
+def test_crossings_of_bounded_neighbours_say_nothing() -> None:
+    fate = np.zeros((3, 3), np.int8)
+    assert not find_unlike_neighbours(fate, np.arange(9).reshape(3, 3)).any()
+
+
+def test_neighbours_with_no_answer_are_not_compared() -> None:
+    fate = np.full((3, 3), Fate.FORBIDDEN, np.int8)
+    fate[0], fate[1, 1] = Fate.OUTSIDE, 2
+    fate[2, 0] = Fate.FAILED
+    assert not find_unlike_neighbours(fate, np.zeros((3, 3), np.int32)).any()
+
+
+def test_fate_and_crossings_are_not_confused() -> None:
+    fate = np.array([[1, 3, 3, 3]], np.int8)
+    crossings = np.array([[3, 1, 1, 2]], np.int32)
+    np.testing.assert_array_equal(find_unlike_neighbours(fate, crossings), [[True, True, True, True]])
+    np.testing.assert_array_equal(find_unlike_neighbours(fate[:, 1:3], crossings[:, 1:3]), [[False, False]])
+
+
+@pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
+def test_mirror_images_are_trusted_alike(plane: Plane) -> None:
+    whole, trust = trusted(plane=plane)
+    images = find_mirror_images(whole.spec.potential, plane, whole.x, whole.ordinate)
+    assert images is not None
+    np.testing.assert_array_equal(trust.trust.ravel(), trust.trust.ravel()[images])
+
+
+def test_starts_on_the_axis_do_not_gain_a_crossing() -> None:
+    whole, trust = trusted(plane=Plane.X_Y)
+    middle = whole.ordinate == 0.0
+    assert middle.any()
+    early = middle[:, None] & (whole.escape_time < 50.0)
+    assert np.any(early & (trust.trust == Trust.CONFIRMED))
+    assert not np.any(early & (trust.trust == Trust.DOUBTFUL))
+
+
+def test_certificates_change_no_verdict() -> None:
+    certified, trust = trusted("III", 0.28, side=25, t_max=1e4)
+    followed, slow_trust = trusted("III", 0.28, side=25, t_max=1e4, certify=False)
+    np.testing.assert_array_equal(certified.fate, followed.fate)
+    np.testing.assert_array_equal(trust.trust, slow_trust.trust)
+    assert np.any((trust.trust == Trust.CONFIRMED) & (certified.fate == Fate.BOUNDED))
+
+
+def test_below_the_escape_energy_all_that_is_tested_is_confirmed() -> None:
+    whole, trust = trusted("II", (0.1, 0.4), Plane.X_H, side=9)
+    closed = trust.trust[whole.ordinate <= CASES["II"].escape_energy]
+    assert trust.complete
+    assert np.any(closed == Trust.CONFIRMED)
+    assert not np.any(closed == Trust.DOUBTFUL)
+
+
+def test_the_verdict_does_not_depend_on_the_executor() -> None:
+    whole, trust = trusted("II", 0.2)
+    np.testing.assert_array_equal(compute_trust(whole, executor=SerialExecutor()).trust, trust.trust)
+
+
+def test_frames_only_ever_add_to_what_is_known() -> None:
+    whole, trust = trusted()
+    frames: list[TrustMap] = []
+    compute_trust(whole, frames.append)
+    assert len(frames) > 4
+    assert not frames[0].complete
+    for before, after in pairwise(frames):
+        known = before.trust != Trust.NOT_TESTED
+        np.testing.assert_array_equal(before.trust[known], after.trust[known])
+    np.testing.assert_array_equal(frames[-1].trust, trust.trust)
+
+
+def test_when_cancelled_the_rest_is_not_tested() -> None:
+    whole, trust = trusted()
+    cancel = threading.Event()
+    partial = compute_trust(whole, lambda _frame: cancel.set(), cancel)
+    assert not partial.complete
+    assert Trust.NOT_TESTED in partial.trust
+    known = partial.trust != Trust.NOT_TESTED
+    np.testing.assert_array_equal(partial.trust[known], trust.trust[known])
+
+
+def test_an_unfinished_map_is_refused() -> None:
+    cancel = threading.Event()
+    cancel.set()
+    unfinished = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (9, 9)), cancel=cancel)
+    with pytest.raises(ValueError, match="not complete"):
+        compute_trust(unfinished)
+
+
+def test_below_the_escape_energy_nothing_is_in_question() -> None:
+    _, trust = trusted("III", 0.2)
+    assert trust.complete
+    assert trust.tested_share == trust.doubtful_share == 0.0
+
+
+def test_a_map_of_nothing_has_no_shares() -> None:
+    _, trust = trusted("III", 0.2, side=5, window=Window(5.0, 6.0, 5.0, 6.0))
+    assert trust.complete
+    assert np.isnan(trust.doubtful_share)
+    assert np.isnan(trust.tested_share)
+    assert trust.describe() == "No pixel has an answer that could be doubted."
+
+
+def test_shares_are_of_the_pixels_that_have_an_answer() -> None:
+    codes = np.array([[0, 0, 1, 1, 1], [2, 2, 2, 3, 4]], np.int8)
+    trust = TrustMap(MapSpec(CASES["I"], Plane.X_PX, 0.2, (5, 2)), codes, complete=False)
+    assert trust.doubtful_share == 1 / 8
+    assert trust.tested_share == 4 / 8
+    assert trust.describe() == (
+        "12.50 % of the pixels inside are doubtful so far: 50.00 % were tested, 37.50 % agree with their neighbours."
+    )
+    assert trust.nbytes == 10
+
+
+def test_codes_read_as_words() -> None:
+    assert str(Trust.LIKE_NEIGHBOURS) == "like neighbours"
+
+
+@pytest.mark.parametrize("size", [1.0, 1e-6, 1e-10, 1e-13])
+def test_a_start_moves_by_far_less_than_a_pixel_and_more_than_rounding(size: float) -> None:
+    spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), Window(0.3 - size, 0.3, -0.2 - size, -0.2))
+    x, ordinate = spec.pixel_centres()
+    for before, after in zip((x, ordinate), shifted_starts(spec, x, ordinate), strict=True):
+        moved = np.abs(before) - np.abs(after)
+        smallest = 0.9 * min(SHIFT, 0.01 * size / 40)
+        assert np.all(moved > max(smallest, 0.9 * FINEST_PIXEL))
+        # At the end of double precision rounding alone is a large part of a pixel.
+        assert np.all(moved < max(1.1 * min(SHIFT, 0.01 * size / 40), 1.1 * FINEST_PIXEL))
+
+
+def test_the_moved_starts_of_mirror_images_are_mirror_images() -> None:
+    spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (20, 20))
+    x, ordinate = spec.pixel_centres()
+    moved_x, moved_ordinate = shifted_starts(spec, x, ordinate)
+    np.testing.assert_array_equal(moved_x, -moved_x[::-1])
+    np.testing.assert_array_equal(moved_ordinate, -moved_ordinate[::-1])
+
+
+def test_on_x_h_the_energy_stays() -> None:
+    spec = MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6), (20, 20))
+    x, ordinate = spec.pixel_centres()
+    moved_x, moved_ordinate = shifted_starts(spec, x, ordinate)
+    assert np.all(moved_x != x)
+    np.testing.assert_array_equal(moved_ordinate, ordinate)

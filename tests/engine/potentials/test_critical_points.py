@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from engine.potentials.catalogue import channel_family
+from engine.potentials.critical_points import NotIsolatedError, count_turns, find_critical_points
+from engine.potentials.potential import Potential
+from engine.taylor.source.cauchy_products import derivative
+
+X, Y = sympy.symbols("x y")
+lines = st.tuples(*[st.integers(-5, 5)] * 3).filter(lambda line: line[0] or line[1])
+
+
+def terms_of(expression: sympy.Expr) -> dict[tuple[int, int], float]:
+    return {powers: float(c) for powers, c in sympy.Poly(expression, X, Y).terms() if c}
+
+
+def sorted_rows(points: np.ndarray) -> np.ndarray:
+    return points[np.lexsort(np.round(points.T, 6))]
+
+
+def intersections(first: list[tuple[int, int, int]], second: list[tuple[int, int, int]]) -> np.ndarray | None:
+    """Points where a line of one family meets one of the other; None when a pair is nearly parallel or points are close."""
+    points = []
+    for (a, b, c), (d, e, f) in product(first, second):
+        if abs(a * e - b * d) < 0.3 * np.hypot(a, b) * np.hypot(d, e):
+            return None
+        points.append(np.linalg.solve([[a, b], [d, e]], [c, f]))
+    crowded = any(np.hypot(*(p - q)) < 0.05 for p, q in combinations(points, 2))
+    return None if crowded else np.array(points)
+
+
+@given(st.lists(lines, min_size=1, max_size=3), st.lists(lines, min_size=1, max_size=3))
+def test_products_of_lines_meet_exactly_where_the_lines_do(first: list, second: list) -> None:
+    expected = intersections(first, second)
+    assume(expected is not None)
+    p, q = (terms_of(sympy.expand(sympy.prod(a * X + b * Y - c for a, b, c in family))) for family in (first, second))
+    np.testing.assert_allclose(sorted_rows(find_critical_points(p, q)), sorted_rows(expected), atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_as_many_critical_points_as_sympy_counts(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    degree = 3 + seed % 2
+    value = sum(int(rng.integers(-9, 10)) * X**i * Y**j for i, j in product(range(degree + 1), repeat=2) if 0 < i + j <= degree)
+    p, q = sympy.diff(value, X), sympy.diff(value, Y)
+    eliminated = sympy.Poly(sympy.resultant(p, q, Y), X)
+    # Simple roots in x: then each real x belongs to one real point, and Sturm's theorem counts them exactly.
+    assert sympy.gcd(eliminated, eliminated.diff()).degree() == 0
+    assert len(find_critical_points(terms_of(p), terms_of(q))) == eliminated.count_roots()
+
+
+def test_points_that_share_an_x_are_all_found() -> None:
+    p, q = terms_of(X * (X - 1)), terms_of(sympy.expand(Y * (Y - 2) * (Y + 2)))
+    assert len(find_critical_points(p, q)) == 6
+
+
+def test_a_system_without_real_roots_has_none() -> None:
+    assert find_critical_points(terms_of(X**2 + 1), terms_of(Y)).shape == (0, 2)
+
+
+def random_terms(seed: int, degree: int) -> dict[tuple[int, int], float]:
+    rng = np.random.default_rng(seed)
+    return {(i, j): rng.normal() for i in range(degree + 1) for j in range(degree + 1 - i) if i + j > 0}
+
+
+def index_of(terms: dict[tuple[int, int], float], points: np.ndarray) -> int:
+    potential = Potential("random", tuple((i, j, c) for (i, j), c in terms.items()))
+    vxx, vxy, vyy = potential.hessian(*points.T)
+    return int(np.sign(vxx * vyy - vxy**2).sum())
+
+
+@pytest.mark.parametrize("degree", [3, 5, 8, 12])
+@pytest.mark.parametrize("seed", range(3))
+def test_indices_add_up_to_the_turns_of_the_gradient_far_out(seed: int, degree: int) -> None:
+    # Theorem of Poincaré and Hopf: a saddle, minimum or maximum that is missing would be missed here.
+    terms = random_terms(seed, degree)
+    slopes = derivative(terms, 0), derivative(terms, 1)
+    points = find_critical_points(*slopes)
+    for radius in (3.0, 300.0):
+        assert index_of(terms, points[np.hypot(*points.T) < radius]) == count_turns(*slopes, radius)
+
+
+@pytest.mark.parametrize("n", [3, 5, 8, 9, 10, 12])
+def test_the_gradient_of_the_family_turns_as_often_as_its_saddles_say(n: int) -> None:
+    potential = channel_family(n)
+    assert count_turns(potential.derivative(1, 0), potential.derivative(0, 1), 5.0) == 1 - n == 1 - potential.channels
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_points_scale_with_the_polynomials(size: float) -> None:
+    terms = random_terms(1, 5)
+    usual = find_critical_points(derivative(terms, 0), derivative(terms, 1))
+    scaled = {(i, j): c * size ** -(i + j) for (i, j), c in terms.items()}
+    np.testing.assert_allclose(
+        sorted_rows(find_critical_points(derivative(scaled, 0), derivative(scaled, 1)) / size), sorted_rows(usual), rtol=1e-9
+    )
+
+
+@pytest.mark.parametrize("value", [X**2, X**2 * Y**2, (X**2 + Y**2 - 1) ** 2, (X - Y) ** 2 * (X + 1), (X * Y - 1) ** 2])
+def test_zeros_along_a_curve_are_refused(value: sympy.Expr) -> None:
+    expanded = sympy.expand(value)
+    with pytest.raises(NotIsolatedError):
+        find_critical_points(terms_of(sympy.diff(expanded, X)), terms_of(sympy.diff(expanded, Y)))
+
+
+def test_a_degenerate_point_is_one_point() -> None:
+    # A monkey saddle: both slopes vanish to second order.
+    points = find_critical_points(terms_of(3 * X**2 - 3 * Y**2), terms_of(-6 * X * Y))
+    np.testing.assert_allclose(points, [[0.0, 0.0]], atol=1e-5)
+
+
+def test_a_common_factor_without_real_zeros_hides_nothing() -> None:
+    # V = (r² + 1)²: both slopes vanish on the complex circle r² = −1 and at the origin.
+    factor = X**2 + Y**2 + 1
+    points = find_critical_points(terms_of(sympy.expand(4 * X * factor)), terms_of(sympy.expand(4 * Y * factor)))
+    np.testing.assert_allclose(points, [[0.0, 0.0]], atol=1e-12)

@@ -1,0 +1,422 @@
+from __future__ import annotations
+
+import threading
+from concurrent.futures import CancelledError
+
+import numpy as np
+import pytest
+from scipy import optimize
+
+from engine import (
+    CASES,
+    DecayLaw,
+    DecayLaws,
+    EscapeStatistics,
+    LawFit,
+    MapSpec,
+    Plane,
+    Potential,
+    Window,
+    classify_orbits,
+    compute_map,
+    compute_statistics,
+    compute_survival,
+    find_lyapunov_orbits,
+    fit_decay_laws,
+)
+from engine.dynamics.lyapunov_orbits import find_outside_exits
+from engine.statistics.decay_laws import FEWEST_ESCAPES
+from engine.statistics.escape_statistics import SURVIVAL_POINTS
+
+T_LOW, T_HIGH = 2.0, 1e4
+KAPPA, GAMMA = 0.05, 1.5
+WINDOW = (T_LOW, T_HIGH)
+# A window that cuts off a good part of what would leave later.
+SHORT = (T_LOW, 20.0)
+SEEDS = 100
+EPSILON = 1e-12
+
+
+def statistics_of(times: np.ndarray, *, bounded: int = 0, undecided: int = 0) -> EscapeStatistics:
+    """Of a map whose orbits leave at these times."""
+    return EscapeStatistics((times.size,), bounded, undecided, 0, 0.0, 0.0, np.zeros(0, np.int64), times)
+
+
+def exponential_times(count: int, seed: int = 1, *, window: tuple[float, float] = WINDOW, kappa: float = KAPPA) -> np.ndarray:
+    """Times in the window that follow an exponential law."""
+    low, high = window
+    share = np.random.default_rng(seed).random(count) * -np.expm1(-kappa * (high - low))
+    times: np.ndarray = low - np.log1p(-share) / kappa
+    return times
+
+
+def power_times(count: int, seed: int = 1, *, window: tuple[float, float] = WINDOW, gamma: float = GAMMA) -> np.ndarray:
+    """Times in the window that follow a power law."""
+    low, high = window
+    share = np.random.default_rng(seed).random(count) * (1.0 - (high / low) ** -gamma)
+    times: np.ndarray = low * (1.0 - share) ** (-1.0 / gamma)
+    return times
+
+
+def both(laws: DecayLaws) -> tuple[LawFit, LawFit]:
+    assert laws.exponential is not None
+    assert laws.power_law is not None
+    return laws.exponential, laws.power_law
+
+
+def fit(times: np.ndarray, window: tuple[float, float] | None = WINDOW) -> DecayLaws:
+    return fit_decay_laws(statistics_of(times), T_HIGH, window=window, resamples=500)
+
+
+@pytest.fixture(scope="module")
+def exponential() -> DecayLaws:
+    return fit(exponential_times(5000))
+
+
+@pytest.fixture(scope="module")
+def power_law() -> DecayLaws:
+    return fit(power_times(5000))
+
+
+@pytest.fixture(scope="module")
+def many_exponential() -> list[LawFit]:
+    return [both(fit(exponential_times(200, seed, window=SHORT), SHORT))[0] for seed in range(SEEDS)]
+
+
+@pytest.fixture(scope="module")
+def many_power() -> list[LawFit]:
+    return [both(fit(power_times(200, seed)))[1] for seed in range(SEEDS)]
+
+
+# Survival.
+
+
+def test_survival_steps_down_at_every_escape() -> None:
+    times, survival = compute_survival(statistics_of(np.array([3.0, 1.0, 3.0, 2.0]), bounded=4))
+    assert times.tolist() == [1.0, 2.0, 3.0]
+    assert survival.tolist() == [7 / 8, 6 / 8, 4 / 8]
+
+
+def test_a_long_survival_curve_is_thinned_and_stays_exact() -> None:
+    escapes = power_times(20_000)
+    times, survival = compute_survival(statistics_of(escapes, bounded=100))
+    assert 0.5 * SURVIVAL_POINTS < times.size <= SURVIVAL_POINTS
+    assert (times[0], times[-1]) == (escapes.min(), escapes.max())
+    still_inside = np.array([np.count_nonzero(escapes > t) for t in times]) + 100
+    np.testing.assert_allclose(survival, still_inside / 20_100, rtol=0, atol=EPSILON)
+
+
+def test_survival_is_empty_where_nothing_leaves() -> None:
+    times, survival = compute_survival(statistics_of(np.zeros(0), bounded=5))
+    assert times.size == survival.size == 0
+
+
+def test_the_arrays_are_read_only_and_counted(exponential: DecayLaws) -> None:
+    assert not exponential.times.flags.writeable
+    assert not exponential.survival.flags.writeable
+    assert exponential.nbytes == 16 * exponential.times.size
+
+
+# Rates.
+
+
+@pytest.mark.parametrize("window", [WINDOW, SHORT])
+def test_the_rate_of_an_exponential_is_recovered(window: tuple[float, float]) -> None:
+    laws = fit(exponential_times(5000, window=window), window)
+    fitted, _ = both(laws)
+    assert fitted.low < KAPPA < fitted.high
+    assert fitted.high - fitted.low < 0.3 * KAPPA
+    assert laws.preferred is DecayLaw.EXPONENTIAL
+
+
+@pytest.mark.parametrize("window", [WINDOW, SHORT])
+def test_the_exponent_of_a_power_law_is_recovered(window: tuple[float, float]) -> None:
+    laws = fit(power_times(5000, window=window), window)
+    _, fitted = both(laws)
+    assert fitted.low < GAMMA < fitted.high
+    assert fitted.high - fitted.low < 0.2 * GAMMA
+    assert laws.preferred is DecayLaw.POWER_LAW
+
+
+def test_the_rates_maximise_the_likelihood() -> None:
+    """The likelihoods written out, and maximised by another method."""
+    times, (low, high) = power_times(700, window=SHORT), SHORT
+
+    def exponential_loss(kappa: float) -> float:
+        return float(-np.mean(np.log(kappa) - kappa * (times - low) - np.log(1.0 - np.exp(-kappa * (high - low)))))
+
+    def power_loss(gamma: float) -> float:
+        density = gamma * times ** (-gamma - 1.0) / (low**-gamma - high**-gamma)
+        return float(-np.mean(np.log(density)))
+
+    laws = fit(times, SHORT)
+    best = [optimize.minimize_scalar(loss, bounds=(1e-3, 9.0)) for loss in (exponential_loss, power_loss)]
+    assert [found.rate for found in both(laws)] == pytest.approx([result.x for result in best], rel=1e-4)
+    assert laws.ratio == pytest.approx(best[1].fun - best[0].fun, abs=1e-8)
+
+
+def test_escapes_that_grow_more_frequent_have_a_rate_below_zero() -> None:
+    low, high = SHORT
+    mirrored = low + high - exponential_times(2000, window=SHORT)
+    forward, backward = (both(fit(times, SHORT))[0].rate for times in (exponential_times(2000, window=SHORT), mirrored))
+    assert backward == pytest.approx(-forward, rel=1e-9)
+
+
+def test_orbits_that_never_leave_change_no_rate() -> None:
+    times = power_times(400)
+    alone, among_many = (fit_decay_laws(statistics_of(times, bounded=n), T_HIGH, window=WINDOW) for n in (0, 10**6))
+    assert [fitted.rate for fitted in both(alone)] == [fitted.rate for fitted in both(among_many)]
+
+
+def test_mirror_images_count_once() -> None:
+    times = exponential_times(400)
+    once, twice = fit(times), fit(np.concatenate([times, times]))
+    assert twice.escapes == 400
+    assert [(f.rate, f.low, f.high, f.p_value) for f in both(once)] == [(f.rate, f.low, f.high, f.p_value) for f in both(twice)]
+
+
+def test_longer_time_units_divide_kappa_and_leave_gamma() -> None:
+    times, factor = power_times(800), 50.0
+    plain = both(fit_decay_laws(statistics_of(times), T_HIGH))
+    scaled = both(fit_decay_laws(statistics_of(factor * times), factor * T_HIGH))
+    assert [fitted.rate for fitted in scaled] == pytest.approx([plain[0].rate / factor, plain[1].rate], rel=1e-9)
+    assert scaled[1].t_low == pytest.approx(factor * plain[1].t_low)
+
+
+# Intervals and p values.
+
+
+def test_intervals_of_kappa_hold_the_truth(many_exponential: list[LawFit]) -> None:
+    assert sum(fitted.low <= KAPPA <= fitted.high for fitted in many_exponential) >= 0.88 * SEEDS
+
+
+def test_intervals_of_gamma_hold_the_truth(many_power: list[LawFit]) -> None:
+    assert sum(fitted.low <= GAMMA <= fitted.high for fitted in many_power) >= 0.88 * SEEDS
+
+
+def test_intervals_are_no_wider_than_they_must(many_exponential: list[LawFit]) -> None:
+    spread = np.std([fitted.rate for fitted in many_exponential])
+    half_width = np.mean([fitted.high - fitted.low for fitted in many_exponential]) / 2.0
+    assert half_width / spread == pytest.approx(1.96, rel=0.2)
+
+
+def test_p_values_of_the_true_law_are_even(many_exponential: list[LawFit], many_power: list[LawFit]) -> None:
+    p_values = np.array([fitted.p_value for fitted in (*many_exponential, *many_power)])
+    assert np.mean(p_values < 0.1) == pytest.approx(0.1, abs=0.07)
+    assert np.mean(p_values < 0.5) == pytest.approx(0.5, abs=0.11)
+
+
+def test_p_values_of_large_samples_are_even() -> None:
+    """Beyond the size of the samples that are drawn for comparison."""
+    p_values = [both(fit(exponential_times(5000, seed)))[0].p_value for seed in range(30)]
+    assert np.mean(np.array(p_values) < 0.5) == pytest.approx(0.5, abs=0.3)
+
+
+def test_the_distance_is_that_of_kolmogorov_and_smirnov(exponential: DecayLaws) -> None:
+    fitted, _ = both(exponential)
+    times = np.sort(exponential_times(5000))
+    share = 1.0 - np.exp(-fitted.rate * (times - T_LOW))
+    steps = np.arange(5001) / 5000
+    assert fitted.distance == pytest.approx(max(np.max(steps[1:] - share), np.max(share - steps[:-1])), abs=1e-9)
+
+
+def test_one_seed_gives_one_answer_in_any_order() -> None:
+    times = power_times(500)
+    assert fit(times).describe() == fit(times[::-1].copy()).describe()
+
+
+# The choice of the window.
+
+
+def test_a_chosen_window_leaves_a_burst_out() -> None:
+    """As many direct escapes, of other times, as escapes that follow the law."""
+    held = []
+    for seed in range(20):
+        burst = np.random.default_rng(seed).gamma(4.0, 1.5, 2000)
+        late = exponential_times(2000, seed, window=(5.0, T_HIGH))
+        laws = fit(np.concatenate([burst, late]), None)
+        fitted, _ = both(laws)
+        held.append(laws.preferred is DecayLaw.EXPONENTIAL and laws.t_low > 10.0 and fitted.low <= KAPPA <= fitted.high)
+    assert sum(held) >= 16
+
+
+def test_a_law_that_holds_from_the_start_is_fitted_to_the_later_half() -> None:
+    laws = fit(exponential_times(2000, 4), None)
+    assert laws.settled
+    assert laws.escapes == pytest.approx(1000, rel=0.01)
+
+
+def test_no_law_is_preferred_where_no_window_is_found() -> None:
+    """Eight bursts, each three times as late as the one before."""
+    times = np.concatenate([np.linspace(0.9, 1.0, 400) * 3.0**k for k in range(8)])
+    laws = fit(times, None)
+    assert not laws.settled
+    assert laws.preferred is None
+    assert laws.describe().startswith("Neither law holds from any time on")
+
+
+# What is claimed.
+
+
+def test_a_mixture_is_neither_law() -> None:
+    """Exponential at first, a power law in the end: over the whole of it both fit badly."""
+    laws = fit(np.concatenate([exponential_times(3000, kappa=0.5), power_times(1000, gamma=1.0)]))
+    assert all(fitted.p_value < 0.1 for fitted in both(laws))
+    assert laws.preferred is None
+    assert laws.describe().startswith("Neither law holds (")
+
+
+def test_even_escapes_are_no_decay() -> None:
+    laws = fit(np.random.default_rng(3).uniform(*WINDOW, 3000))
+    fitted, _ = both(laws)
+    assert fitted.low < 0.0 < fitted.high
+    assert laws.preferred is None
+
+
+def test_over_a_short_window_no_law_is_preferred() -> None:
+    window = (T_LOW, 1.1 * T_LOW)
+    laws = fit(exponential_times(200, window=window, kappa=10.0), window)
+    assert laws.preferred is None
+    assert laws.ratio_low < 0.0 < laws.ratio_high
+    assert "both may hold" in laws.describe()
+
+
+def test_too_few_escapes_give_no_fit() -> None:
+    laws = fit(exponential_times(FEWEST_ESCAPES - 1))
+    assert (laws.exponential, laws.power_law, laws.preferred) == (None, None, None)
+    assert np.isnan(laws.ratio)
+    assert f"{FEWEST_ESCAPES - 1} escapes" in laws.describe()
+
+
+def test_a_fit_begins_at_the_fewest_escapes() -> None:
+    assert fit(exponential_times(FEWEST_ESCAPES)).exponential is not None
+
+
+def test_twice_as_many_are_needed_to_choose_a_window() -> None:
+    few, enough = (fit(exponential_times(n), None) for n in (2 * FEWEST_ESCAPES - 1, 2 * FEWEST_ESCAPES + 1))
+    assert few.exponential is None
+    assert np.isnan(few.t_low)
+    assert enough.exponential is not None
+
+
+def test_nothing_is_fitted_while_orbits_are_under_way() -> None:
+    laws = fit_decay_laws(statistics_of(exponential_times(500), undecided=3), T_HIGH, window=WINDOW)
+    assert (laws.exponential, laws.power_law) == (None, None)
+    assert "3 orbits are under way" in laws.describe()
+
+
+def test_a_map_without_escapes_has_no_law() -> None:
+    laws = fit_decay_laws(statistics_of(np.zeros(0), bounded=10), T_HIGH)
+    assert (laws.escapes, laws.times.size, laws.preferred) == (0, 0, None)
+
+
+def test_the_exponential_is_described_with_its_interval(exponential: DecayLaws) -> None:
+    fitted, _ = both(exponential)
+    sentence = exponential.describe()
+    assert sentence.startswith(f"Exponential: κ = {fitted.rate:.3g} ({fitted.low:.3g} to {fitted.high:.3g})")
+    assert "A power law is less likely and ruled out" in sentence
+
+
+def test_the_power_law_is_described_with_its_span(power_law: DecayLaws) -> None:
+    decades = np.log10(power_law.times[-1] / T_LOW)
+    assert power_law.describe().startswith(f"Power law over {decades:.1f} decades: γ = ")
+
+
+@pytest.mark.parametrize("name", ["exponential", "power_law"])
+def test_the_curve_of_a_law_follows_the_survival(name: str, request: pytest.FixtureRequest) -> None:
+    laws: DecayLaws = request.getfixturevalue(name)
+    fitted: LawFit = getattr(laws, name)
+    inside = (laws.times >= T_LOW) & (laws.times <= T_HIGH)
+    assert np.max(np.abs(fitted.curve(laws.times[inside]) - laws.survival[inside])) <= fitted.distance + 1e-3
+    assert fitted.curve([T_LOW, T_HIGH]).tolist() == [fitted.survival_low, fitted.survival_high]
+    assert np.isnan(fitted.curve([0.9 * T_LOW, 1.1 * T_HIGH])).all()
+
+
+# Errors.
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"t_max": 0.0}, "t_max=0.0"),
+        ({"window": (0.0, 5.0)}, r"window=\(0.0, 5.0\)"),
+        ({"window": (5.0, 5.0)}, r"window=\(5.0, 5.0\)"),
+        ({"window": (1.0, 2e4)}, "t_max=10000"),
+        ({"window": (float("nan"), 5.0)}, "window="),
+        ({"resamples": 499}, "resamples=499"),
+        ({"seed": -1}, "seed=-1"),
+    ],
+)
+def test_parameters_out_of_range_are_named(changed: dict[str, object], message: str) -> None:
+    arguments: dict[str, object] = {"t_max": T_HIGH, **changed}
+    with pytest.raises(ValueError, match=message):
+        fit_decay_laws(statistics_of(exponential_times(200)), **arguments)  # type: ignore[arg-type]
+
+
+def test_a_cancelled_fit_raises() -> None:
+    cancel = threading.Event()
+    cancel.set()
+    with pytest.raises(CancelledError):
+        fit_decay_laws(statistics_of(exponential_times(500)), T_HIGH, cancel=cancel)
+
+
+# The dynamics.
+
+
+def random_starts(potential: Potential, energy: float, count: int, seed: int) -> tuple[np.ndarray, float]:
+    """(count, 4) states spread evenly over the energy surface inside the exits, and the area of the plane they fill."""
+    rng, side = np.random.default_rng(seed), 3.2
+    x, y = rng.uniform(-side / 2, side / 2, (2, 8 * count))
+    kinetic = energy - potential.value(x, y)
+    inside = (kinetic > 0.0) & (find_outside_exits(potential, energy, x, y) == 0)
+    area = side**2 * float(np.mean(inside))
+    x, y, speed = x[inside][:count], y[inside][:count], np.sqrt(2.0 * kinetic[inside][:count])
+    angle = rng.uniform(0.0, 2.0 * np.pi, count)
+    return np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)]), area
+
+
+@pytest.mark.parametrize(("energy", "earlier", "later"), [(0.2, 60.0, 200.0), (0.3, 12.0, 30.0)])
+def test_the_rate_of_a_map_is_that_of_random_starts(energy: float, earlier: float, later: float) -> None:
+    """The rate of a hyperbolic escape does not depend on where the starts are; here the slope of ln S tells it."""
+    laws = fit_decay_laws(compute_statistics(compute_map(MapSpec(CASES["II"], Plane.X_PX, energy, t_max=1e4))), 1e4)
+    fitted, _ = both(laws)
+    states, _ = random_starts(CASES["II"], energy, 40_000, 11)
+    escape_time = classify_orbits(CASES["II"], energy, states, 1e3).escape_time
+    remaining = [np.count_nonzero(escape_time > t) for t in (earlier, later)]
+    slope = np.log(remaining[0] / remaining[1]) / (later - earlier)
+    error = np.sqrt(1.0 / remaining[1] - 1.0 / remaining[0]) / (later - earlier)
+    assert laws.preferred is DecayLaw.EXPONENTIAL
+    assert fitted.rate == pytest.approx(slope, abs=3.0 * np.hypot(error, (fitted.high - fitted.low) / 3.92))
+
+
+def test_survival_begins_with_the_flux_through_the_exits() -> None:
+    """Until orbits that entered could leave: gone by t are t · (actions of the Lyapunov orbits) / (2π · area) (MacKay 1990)."""
+    energy, t = 0.2, 2.0
+    states, area = random_starts(CASES["II"], energy, 40_000, 12)
+    outcomes = classify_orbits(CASES["II"], energy, states, t)
+    escaped = outcomes.escape_time[outcomes.fate >= 1]
+    _, survival = compute_survival(statistics_of(escaped, bounded=states.shape[0] - escaped.size))
+    orbits = find_lyapunov_orbits(CASES["II"], energy)
+    actions = sum(orbit.period * np.mean(2.0 * (energy - CASES["II"].value(orbit.x, orbit.y))[:-1]) for orbit in orbits)
+    assert 1.0 - survival[-1] == pytest.approx(t * actions / (2.0 * np.pi * area), rel=0.06)
+
+
+def test_starts_of_a_grid_scatter_as_independent_draws_would() -> None:
+    """Sixteen grids, shifted by parts of a pixel: their rates scatter as the bootstrap of one of them says."""
+    whole, side, rng = MapSpec(CASES["II"], Plane.X_PX, 0.3).window, 80, np.random.default_rng(7)
+    pixel = (whole.x_high - whole.x_low) / side
+    fits = []
+    for shift_x, shift_px in rng.uniform(0.0, pixel, (16, 2)):
+        window = Window(
+            whole.x_low + shift_x, whole.x_high + shift_x, whole.ordinate_low + shift_px, whole.ordinate_high + shift_px
+        )
+        frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (side, side), window, 1e3))
+        fits.append(both(fit_decay_laws(compute_statistics(frame), 1e3, window=(12.0, 1e3)))[0])
+    spread, expected = np.std([f.rate for f in fits]), np.mean([(f.high - f.low) / 3.92 for f in fits])
+    assert 0.5 < spread / expected < 1.4
+
+
+def test_a_symmetric_map_has_half_as_many_escapes() -> None:
+    statistics = compute_statistics(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.6, (100, 100), t_max=1e3)))
+    laws = fit_decay_laws(statistics, 1e3, window=(0.1, 1e3))
+    assert laws.escapes == statistics.escaped // 2

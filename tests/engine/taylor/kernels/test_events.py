@@ -1,0 +1,138 @@
+"""Upward crossings of y = 0 within one step, on series that are known polynomials; and the time of an exit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+
+from engine import CASES, find_lyapunov_orbits
+from engine.taylor.kernels.events import count_upward_crossings, exit_distance, find_exit_time, find_outside
+from engine.taylor.source.recurrence import ORDER
+
+
+def jet_of(polynomial: Polynomial) -> np.ndarray:
+    jet = np.zeros((ORDER + 1, 1))
+    jet[: polynomial.coef.size, 0] = polynomial.coef
+    return jet
+
+
+def crossings(polynomial: Polynomial, duration: float = 1.0) -> int:
+    return int(count_upward_crossings(jet_of(polynomial), 0, duration))
+
+
+def with_roots(*roots: float) -> Polynomial:
+    return Polynomial.fromroots(roots)
+
+
+@pytest.mark.parametrize(
+    ("roots", "sign", "expected"),
+    [
+        ((0.37,), +1, 1),
+        ((0.37,), -1, 0),
+        ((0.2, 0.8), +1, 1),  # above, below, above
+        ((0.2, 0.8), -1, 1),  # below, above, below
+        ((0.2, 0.5, 0.8), +1, 2),
+        ((0.2, 0.5, 0.8), -1, 1),
+        ((0.1, 0.35, 0.6, 0.85), +1, 2),
+        ((-0.3, 1.2), +1, 0),
+        ((-0.3, 1.2), -1, 0),
+    ],
+)
+def test_crossings_are_the_roots_with_rising_y(roots: tuple[float, ...], sign: int, expected: int) -> None:
+    assert crossings(sign * with_roots(*roots)) == expected
+
+
+@pytest.mark.parametrize("apart", [0.1, 1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("where", [0.01, 0.13, 0.3, 0.6180339, 0.97])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_two_roots_in_one_part_of_a_step_are_one_crossing(apart: float, where: float, sign: int) -> None:
+    # Above–below–above and below–above–below both hold exactly one way up.
+    low, high = where, min(where + apart, 0.999)
+    assert crossings(sign * with_roots(low, high)) == 1
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("where", [0.05, 0.3, 0.77])
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_turning_just_before_zero_is_no_crossing(gap: float, where: float, sign: int) -> None:
+    assert crossings(sign * (with_roots(where, where) + gap)) == 0
+
+
+@pytest.mark.parametrize(("sign", "expected"), [(1, 0), (-1, 1)])
+def test_touching_zero_counts_from_below_only(sign: int, expected: int) -> None:
+    # Exact in floating point. From below y reaches "0 or above"; from above it was never below.
+    assert crossings(sign * with_roots(0.25, 0.25)) == expected
+
+
+def test_start_on_zero_going_up_is_not_counted() -> None:
+    assert crossings(with_roots(0.0)) == 0
+
+
+def test_start_on_zero_going_up_counts_a_later_return() -> None:
+    assert crossings(with_roots(0.0, 0.4, 0.7)) == 1
+
+
+@pytest.mark.parametrize("turn", [0.5, 0.05, 0.01, 1e-4])
+def test_start_on_zero_going_down_counts_the_way_back(turn: float) -> None:
+    assert crossings(with_roots(0.0, turn)) == 1
+
+
+def test_end_on_zero_from_below_is_counted() -> None:
+    assert crossings(with_roots(1.0)) == 1
+
+
+def test_end_on_zero_from_above_is_not_counted() -> None:
+    assert crossings(-with_roots(1.0)) == 0
+
+
+def test_start_on_zero_after_a_step_that_ended_there_is_not_counted_twice() -> None:
+    whole = with_roots(0.5)
+    assert crossings(whole, 0.5) + crossings(whole(Polynomial([0.5, 1.0]))) == 1
+
+
+def test_only_the_given_duration_is_looked_at() -> None:
+    assert [crossings(with_roots(0.2, 0.5, 0.8), duration) for duration in (0.1, 0.4, 0.7, 0.9)] == [0, 1, 1, 2]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_crossings_of_random_series_are_those_of_dense_sampling(seed: int) -> None:
+    polynomial = Polynomial(np.random.default_rng(seed).normal(size=7) * [0.3, 1, 2, 2, 1, 1, 1])
+    roots = polynomial.roots()
+    real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
+    assert crossings(polynomial) == np.sum(polynomial.deriv()(real) > 0)
+
+
+# Exits.
+
+
+def orbit_through(x: float, y: float, px: float, py: float) -> tuple[np.ndarray, np.ndarray]:
+    """Straight lines in time, as series."""
+    return jet_of(Polynomial([x, px])), jet_of(Polynomial([y, py]))
+
+
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.13), ("I", 0.5), ("II", 0.5), ("III", 1.0)])
+def test_every_point_of_a_lyapunov_orbit_lies_on_its_curve(name: str, energy: float) -> None:
+    for orbit in find_lyapunov_orbits(CASES[name], energy):
+        distances = [exit_distance(x, y, orbit.curve) for x, y in zip(orbit.x, orbit.y, strict=True)]
+        assert np.abs(distances).max() < 1e-10
+
+
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.3), ("II", 0.4), ("III", 0.8)])
+def test_a_line_leaves_where_it_meets_the_lyapunov_orbit(name: str, energy: float) -> None:
+    for orbit in find_lyapunov_orbits(CASES[name], energy):
+        goal = np.array([orbit.x[30], orbit.y[30]])
+        tau = find_exit_time(*orbit_through(0.0, 0.0, *goal), 0, 1.2, orbit.curve)
+        assert tau == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_step_that_starts_outside_leaves_at_once() -> None:
+    curve = find_lyapunov_orbits(CASES["II"], 0.3)[0].curve
+    assert find_exit_time(*orbit_through(1.5, 0.0, 1.0, 0.0), 0, 0.1, curve) == 0.0
+
+
+def test_the_origin_is_inside_and_far_along_each_channel_is_outside() -> None:
+    potential = CASES["III"]
+    curves = np.array([[o.curve for o in find_lyapunov_orbits(potential, 0.5)]])
+    x, y = np.vstack([[0.0, 0.0], 2 * potential.saddles]).T
+    np.testing.assert_array_equal(find_outside(x, y, curves, np.zeros(5, np.int64)), [0, 1, 2, 3, 4])
