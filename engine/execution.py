@@ -6,7 +6,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from functools import cache
 from typing import Any
 
@@ -77,6 +77,12 @@ class SerialExecutor(Executor):
         return future
 
 
-def is_set(event: threading.Event | None) -> bool:
-    """Whether there is such an event, and it has come."""
-    return event is not None and event.is_set()
+def is_cancelled(cancel: threading.Event | None) -> bool:
+    """Whether a cancel event was given and is set."""
+    return cancel is not None and cancel.is_set()
+
+
+def raise_if_cancelled(cancel: threading.Event | None) -> None:
+    """Raise `concurrent.futures.CancelledError` if a cancel event was given and is set."""
+    if is_cancelled(cancel):
+        raise CancelledError

@@ -14,7 +14,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.compiled import kernels_of, step_tolerance
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import exit_gates
-from engine.execution import count_workers, default_executor, is_set
+from engine.execution import count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.events import find_outside
 from engine.taylor.kernels.propagate import VECTOR
@@ -197,7 +197,7 @@ def propagate_batch(
 
     def go_on(tile: _Tile) -> None:
         tile.put_back(batch)
-        if is_set(cancel):
+        if is_cancelled(cancel):
             return
         following = [tile] if tile.waiting.any() else list(islice(tiles, 1))
         if len(following) + len(running) < workers:
@@ -213,6 +213,6 @@ def propagate_batch(
             # Of a job that is cancelled, calls that no thread has taken up are cancelled too.
             if not future.cancelled():
                 go_on(future.result())
-        if on_progress is not None and not is_set(cancel):
+        if on_progress is not None and not is_cancelled(cancel):
             on_progress()
-    return not is_set(cancel)
+    return not is_cancelled(cancel)

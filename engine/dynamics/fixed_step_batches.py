@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.dynamics.batch import LANES
-from engine.execution import count_workers, default_executor, is_set
+from engine.execution import count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR
 
@@ -44,7 +44,7 @@ def glide(
 
     for begin in range(0, len(states), LANES):
         collect(ahead - 1)
-        if is_set(cancel):
+        if is_cancelled(cancel):
             break
         lanes = min(LANES, -(-(len(states) - begin) // VECTOR) * VECTOR)
         tile = states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

@@ -13,7 +13,7 @@ from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of, step_tolerance
 from engine.dynamics.fixed_step_batches import glide
 from engine.dynamics.lyapunov_orbits import LyapunovOrbit, channel_axes, exit_curves, exit_gates
-from engine.execution import is_set
+from engine.execution import is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
 
@@ -104,7 +104,7 @@ class UnstableManifold:
         horizon = most * _MOST_PERIODS * self.orbit.period - pace * math.log(self.smallest)
         arguments = (most, curves, exit_gates(curves), horizon)
         cuts = glide(_cut, self.potential, self.launch(sizes), *arguments, shape=(most, 3), executor=executor, cancel=cancel)
-        if is_set(cancel):
+        if is_cancelled(cancel):
             raise CancelledError
         cuts[:, :, 2] += pace * np.log(sizes)[:, None]
         return cuts

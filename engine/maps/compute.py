@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from engine.dynamics.fates import Fate
-from engine.execution import is_set
+from engine.execution import is_cancelled
 from engine.maps.result import IMAGES, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun, carry_through
@@ -136,7 +136,7 @@ def _compute_in_bands(
         for name in IMAGES:
             getattr(canvas, name)[rows] = getattr(part, name)
         done += rows.size
-        stopped = is_set(cancel)
+        stopped = is_cancelled(cancel)
         canvas = replace(canvas, progress=done / spec.resolution[1], horizon=part.horizon)
         if stopped:
             break

@@ -17,7 +17,7 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity
 from engine.dynamics.fixed_step_batches import glide
 from engine.dynamics.planes import find_mirror_images
-from engine.execution import is_set
+from engine.execution import is_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
@@ -156,7 +156,7 @@ class _Judgement:
     def cancelled(self) -> bool:
         """Whether nobody waits any more."""
         cancel = self.pool["cancel"]
-        return is_set(cancel)
+        return is_cancelled(cancel)
 
     def judge(self, which: np.ndarray, character: Regularity) -> None:
         """Settle some of the orbits and leave them behind."""

@@ -15,7 +15,7 @@ from engine.dynamics.classification import Outcomes, read_outcomes
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import closed_curves, exit_curves
 from engine.dynamics.planes import Plane, find_mirror_images
-from engine.execution import is_set
+from engine.execution import is_cancelled
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.result import EscapeMap, anchors, find_interior
 from engine.maps.spec import MapSpec
@@ -182,7 +182,7 @@ def carry_through(
     """Take a run through all its stages; `publish(stage_over)` is called whenever there may be news."""
     spec = run.spec
     for pixels, stride, horizon in run.stages():
-        if is_set(cancel):
+        if is_cancelled(cancel):
             break
         if spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= run.horizon:
             run.certify(executor, cancel, lambda: publish(False))

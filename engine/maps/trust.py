@@ -15,7 +15,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.dynamics.lyapunov_orbits import closed_curves, exit_curves
 from engine.dynamics.planes import Plane, find_mirror_images
-from engine.execution import is_set
+from engine.execution import is_cancelled
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.result import EscapeMap
 from engine.maps.run import CERTIFIED_FROM
@@ -242,7 +242,7 @@ class _Trial:
     def is_over(self) -> bool:
         """Whether nothing is left to test, or nobody waits any more."""
         cancel = self.pool["cancel"]
-        return not self.open.size or is_set(cancel)
+        return not self.open.size or is_cancelled(cancel)
 
     def follow(self, horizon: float) -> None:
         """Carry all orbits of open pixels on, first the shifted ones."""
