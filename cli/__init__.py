@@ -1,4 +1,4 @@
-"""The command line: everything that the engine computes, for scripts and batch queues.
+"""Command line: everything that the engine computes, for scripts and batch queues.
 
-Commands import the engine when they run, not before: it takes seconds to load, and no help text has to wait for it.
+Each command imports the engine when it runs: the import takes seconds, which ``--help`` does not need.
 """

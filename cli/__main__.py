@@ -1,4 +1,4 @@
-"""``python -m cli`` is ``escape-explorer``."""
+"""Run ``escape-explorer`` as ``python -m cli``."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""A Dask cluster to compute on; Dask is loaded only when somebody asks for one."""
+"""Executors of Dask clusters; Dask is imported only when requested."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ if TYPE_CHECKING:
 
 @contextmanager
 def cluster_executor(scheduler: str | None, local_workers: int | None, threads: int | None) -> Iterator[Executor | None]:
-    """The executor of a cluster, or None where neither a scheduler nor workers on this machine are asked for.
+    """Yield the executor of a cluster, or None if neither a scheduler nor local workers are requested.
 
     Parameters
     ----------
     scheduler
         Address of a running scheduler, ``tcp://host:port``.
     local_workers
-        How many workers to start on this machine, each a process with one thread.
+        Number of worker processes to start on this machine, with one thread each.
     threads
-        None: threads are of the pool in this process, which a cluster replaces.
+        Number of threads in this process; None with a cluster.
 
     Raises
     ------
     ValueError
-        When more than one of them is asked for.
+        If more than one of the three is given.
     ModuleNotFoundError
-        When Dask is not installed.
+        If Dask is not installed.
     OSError
-        When no scheduler answers.
+        If the scheduler does not answer.
     """
-    asked = [name for name, value in (("scheduler", scheduler), ("local_cluster", local_workers), ("threads", threads)) if value]
-    if len(asked) > 1:
-        raise ValueError(f"{' and '.join(asked)}: choose one place to compute")
+    given = [name for name, value in (("scheduler", scheduler), ("local_cluster", local_workers), ("threads", threads)) if value]
+    if len(given) > 1:
+        raise ValueError(f"{' and '.join(given)}: choose one place to compute")
     if scheduler is None and local_workers is None:
         yield None
         return
@@ -53,13 +53,13 @@ def _connect(scheduler: str | None, local_workers: int | None) -> Client:
     if scheduler is not None:
         return distributed.Client(scheduler)  # type: ignore[no-untyped-call]
     with _ignoring_ctrl_c():
-        # Whatever port is free for the dashboard, which no other machine can reach.
+        # The dashboard takes a free port on the loopback interface.
         return distributed.Client(n_workers=local_workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")  # type: ignore[no-untyped-call]
 
 
 @contextmanager
 def _ignoring_ctrl_c() -> Iterator[None]:
-    """Processes started here ignore it for good: a terminal sends it to all of them, and stopping is up to this one."""
+    """Make child processes ignore Ctrl-C, which a terminal sends to the whole process group; this process stops them."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

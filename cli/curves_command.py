@@ -1,4 +1,4 @@
-"""``curves``: shares, entropies, exponent and escape times against energy."""
+"""Command ``curves``: shares, entropies, exponent and escape times against energy."""
 
 from __future__ import annotations
 
@@ -23,43 +23,43 @@ escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exp
 
 def draw_curves(
     case: options.Case,
-    low: Annotated[float, typer.Option("--low", help="The lowest h.")],
-    high: Annotated[float, typer.Option("--high", help="The highest h.")],
-    count: Annotated[int, typer.Option("--count", min=1, max=1000, help="How many energies, evenly spaced.")],
+    low: Annotated[float, typer.Option("--low", help="Lowest h.")],
+    high: Annotated[float, typer.Option("--high", help="Highest h.")],
+    count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced energies.")],
     plane: options.Plane = PlaneName.X_PX,
     resolution: options.Resolution = "113",
     t_max: options.TMax = 1e5,
     exponent: Annotated[
-        bool, typer.Option("--exponent/--no-exponent", help="Whether to measure the uncertainty exponent, which takes longest.")
+        bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")
     ] = True,
     output: options.Output = None,
     threads: options.Threads = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Measure the exits at many energies: STEM.nc and STEM.csv."""
-    from cli.potentials import find_potential, name_in_files
-    from cli.requests import find_plane, read_resolution, space_energies
-    from cli.work import working
-    from cli.written_files import add_ending, check_folder, write_files
+    """Compute measures of the basins at many energies, written to STEM.nc and STEM.csv."""
+    from cli.arguments import find_plane, read_resolution, space_energies
+    from cli.files import add_ending, check_folder, write_files
+    from cli.potential_argument import file_name_part, find_potential
+    from cli.run_context import cancellable_run
     from engine import EnergyCurvesSpec, compute_energy_curves
 
     energies = space_energies(low, high, count)
     spec = EnergyCurvesSpec(find_potential(case), find_plane(plane), energies, read_resolution(resolution), t_max, exponent)
-    stem = output or Path(f"curves-{name_in_files(case)}-{plane}")
+    stem = output or Path(f"curves-{file_name_part(case)}-{plane}")
     check_folder(stem)
-    with working(threads) as work:
-        report = work.begin("energies")
-        tell = None if report is None else lambda curves: report(len(curves.points) / len(energies))
-        curves = compute_energy_curves(spec, tell, work.cancel, work.executor)
+    with cancellable_run(threads) as run:
+        report = run.start_stage("energies")
+        on_frame = None if report is None else lambda curves: report(len(curves.points) / len(energies))
+        curves = compute_energy_curves(spec, on_frame, run.cancel, run.executor)
     netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
     head, rows = _tabulate(curves)
     table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
     files = write_files({add_ending(stem, "nc"): netcdf, add_ending(stem, "csv"): table})
-    _answer(head, rows, files, as_json)
+    _print_result(head, rows, files, as_json)
 
 
 def _tabulate(curves: EnergyCurves) -> tuple[list[str], list[list[float]]]:
-    """Names and rows: h, the shares, then the other curves; numbers that are not there are NaN."""
+    """Return column names and rows: h, the shares, then the other curves; missing numbers are NaN."""
     dataset = curves.to_xarray()
     others = [str(name) for name in dataset.data_vars if name != "share"]
     head = ["h", "bounded", *(f"channel_{k}" for k in range(1, curves.shares.shape[1])), *others]
@@ -67,8 +67,8 @@ def _tabulate(curves: EnergyCurves) -> tuple[list[str], list[list[float]]]:
     return head, [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)]
 
 
-def _answer(head: list[str], rows: list[list[float]], files: list[str], as_json: bool) -> None:
-    from cli.answers import print_json, print_sentences, print_table
+def _print_result(head: list[str], rows: list[list[float]], files: list[str], as_json: bool) -> None:
+    from cli.output import print_json, print_sentences, print_table
 
     if as_json:
         print_json({"points": [dict(zip(head, row, strict=True)) for row in rows], "files": files})

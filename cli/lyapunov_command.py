@@ -1,4 +1,4 @@
-"""``lyapunov``: the periodic orbits over the open exits."""
+"""Command ``lyapunov``: the Lyapunov orbits of the open exits."""
 
 from __future__ import annotations
 
@@ -25,13 +25,15 @@ def list_lyapunov_orbits(
     energy: Annotated[float, typer.Option("--energy", help="h, dimensionless.")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", metavar="FILE.csv", help="A table of their paths over one period; replaced if it exists."),
+        typer.Option(
+            "--output", metavar="FILE.csv", help="CSV file for their paths over one period; an existing file is replaced."
+        ),
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """The Lyapunov orbit over each open exit: its period, and where it comes to rest on the zero-velocity curve."""
-    from cli.potentials import find_potential
-    from cli.written_files import check_folder, write_files
+    """List the Lyapunov orbit of each open exit: its period and its turning points on the zero-velocity curve."""
+    from cli.files import check_folder, write_files
+    from cli.potential_argument import find_potential
     from engine import find_lyapunov_orbits
 
     potential = find_potential(case)
@@ -39,7 +41,7 @@ def list_lyapunov_orbits(
         check_folder(output)
     orbits = find_lyapunov_orbits(potential, energy)
     files = write_files({output: _paths_csv(orbits)}) if output is not None else []
-    _answer(energy, potential.escape_energy, orbits, files, as_json)
+    _print_result(energy, potential.escape_energy, orbits, files, as_json)
 
 
 def _paths_csv(orbits: tuple[LyapunovOrbit, ...]) -> str:
@@ -52,8 +54,10 @@ def _paths_csv(orbits: tuple[LyapunovOrbit, ...]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _answer(energy: float, escape_energy: float, orbits: tuple[LyapunovOrbit, ...], files: list[str], as_json: bool) -> None:
-    from cli.answers import print_json, print_sentences, print_table
+def _print_result(
+    energy: float, escape_energy: float, orbits: tuple[LyapunovOrbit, ...], files: list[str], as_json: bool
+) -> None:
+    from cli.output import print_json, print_sentences, print_table
 
     found: list[dict[str, Any]] = [
         {"channel": orbit.channel, "period": orbit.period, "ends": orbit.half_path[[0, -1]].tolist()} for orbit in orbits
@@ -65,7 +69,7 @@ def _answer(energy: float, escape_energy: float, orbits: tuple[LyapunovOrbit, ..
         print_sentences(f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}.")
     else:
         rows = [(str(one["channel"]), f"{one['period']:.12g}", *(_point(end) for end in one["ends"])) for one in found]
-        print_table(("channel", "period", "one end (x, y)", "other end (x, y)"), rows)
+        print_table(("channel", "period", "turning point (x, y)", "turning point (x, y)"), rows)
     print_sentences(*[f"Written: {', '.join(files)}"] if files else [])
 
 

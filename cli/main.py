@@ -1,4 +1,4 @@
-"""The program ``escape-explorer``: its commands, and what becomes of an error."""
+"""Program ``escape-explorer``: its commands and exit codes."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from cli import (
 
 NAME = "escape-explorer"
 
-WRONG_REQUEST, WENT_WRONG, STOPPED = 2, 1, 130
-"""Exit codes: what was asked cannot be; it broke on the way; Ctrl-C, as shells count it (128 + SIGINT)."""
+INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
+"""Exit codes: invalid arguments; failure while running; Ctrl-C, as in shells (128 + SIGINT)."""
 
 program = typer.Typer(name=NAME, no_args_is_help=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
 program.command("map", epilog=map_command.EXAMPLES)(map_command.draw_map)
@@ -39,8 +39,8 @@ program.command("potential", epilog=potential_command.EXAMPLES)(potential_comman
 program.command("serve", epilog=serve_command.EXAMPLES)(serve_command.serve_page)
 
 
-def _say_version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         typer.echo(f"{NAME} {metadata.version(NAME)}")
         raise typer.Exit
 
@@ -48,7 +48,7 @@ def _say_version(asked: bool) -> None:
 @program.callback(epilog=f"Example:\n\n{NAME} map I --energy 0.19 --output first")
 def _describe(
     version: Annotated[
-        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="Say the version and stop.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
     """Escapes in open Hamiltonian systems with several exit channels: maps, orbits and measures, without a browser."""
@@ -60,31 +60,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments
-        Those after the program's name; None for the process' own.
+        Arguments after the program's name; None for those of the process.
 
     Returns
     -------
-    The exit code: 0; 2 when the request is at fault; 1 when something else is; 130 when stopped by Ctrl-C. In these three cases
-    one sentence goes to stderr, and no file is left half written.
+    Exit code: 0; 2 for invalid arguments; 1 for any other error; 130 after Ctrl-C. An error prints one sentence
+    to stderr and leaves no file half written.
     """
     try:
         returned = program(arguments, prog_name=NAME, standalone_mode=False)
     except (KeyboardInterrupt, CancelledError) as stop:
-        return _fail(str(stop) or "stopped before the end; nothing was written", STOPPED)
+        return _fail(str(stop) or "interrupted; nothing was written", INTERRUPTED)
     except (typer.TyperException, ValueError) as error:
-        return _fail(_words(error), WRONG_REQUEST)
+        return _fail(_message(error), INVALID_REQUEST)
     except (ImportError, OSError) as error:
-        return _fail(_words(error), WENT_WRONG)
+        return _fail(_message(error), FAILED)
     except Exception as error:
-        return _fail(f"{type(error).__name__}: {_words(error)}", WENT_WRONG)
-    if returned == STOPPED:
-        # Typer has caught a Ctrl-C that did not wait.
-        return _fail("stopped at once", STOPPED)
+        return _fail(f"{type(error).__name__}: {_message(error)}", FAILED)
+    if returned == INTERRUPTED:
+        # Typer turns a second Ctrl-C into this exit code.
+        return _fail("interrupted; nothing was written", INTERRUPTED)
     return returned if isinstance(returned, int) else 0
 
 
-def _words(error: Exception) -> str:
-    """An error in one line."""
+def _message(error: Exception) -> str:
+    """Return the message of an error on one line."""
     text = error.format_message() if isinstance(error, typer.TyperException) else str(error)
     return " ".join(text.split())
 

@@ -1,4 +1,4 @@
-"""``map``: a map of escapes, as numbers and as pictures."""
+"""Command ``map``: a map of escapes as data and pictures."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ escape-explorer map II --energy 0.2 --resolution 4000 --format nc --scheduler tc
 """
 
 FIRST_PICTURES = ("basins", "times", "crossings")
-"""The pictures drawn unless others are asked for; those of second looks come after."""
+"""Pictures drawn by default; those of requested analyses follow."""
 
 
 class Format(StrEnum):
-    """What is written, by its ending."""
+    """Output format, by file ending."""
 
     NC = "nc"
     PNG = "png"
@@ -47,29 +47,27 @@ def draw_map(
     certify: options.Certify = True,
     backward: options.Backward = False,
     trust: Annotated[
-        bool, typer.Option("--trust", help="Find and mark doubtful pixels, whose answer hangs on rounding.")
+        bool, typer.Option("--trust", help="Find and mark doubtful pixels, whose fate depends on rounding.")
     ] = False,
-    judge: Annotated[bool, typer.Option("--judge", help="Tell regular from chaotic bounded orbits.")] = False,
-    origins: Annotated[bool, typer.Option("--origins", help="Find by which exit orbits came in, too.")] = False,
+    judge: Annotated[bool, typer.Option("--judge", help="Classify bounded orbits as regular or chaotic.")] = False,
+    origins: Annotated[bool, typer.Option("--origins", help="Find the exit that each orbit entered by.")] = False,
     manifolds: Annotated[
         int,
         typer.Option(
-            "--manifolds", metavar="IMAGES", help="So many images of the stable manifolds, on x_px: 1 to 6; 0 for none."
+            "--manifolds", metavar="IMAGES", help="Number of images of the stable manifolds, on x_px: 1 to 6; 0 for none."
         ),
     ] = 0,
-    count_outside: Annotated[
-        bool, typer.Option("--count-outside", help="In the shares, count starts beyond an exit as escaped by it.")
-    ] = False,
+    count_outside: Annotated[bool, typer.Option("--count-outside", help="Count starts beyond an exit as escaped.")] = False,
     picture: Annotated[
         list[str] | None,
         typer.Option(
-            "--picture", help="A picture to draw: curves, basins, times, crossings, characters or origins; once for each."
+            "--picture", help="Picture to draw: curves, basins, times, crossings, characters or origins; repeat for several."
         ),
     ] = None,
     palette: Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")] = "paper",
-    side: Annotated[int, typer.Option("--side", help="Of each picture in pixels, 100 to 4000.")] = 600,
+    side: Annotated[int, typer.Option("--side", help="Side of each picture in pixels, 100 to 4000.")] = 600,
     formats: Annotated[
-        list[Format] | None, typer.Option("--format", help="A format to write, once for each; without it, both.")
+        list[Format] | None, typer.Option("--format", help="Output format; repeat for both, which is the default.")
     ] = None,
     output: options.Output = None,
     threads: options.Threads = None,
@@ -77,40 +75,40 @@ def draw_map(
     local_cluster: options.LocalCluster = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Where orbits escape, when, and after how many crossings: STEM.nc and STEM.png, and the shares of the exits.
+    """Compute a map: exit channel, escape time and crossings of each start, written to STEM.nc and STEM.png.
 
-    The NetCDF file holds all numbers with what made them; stable manifolds go to STEM-manifolds.csv.
+    The NetCDF file contains all results and the request; stable manifolds go to STEM-manifolds.csv.
     """
     from app.exports import file_stem
-    from cli import map_files
+    from cli import map_output
+    from cli.arguments import build_map_spec
     from cli.clusters import cluster_executor
-    from cli.map_work import FollowUpRequests, compute_with_second_looks
-    from cli.potentials import name_in_files
-    from cli.requests import build_map_spec
-    from cli.work import working
-    from cli.written_files import check_folder, write_files
+    from cli.files import check_folder, write_files
+    from cli.map_analyses import AnalysisOptions, compute_map_with_analyses
+    from cli.potential_argument import file_name_part
+    from cli.run_context import cancellable_run
 
     spec = build_map_spec(case, plane, energy, energies, window, resolution, t_max, certify, backward)
-    wanted = FollowUpRequests(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
+    wanted = AnalysisOptions(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
     wanted.check(spec)
-    drawing = map_files.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, side)
-    stem = output or Path(file_stem(spec, name_in_files(case)))
+    drawing = map_output.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, side)
+    stem = output or Path(file_stem(spec, file_name_part(case)))
     check_folder(stem)
-    with cluster_executor(scheduler, local_cluster, threads) as executor, working(threads, executor) as work:
-        frame, findings = compute_with_second_looks(spec, wanted, work)
-    # Not before the cluster is left: with a Dask client about, xarray locks files by it, which no file in memory survives.
-    with working() as work:
-        work.begin("writing")
-        files = map_files.contents(stem, [one.value for one in formats or Format], frame, findings, drawing)
-    _answer(frame, findings, write_files(files), count_outside, as_json)
+    with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
+        frame, analyses = compute_map_with_analyses(spec, wanted, run)
+    # After the cluster is closed: with a Dask client, xarray uses distributed locks, which in-memory files do not support.
+    with cancellable_run() as run:
+        run.start_stage("writing")
+        files = map_output.contents(stem, [one.value for one in formats or Format], frame, analyses, drawing)
+    _print_result(frame, analyses, write_files(files), count_outside, as_json)
 
 
-def _answer(frame: EscapeMap, findings: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
-    from cli.answers import name_shares, print_json, print_sentences, print_table
-    from cli.map_work import describe_findings
+def _print_result(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
+    from cli.map_analyses import describe_analyses
+    from cli.output import outcome_shares, print_json, print_sentences, print_table
 
-    shares = name_shares(frame, count_outside=count_outside)
-    sentences = describe_findings(findings)
+    shares = outcome_shares(frame, count_outside=count_outside)
+    sentences = describe_analyses(analyses)
     if as_json:
         answer: dict[str, Any] = {"request": frame.provenance(), "shares": shares, "findings": sentences, "files": files}
         print_json(answer)

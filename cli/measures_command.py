@@ -1,4 +1,4 @@
-"""``measures``: how mixed the basins of a map are, and how its orbits leave."""
+"""Command ``measures``: fractality of the basins of a map, and decay laws of its escapes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cli import options
 from cli.options import PlaneName
 
 if TYPE_CHECKING:
-    from cli.work import Work
+    from cli.run_context import RunContext
     from engine import EscapeMap
 
 EXAMPLES = """Examples:
@@ -37,29 +37,29 @@ def measure_basins(
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
     exponent: Annotated[
-        bool, typer.Option("--exponent/--no-exponent", help="Whether to measure the uncertainty exponent, which takes longest.")
+        bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")
     ] = True,
     threads: options.Threads = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Basin entropy, merging test for Wada basins, uncertainty exponent and escape laws of a map."""
-    from cli.answers import print_json, print_sentences
-    from cli.map_work import compute_whole_map
-    from cli.requests import build_map_spec
-    from cli.work import working
+    """Compute basin entropy, Wada test, uncertainty exponent and decay laws of a map."""
+    from cli.arguments import build_map_spec
+    from cli.map_analyses import compute_whole_map
+    from cli.output import print_json, print_sentences
+    from cli.run_context import cancellable_run
 
     spec = build_map_spec(case, plane, energy, energies, window, resolution, t_max, certify)
-    with working(threads) as work:
-        frame = compute_whole_map(spec, work, "map")
-        measures = _measure(frame, exponent, work)
+    with cancellable_run(threads) as run:
+        frame = compute_whole_map(spec, run, "map")
+        measures = _measure(frame, exponent, run)
     if as_json:
         print_json({"request": frame.provenance(), **measures})
     else:
         print_sentences(*(measure["sentence"] for measure in measures.values()))
 
 
-def _measure(frame: EscapeMap, exponent: bool, work: Work) -> dict[str, dict[str, Any]]:
-    """Each measure by name, with its sentence and numbers."""
+def _measure(frame: EscapeMap, exponent: bool, run: RunContext) -> dict[str, dict[str, Any]]:
+    """Return the numbers of each measure with a sentence, by name."""
     from engine import (
         ENTROPY_COUNTS_BOUNDED,
         WADA_COUNTS_BOUNDED,
@@ -71,18 +71,18 @@ def _measure(frame: EscapeMap, exponent: bool, work: Work) -> dict[str, dict[str
         fit_decay_laws,
     )
 
-    work.begin("entropy, boundaries and escape laws")
+    run.start_stage("entropy, boundaries and decay laws")
     entropy = compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED))
     merging = compute_wada_test(*exit_labels(frame.fate, bounded=WADA_COUNTS_BOUNDED))
-    laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, cancel=work.cancel)
+    laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, cancel=run.cancel)
     measures = {"basin_entropy": _numbers(entropy, _ENTROPY), "merging": _numbers(merging, _MERGING)}
     measures["escape_laws"] = _numbers(laws, _LAWS) | {
         name: None if fit is None else {one: getattr(fit, one) for one in _FIT}
         for name, fit in (("exponential", laws.exponential), ("power_law", laws.power_law))
     }
     if exponent:
-        report = work.begin("uncertainty exponent")
-        found = compute_uncertainty_exponent(frame.spec, on_progress=report, executor=work.executor, cancel=work.cancel)
+        report = run.start_stage("uncertainty exponent")
+        found = compute_uncertainty_exponent(frame.spec, on_progress=report, executor=run.executor, cancel=run.cancel)
         measures["uncertainty_exponent"] = _numbers(found, _EXPONENT)
     return measures
 

@@ -1,4 +1,4 @@
-"""The options that several commands share: each one's type and help text, once."""
+"""Options shared by several commands."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 
 
 class PlaneName(StrEnum):
-    """A plane of initial conditions as it is typed; the names are those of `engine.Plane`."""
+    """Name of a plane of initial conditions on the command line; names as in `engine.Plane`."""
 
     X_PX = "x_px"
     X_Y = "x_y"
@@ -24,8 +24,8 @@ Case = Annotated[
     str,
     typer.Argument(
         metavar="CASE",
-        help="Which potential: I, II or III, as in Zotos (2014), another name that `potential` lists, or a formula in x and y; "
-        "with parameters after it, as in III@omega_1=1.1,epsilon=0.5.",
+        help="Potential: I, II or III as in Zotos (2014), another name that `potential` lists, or a formula in x and y; "
+        "optionally with parameters, as in III@omega_1=1.1,epsilon=0.5.",
     ),
 ]
 Energy = Annotated[float | None, typer.Option("--energy", help="h, dimensionless.")]
@@ -35,32 +35,28 @@ Energies = Annotated[
 Plane = Annotated[PlaneName, typer.Option("--plane", help="Plane of initial conditions.")]
 Window = Annotated[
     Edges | None,
-    typer.Option("--window", metavar="X0 X1 Y0 Y1", help="Part of the plane; without it, the whole interior."),
+    typer.Option("--window", metavar="X0 X1 Y0 Y1", help="Window of the plane; by default the whole interior."),
 ]
 Resolution = Annotated[str, typer.Option("--resolution", metavar="N or NxM", help="Columns x rows, each 1 to 4096.")]
-TMax = Annotated[float, typer.Option("--t-max", help="How long orbits are followed, up to 1e8.")]
-OrbitTMax = Annotated[float, typer.Option("--t-max", help="How long the orbit is followed, up to 1e7.")]
+TMax = Annotated[float, typer.Option("--t-max", help="Integration time, up to 1e8.")]
+OrbitTMax = Annotated[float, typer.Option("--t-max", help="Integration time, up to 1e7.")]
 Certify = Annotated[
     bool,
     typer.Option(
         "--certify/--no-certify",
-        help="Whether an orbit may be called bounded early where there is evidence that it never leaves.",
+        help="Whether a certificate may end the integration of a bounded orbit before t_max.",
     ),
 ]
-Backward = Annotated[bool, typer.Option("--backward", help="Follow orbits into the past.")]
-Threads = Annotated[
-    int | None, typer.Option("--threads", min=1, metavar="N", help="Threads to compute on; without it, one for each core.")
-]
+Backward = Annotated[bool, typer.Option("--backward", help="Integrate backward in time.")]
+Threads = Annotated[int | None, typer.Option("--threads", min=1, metavar="N", help="Number of threads; by default one per core.")]
 Scheduler = Annotated[
     str | None, typer.Option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
 ]
 LocalCluster = Annotated[
     int | None, typer.Option("--local-cluster", min=1, metavar="N", help="Start a Dask cluster of N workers on this machine.")
 ]
-AsJson = Annotated[
-    bool, typer.Option("--json", help="Print JSON instead of tables and sentences; numbers that are not there are null.")
-]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables and sentences; missing numbers are null.")]
 Output = Annotated[
     Path | None,
-    typer.Option("--output", metavar="STEM", help="Name of the files without their ending; existing ones are replaced."),
+    typer.Option("--output", metavar="STEM", help="File names without ending; existing files are replaced."),
 ]

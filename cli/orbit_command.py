@@ -1,4 +1,4 @@
-"""``orbit``: one orbit in full, and what the indicators of chaos say of it."""
+"""Command ``orbit``: one orbit with its chaos indicators."""
 
 from __future__ import annotations
 
@@ -27,55 +27,57 @@ def follow_orbit(
     energy: options.Energy = None,
     plane: options.Plane = PlaneName.X_PX,
     start: Annotated[
-        tuple[float, float] | None, typer.Option("--start", metavar="X ORDINATE", help="A point of the plane, at --energy.")
+        tuple[float, float] | None, typer.Option("--start", metavar="X ORDINATE", help="Start on the plane, at --energy.")
     ] = None,
     state: Annotated[
         tuple[float, float, float, float] | None,
-        typer.Option("--state", metavar="X Y PX PY", help="The whole state instead; its energy is the orbit's."),
+        typer.Option("--state", metavar="X Y PX PY", help="Full initial state instead, which determines the energy."),
     ] = None,
     t_max: options.OrbitTMax = 1e5,
-    most_rows: Annotated[int, typer.Option("--most-rows", min=1, help="Of the table; a longer orbit is thinned.")] = 100_000,
+    most_rows: Annotated[
+        int, typer.Option("--most-rows", min=1, help="Maximum number of rows of the table; longer orbits are thinned.")
+    ] = 100_000,
     palette: Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")] = "paper",
     output: options.Output = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Follow one orbit: its verdict, SALI, Lyapunov exponent and Birkhoff digits.
+    """Integrate one orbit: verdict, SALI, Lyapunov exponent and Birkhoff digits.
 
-    With --output, STEM.csv holds the path with SALI, exponent and R² against time, and STEM.png draws them.
+    With --output, STEM.csv contains the path, SALI, exponent and R² against time, and STEM.png shows them.
     """
     from app.exports import orbits_csv
+    from cli.arguments import find_palette, find_start
+    from cli.files import add_ending, check_folder, write_files
     from cli.orbit_pictures import orbit_png
-    from cli.potentials import find_potential
-    from cli.requests import find_palette, find_start
-    from cli.work import working
-    from cli.written_files import add_ending, check_folder, write_files
+    from cli.potential_argument import find_potential
+    from cli.run_context import cancellable_run
     from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit
 
     potential, colours = find_potential(case), find_palette(palette)
     whole = find_start(case, plane, energy, start, state)
     if output is not None:
         check_folder(output)
-    with working() as work:
-        work.begin("orbit")
-        orbit = integrate_orbit(potential, whole, t_max, cancel=work.cancel)
+    with cancellable_run() as run:
+        run.start_stage("orbit")
+        orbit = integrate_orbit(potential, whole, t_max, cancel=run.cancel)
         bounded = orbit.fate == Fate.BOUNDED
-        digits = compute_birkhoff_digits(potential, whole, t_max, cancel=work.cancel) if bounded else None
+        digits = compute_birkhoff_digits(potential, whole, t_max, cancel=run.cancel) if bounded else None
     files: list[str] = []
     if output is not None:
         drawn, table = orbit_png(potential, orbit, colours), orbits_csv([orbit], most_rows)
         files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
-    _answer(orbit, evaluate_indicators(orbit, digits), files, as_json)
+    _print_result(orbit, evaluate_indicators(orbit, digits), files, as_json)
 
 
-def _answer(orbit: Orbit, verdicts: Sequence[IndicatorVerdict], files: list[str], as_json: bool) -> None:
-    from cli.answers import name_outcome, print_json, print_sentences
+def _print_result(orbit: Orbit, verdicts: Sequence[IndicatorVerdict], files: list[str], as_json: bool) -> None:
+    from cli.output import outcome_name, print_json, print_sentences
 
     if not as_json:
-        said = [f"{verdict.name} {verdict.value:.3g}: {verdict.sentence}" for verdict in verdicts]
-        print_sentences(orbit.describe(), *said, *([f"Written: {', '.join(files)}"] if files else []))
+        indicators = [f"{verdict.name} {verdict.value:.3g}: {verdict.sentence}" for verdict in verdicts]
+        print_sentences(orbit.describe(), *indicators, *([f"Written: {', '.join(files)}"] if files else []))
         return
     names = ("energy", "escape_time", "crossings", "energy_error")
-    answer: dict[str, Any] = {"verdict": orbit.describe(), "outcome": name_outcome(orbit.fate), "fate": orbit.fate}
+    answer: dict[str, Any] = {"verdict": orbit.describe(), "outcome": outcome_name(orbit.fate), "fate": orbit.fate}
     answer |= {name: getattr(orbit, name) for name in names}
     answer["start"] = [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")]
     answer["indicators"] = [

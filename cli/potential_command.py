@@ -1,4 +1,4 @@
-"""``potential``: what there is to choose from, and what a potential is like before anything is computed with it."""
+"""Command ``potential``: list the catalogue, or review one potential."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ escape-explorer potential "0.5(x^2 + y^2) - x^2 y + y^3/3" --json
 
 
 def describe_potential(
-    case: Annotated[str | None, typer.Argument(metavar="CASE", help="Name or formula; without it, all are listed.")] = None,
+    case: Annotated[str | None, typer.Argument(metavar="CASE", help="Name or formula; by default all names are listed.")] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """List the potentials with a name, or look one over: critical points, escape energy, channels."""
+    """List the catalogue, or show critical points, escape energy and channels of one potential."""
     if case is None:
-        _list_known(as_json)
+        _list_catalogue(as_json)
         return
-    from cli.potentials import find_potential
+    from cli.potential_argument import find_potential
     from engine import review_potential
 
-    _answer(review_potential(find_potential(case)), as_json)
+    _print_result(review_potential(find_potential(case)), as_json)
 
 
-def _list_known(as_json: bool) -> None:
-    from cli.answers import print_json, print_table
+def _list_catalogue(as_json: bool) -> None:
+    from cli.output import print_json, print_table
     from engine import POTENTIALS
 
     if as_json:
@@ -47,8 +47,8 @@ def _list_known(as_json: bool) -> None:
     print_table(("name", "V(x, y)", "escape energy"), rows)
 
 
-def _answer(found: PotentialReview, as_json: bool) -> None:
-    from cli.answers import print_json, print_sentences, print_table
+def _print_result(found: PotentialReview, as_json: bool) -> None:
+    from cli.output import print_json, print_sentences, print_table
     from engine import write_formula
 
     points: list[dict[str, Any]] = [

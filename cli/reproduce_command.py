@@ -1,4 +1,4 @@
-"""``reproduce``: the figures and numbers of the paper, made again."""
+"""Command ``reproduce``: the figures and numbers of the paper."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ escape-explorer reproduce --list
 """
 
 FOLDER = Path("zotos-2014")
-"""Where files go unless another folder is named."""
+"""Default output folder."""
 
 
 @dataclass(frozen=True)
-class _Made:
-    """What has been written, and in how long."""
+class _WrittenFigure:
+    """Files of one figure, and the seconds it took."""
 
     name: str
     files: list[str]
@@ -42,22 +42,20 @@ class _Made:
 def reproduce_paper(
     names: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[NAME]...", help="Figures to make, as --list names them; without any, everything."),
+        typer.Argument(metavar="[NAME]...", help="Figures to draw, as listed by --list; by default all."),
     ] = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="A ninth of the starts: a few minutes in place of half an hour.")
-    ] = False,
-    only_list: Annotated[bool, typer.Option("--list", help="Only say what there is to make.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="A ninth of the starts: a few minutes instead of half an hour.")] = False,
+    only_list: Annotated[bool, typer.Option("--list", help="Only list the figures.")] = False,
     output: Annotated[
         Path,
-        typer.Option("--output", metavar="FOLDER", help="Where files go; made when it is missing, existing files are replaced."),
+        typer.Option("--output", metavar="FOLDER", help="Output folder, created if missing; existing files are replaced."),
     ] = FOLDER,
     threads: options.Threads = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Make the figures of Zotos (2014) again: NAME.png and NAME.pdf of each, and `tables`, its numbers beside ours.
+    """Reproduce the figures of Zotos (2014) as NAME.png and NAME.pdf, and its numbers beside ours as `tables`.
 
-    Each file is written as soon as it is made, and stays when the rest is stopped.
+    Each file is written as soon as it is ready, and is kept after an interruption.
     """
     from reproduction.map_shelf import MapShelf
     from reproduction.members import CAPTIONS, choose_members
@@ -65,42 +63,42 @@ def reproduce_paper(
 
     chosen = choose_members(names or ())
     if only_list:
-        _answer_list({name: CAPTIONS[name] for name in chosen}, as_json)
+        _print_list({name: CAPTIONS[name] for name in chosen}, as_json)
         return
-    from cli.work import working
+    from cli.run_context import cancellable_run
 
     quality = QUICK if quick else FULL
     _make_folder(output)
-    began, made = time.perf_counter(), list[_Made]()
+    began, made = time.perf_counter(), list[_WrittenFigure]()
     try:
-        with working(threads) as work:
-            shelf = MapShelf(quality, work.executor, work.cancel)
+        with cancellable_run(threads) as run:
+            shelf = MapShelf(quality, run.executor, run.cancel)
             for name in chosen:
-                work.begin(name)
+                run.start_stage(name)
                 made.append(_make(name, shelf, output))
     except CancelledError:
         raise CancelledError(f"stopped; {len(made)} of {len(chosen)} are made and stay in {output}") from None
-    _answer(made, output, quality, time.perf_counter() - began, as_json)
+    _print_result(made, output, quality, time.perf_counter() - began, as_json)
 
 
 def _make_folder(folder: Path) -> None:
-    """ValueError when it can be none."""
+    """Create the output folder; ValueError if that is impossible."""
     if not folder.absolute().parent.is_dir() or (folder.exists() and not folder.is_dir()):
-        raise ValueError(f"output='{folder}': must be a folder, or the name of a new one in a folder that exists")
+        raise ValueError(f"output='{folder}': must be a folder, or a new folder inside an existing one")
     folder.mkdir(exist_ok=True)
 
 
-def _make(name: str, shelf: MapShelf, folder: Path) -> _Made:
-    from cli.written_files import write_files
+def _make(name: str, shelf: MapShelf, folder: Path) -> _WrittenFigure:
+    from cli.files import write_files
     from reproduction.members import make_files
 
     began = time.perf_counter()
     files = write_files({folder / file: content for file, content in make_files(name, shelf).items()})
-    return _Made(name, files, time.perf_counter() - began)
+    return _WrittenFigure(name, files, time.perf_counter() - began)
 
 
-def _answer_list(captions: dict[str, str], as_json: bool) -> None:
-    from cli.answers import print_json, print_table
+def _print_list(captions: dict[str, str], as_json: bool) -> None:
+    from cli.output import print_json, print_table
 
     if as_json:
         print_json({"figures": captions})
@@ -108,8 +106,8 @@ def _answer_list(captions: dict[str, str], as_json: bool) -> None:
         print_table(("name", "shows"), list(captions.items()))
 
 
-def _answer(made: Sequence[_Made], folder: Path, quality: Quality, seconds: float, as_json: bool) -> None:
-    from cli.answers import print_json, print_sentences, print_table
+def _print_result(made: Sequence[_WrittenFigure], folder: Path, quality: Quality, seconds: float, as_json: bool) -> None:
+    from cli.output import print_json, print_sentences, print_table
 
     if as_json:
         figures = [{"name": one.name, "files": one.files, "seconds": one.seconds} for one in made]

@@ -1,4 +1,4 @@
-"""``serve``: the page in the browser, served from where the package is installed."""
+"""Command ``serve``: start the server with the installed page."""
 
 from __future__ import annotations
 
@@ -23,33 +23,35 @@ escape-explorer serve --port 8080 --address 0.0.0.0 --allow-websocket-origin map
 
 
 def serve_page(
-    port: Annotated[int, typer.Option("--port", min=1, max=65535, help="Where to listen.")] = 5006,
+    port: Annotated[int, typer.Option("--port", min=1, max=65535, help="Port to listen on.")] = 5006,
     address: Annotated[
-        str, typer.Option("--address", help="Of the network interface to listen on; without it, this machine alone.")
+        str, typer.Option("--address", help="Address of the network interface to listen on; by default this machine only.")
     ] = "127.0.0.1",
     origin: Annotated[
         list[str] | None,
-        typer.Option("--allow-websocket-origin", metavar="HOST", help="Whose pages may talk to the server; once for each."),
+        typer.Option(
+            "--allow-websocket-origin", metavar="HOST", help="Host whose pages may open a WebSocket; repeat for several."
+        ),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
-    """Serve the page until Ctrl-C or SIGTERM; environment variables with the prefix ESCAPE_EXPLORER_ set its limits."""
+    """Serve the page until Ctrl-C or SIGTERM; environment variables ESCAPE_EXPLORER_… set its limits (docs/operation.md)."""
     from app.runtime.settings import read_settings
 
-    # Refused here already, before the seconds that a server takes to start.
+    # Report invalid settings before the server starts, which takes seconds.
     settings = read_settings(os.environ)
     command = serve_arguments(port, address, origin or [], show, settings)
     environment = server_environment()
     if os.name == "posix":
-        # The server takes this process' place, so that whoever stops it stops the server.
+        # Replace this process, so that signals reach the server.
         os.execve(command[0], command, environment)
     raise typer.Exit(subprocess.call(command, env=environment))
 
 
 def serve_arguments(port: int, address: str, origins: list[str], show: bool, settings: Settings) -> list[str]:
-    """The command that serves the page.
+    """Return the command that starts the server.
 
-    Without -P a folder called app wherever it is started would be in the way.
+    Option -P keeps a folder named app in the working directory from being imported.
     """
     command = [sys.executable, "-P", "-m", "panel", "serve", str(app_folder()), "--port", str(port), "--address", address]
     command += [f"--allow-websocket-origin={origin}" for origin in origins]
@@ -59,13 +61,13 @@ def serve_arguments(port: int, address: str, origins: list[str], show: bool, set
 
 
 def server_environment() -> dict[str, str]:
-    """This process' environment, in which the packages are found that it found itself."""
+    """Return the environment of this process with a PYTHONPATH that contains the installed packages."""
     paths = [str(app_folder().parent), *filter(None, [os.environ.get("PYTHONPATH")])]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def app_folder() -> Path:
-    """The folder of the package `app`, wherever it is installed."""
+    """Return the folder of the installed package `app`."""
     spec = importlib.util.find_spec("app")
     if spec is None or not spec.submodule_search_locations:
         raise RuntimeError("the package app is not installed beside the command line")

@@ -1,4 +1,4 @@
-"""``sweep``: maps at many energies in one store, by a run that may be stopped and gone on with, here or on a cluster."""
+"""Command ``sweep``: maps at many energies in one Zarr store, resumable, on this machine or a cluster."""
 
 from __future__ import annotations
 
@@ -26,12 +26,14 @@ def sweep_energies(
     case: options.Case,
     store: Annotated[
         Path,
-        typer.Option("--store", metavar="FOLDER", help="The Zarr store: a new one, or that of the same sweep to go on with."),
+        typer.Option("--store", metavar="FOLDER", help="Zarr store: a new one, or one of the same sweep to resume."),
     ],
-    low: Annotated[float | None, typer.Option("--low", help="The lowest h.")] = None,
-    high: Annotated[float | None, typer.Option("--high", help="The highest h.")] = None,
-    count: Annotated[int | None, typer.Option("--count", min=1, max=10_000, help="How many energies, evenly spaced.")] = None,
-    energy: Annotated[list[float] | None, typer.Option("--energy", help="An energy instead; once for each.")] = None,
+    low: Annotated[float | None, typer.Option("--low", help="Lowest h.")] = None,
+    high: Annotated[float | None, typer.Option("--high", help="Highest h.")] = None,
+    count: Annotated[int | None, typer.Option("--count", min=1, max=10_000, help="Number of evenly spaced energies.")] = None,
+    energy: Annotated[
+        list[float] | None, typer.Option("--energy", help="An energy; repeat for several, instead of --low, --high and --count.")
+    ] = None,
     plane: options.Plane = PlaneName.X_PX,
     window: options.Window = None,
     resolution: options.Resolution = "225",
@@ -40,24 +42,24 @@ def sweep_energies(
     piece: Annotated[
         int | None,
         typer.Option(
-            "--piece", metavar="STARTS", help="Most starts that are computed, or lost by a kill, together: 1 to 1048576."
+            "--piece", metavar="STARTS", help="Maximum number of starts computed between two checkpoints: 1 to 1048576."
         ),
     ] = None,
-    plan: Annotated[bool, typer.Option("--plan", help="Only say what it will cost.")] = False,
+    plan: Annotated[bool, typer.Option("--plan", help="Only estimate the cost.")] = False,
     threads: options.Threads = None,
     scheduler: options.Scheduler = None,
     local_cluster: options.LocalCluster = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Compute maps at many energies into one labelled Zarr store; a run that was stopped goes on from what is done.
+    """Compute maps at many energies into one labelled Zarr store; an interrupted run is resumed by the same command.
 
-    Without --window all maps have that of the highest energy. With xarray: open_zarr(FOLDER, consolidated=False).
+    Without --window all maps use the window of the highest energy. With xarray: open_zarr(FOLDER, consolidated=False).
     """
-    from cli.answers import print_sentences
+    from cli.arguments import find_plane, read_resolution, space_energies
     from cli.clusters import cluster_executor
-    from cli.potentials import find_potential
-    from cli.requests import find_plane, read_resolution, space_energies
-    from cli.work import working
+    from cli.output import print_sentences
+    from cli.potential_argument import find_potential
+    from cli.run_context import cancellable_run
     from engine import SweepSpec, Window, plan_sweep, run_sweep
 
     energies = space_energies(low, high, count, energy)
@@ -65,21 +67,21 @@ def sweep_energies(
     sides = read_resolution(resolution)
     spec = SweepSpec(find_potential(case), find_plane(plane), energies, sides, frame, t_max, certify, piece)
     try:
-        with cluster_executor(scheduler, local_cluster, threads) as executor, working(threads, executor) as work:
+        with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
             if plan:
-                print_sentences(f"{plan_sweep(spec, executor=work.executor, cancel=work.cancel).describe()}.")
+                print_sentences(f"{plan_sweep(spec, executor=run.executor, cancel=run.cancel).describe()}.")
                 return
-            report = work.begin("energies")
-            dataset = run_sweep(spec, store, on_progress=report, cancel=work.cancel, executor=work.executor)
+            report = run.start_stage("energies")
+            dataset = run_sweep(spec, store, on_progress=report, cancel=run.cancel, executor=run.executor)
     except CancelledError:
         raise CancelledError(
-            f"stopped; the energies and bands that are done stay in {store}, and the same command goes on from there"
+            f"interrupted; completed energies and row blocks are kept in {store}, and the same command resumes from there"
         ) from None
-    _answer(dataset, store, as_json)
+    _print_result(dataset, store, as_json)
 
 
-def _answer(dataset: xr.Dataset, store: Path, as_json: bool) -> None:
-    from cli.answers import print_json, print_sentences
+def _print_result(dataset: xr.Dataset, store: Path, as_json: bool) -> None:
+    from cli.output import print_json, print_sentences
 
     sizes = {str(name): size for name, size in dataset.sizes.items()}
     if as_json:

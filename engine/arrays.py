@@ -1,4 +1,4 @@
-"""Arrays of results, which nobody is to change."""
+"""Read-only arrays, for results that are cached and shared."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ import numpy as np
 
 
 def read_only(array: np.ndarray) -> np.ndarray:
-    """The same array, made read-only."""
+    """Mark an array read-only in place and return it; for several arrays, ``map(read_only, arrays)``."""
     array.flags.writeable = False
     return array

@@ -10,54 +10,54 @@ from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecu
 from functools import cache
 from typing import Any
 
+# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread.
+_NICE_VALUE = 10
+
 
 def count_cores() -> int:
     """How many cores this process may use."""
-    # Python 3.12 cannot tell the cores of this process from those of the machine.
+    # os.process_cpu_count is new in Python 3.13.
     count = getattr(os, "process_cpu_count", os.cpu_count)
     return count() or 1
 
 
-# Of threads that compute: where they compete with others, they get a tenth of a processor.
-_NICENESS = 10
-
-
 @cache
 def default_executor() -> ThreadPoolExecutor:
-    """The one bounded pool of this process: a thread for each core it may use; kernels hold no GIL."""
-    return thread_pool(count_cores())
+    """The thread pool shared by this process, one thread per core; kernels release the GIL."""
+    return create_thread_pool(count_cores())
 
 
-def thread_pool(count: int, *, only_idle: bool = False) -> ThreadPoolExecutor:
-    """So many threads for kernels, which leave the processors to those of this process that answer people.
+def create_thread_pool(threads: int, *, idle_priority: bool = False) -> ThreadPoolExecutor:
+    """A thread pool for kernels, of lower priority than the threads of this process that serve requests.
 
     Parameters
     ----------
-    count
-        At least 1.
-    only_idle
-        Whether they run only while a processor has nothing else to do, where the system is Linux: whoever answers people then
-        never waits for them, but any other program that keeps all processors busy stops them. Without it they have
-        a tenth of a processor at least.
+    threads
+        Number of threads, at least 1.
+    idle_priority
+        Linux only: run the threads only while a core is otherwise idle (``SCHED_IDLE``). Requests are then never delayed by a
+        computation, but any other program that keeps all cores busy stops the computations. By default the threads have nice
+        value 10, which gives them at least a tenth of a core.
     """
-    manners = _take_what_is_left if only_idle else _take_little
-    return ThreadPoolExecutor(count, thread_name_prefix="orbits", initializer=manners)
+    initializer = _set_idle_priority if idle_priority else _lower_priority
+    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=initializer)
 
 
-def _take_little() -> None:
-    # Elsewhere priorities belong to whole processes.
+def _lower_priority() -> None:
+    """Raise the nice value of the calling thread; on other systems than Linux it belongs to the whole process."""
     if sys.platform == "linux":
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE_VALUE)
 
 
-def _take_what_is_left() -> None:
+def _set_idle_priority() -> None:
+    """Schedule the calling thread only on idle cores."""
     if sys.platform == "linux":
         os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
 
 
 def count_workers(executor: Executor) -> int:
-    """How many calls an executor runs at once; 2 when it does not say."""
-    # Dask's executor knows its client, and that the workers it has now: they may come and go.
+    """How many calls an executor runs at once; 2 if it does not tell."""
+    # Dask's executor: ask its client each time, as the number of workers may change.
     threads = getattr(getattr(executor, "_client", None), "nthreads", None)
     if threads is not None:
         return sum(threads().values()) or 2
@@ -65,10 +65,10 @@ def count_workers(executor: Executor) -> int:
 
 
 class SerialExecutor(Executor):
-    """Runs everything at once in the calling thread: for one orbit, or inside a worker of a pool."""
+    """Runs each call at once in the calling thread: for single orbits, or inside a worker of another pool."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """The future of a call that is already over."""
+        """Call the function and return its completed future."""
         future: Future[Any] = Future()
         try:
             future.set_result(fn(*args, **kwargs))

@@ -1,60 +1,91 @@
-"""Polynomials in x and y with exact rational coefficients, kept small enough that no expression can blow up."""
+"""Sparse polynomials in x and y, stored as {(i, j): c} for Σ c x^i y^j, and exact arithmetic with a bounded result size."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
 
-Exact = Mapping[tuple[int, int], Fraction]
+Powers = tuple[int, int]
+Terms = Mapping[Powers, float]
+ExactTerms = Mapping[Powers, Fraction]
 
 HIGHEST_DEGREE = 12
-"""The highest degree of a potential: saddles are tested to it, and a Taylor step costs the more the higher it is."""
+"""Highest degree of a potential: critical points are tested up to it, and the cost of a Taylor step grows with it."""
 
-# Bits of a numerator or denominator: no number that anyone means needs more, and products of longer ones take long.
+# Limit on the bits of a numerator or denominator, so that a short formula cannot cause long computations.
 _MOST_BITS = 1000
 
 
 class TooLargeError(ValueError):
-    """A polynomial of too high a degree, or with a number of too many digits."""
+    """A polynomial whose degree is too high, or that has a number with too many digits."""
 
 
-def add(a: Exact, b: Exact) -> dict[tuple[int, int], Fraction]:
+def degree(terms: Mapping[Powers, object]) -> int:
+    """The highest i + j of a term x^i y^j; 0 for a constant."""
+    return max((i + j for i, j in terms), default=0)
+
+
+def largest_coefficients(*polynomials: Terms) -> dict[int, float]:
+    """{n: largest magnitude of a coefficient of degree n}."""
+    largest: dict[int, float] = {}
+    for terms in polynomials:
+        for (i, j), c in terms.items():
+            largest[i + j] = max(largest.get(i + j, 0.0), abs(c))
+    return largest
+
+
+def multiply[C: (float, complex, Fraction)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
+    """a · b; terms that cancel stay as zeros."""
+    total: dict[Powers, C] = {}
+    for (i, j), c in a.items():
+        for (k, m), d in b.items():
+            powers = i + k, j + m
+            total[powers] = total.get(powers, 0) + c * d
+    return total
+
+
+def substitute[C: (float, complex)](terms: Terms, x: Mapping[Powers, C], y: Mapping[Powers, C]) -> dict[Powers, C]:
+    """The polynomial with x and y replaced by two other polynomials; terms that cancel stay as zeros or rounding errors."""
+    total: dict[Powers, C] = {}
+    for (i, j), c in terms.items():
+        monomial: dict[Powers, C] = {(0, 0): 1.0}
+        for factor in [x] * i + [y] * j:
+            monomial = multiply(monomial, factor)
+        for powers, d in monomial.items():
+            total[powers] = total.get(powers, 0) + c * d
+    return total
+
+
+def exact_sum(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
     """a + b, without the terms that cancel."""
-    total = {powers: a.get(powers, Fraction(0)) + b.get(powers, Fraction(0)) for powers in {**a, **b}}
-    return _checked({powers: c for powers, c in total.items() if c})
+    zero = Fraction(0)
+    return _checked({powers: a.get(powers, zero) + b.get(powers, zero) for powers in {**a, **b}})
 
 
-def negative(a: Exact) -> dict[tuple[int, int], Fraction]:
+def exact_negative(a: ExactTerms) -> dict[Powers, Fraction]:
     """−a."""
     return {powers: -c for powers, c in a.items()}
 
 
-def product(a: Exact, b: Exact) -> dict[tuple[int, int], Fraction]:
-    """a · b; raises `TooLargeError` before anything is multiplied out that is of too high a degree."""
+def exact_product(a: ExactTerms, b: ExactTerms) -> dict[Powers, Fraction]:
+    """a · b, without the terms that cancel; raises `TooLargeError` before multiplying if the degree would be too high."""
     if a and b and degree(a) + degree(b) > HIGHEST_DEGREE:
-        raise TooLargeError(f"of degree {degree(a) + degree(b)}; the highest degree is {HIGHEST_DEGREE}")
-    total: dict[tuple[int, int], Fraction] = {}
-    for (i, j), c in a.items():
-        for (k, m), d in b.items():
-            total[i + k, j + m] = total.get((i + k, j + m), Fraction(0)) + c * d
-    return _checked({powers: c for powers, c in total.items() if c})
+        raise TooLargeError(f"degree {degree(a) + degree(b)}; the highest degree is {HIGHEST_DEGREE}")
+    return _checked(multiply(a, b))
 
 
-def power(a: Exact, exponent: int) -> dict[tuple[int, int], Fraction]:
-    """a to a power from 0 to `HIGHEST_DEGREE`."""
-    total: dict[tuple[int, int], Fraction] = {(0, 0): Fraction(1)}
+def exact_power(a: ExactTerms, exponent: int) -> dict[Powers, Fraction]:
+    """a to an integer power from 0 to `HIGHEST_DEGREE`."""
+    total: dict[Powers, Fraction] = {(0, 0): Fraction(1)}
     for _ in range(exponent):
-        total = product(total, a)
+        total = exact_product(total, a)
     return total
 
 
-def degree(a: Exact) -> int:
-    """The highest i + j of a term x^i y^j; 0 for a number."""
-    return max((i + j for i, j in a), default=0)
-
-
-def _checked(a: dict[tuple[int, int], Fraction]) -> dict[tuple[int, int], Fraction]:
-    for c in a.values():
+def _checked(a: ExactTerms) -> dict[Powers, Fraction]:
+    """The nonzero terms; raises `TooLargeError` if a number has too many digits."""
+    nonzero = {powers: c for powers, c in a.items() if c}
+    for c in nonzero.values():
         if max(c.numerator.bit_length(), c.denominator.bit_length()) > _MOST_BITS:
             raise TooLargeError("a number of more than 300 digits")
-    return a
+    return nonzero

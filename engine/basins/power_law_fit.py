@@ -1,4 +1,4 @@
-"""The power law behind shares of uncertain pairs: its exponent, how sure that is, and whether there is one at all."""
+"""Power-law fit to the shares of uncertain pairs: the uncertainty exponent, its interval, and whether a power law holds."""
 
 from __future__ import annotations
 
@@ -8,66 +8,68 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from engine.validation import read_array, read_integers, shown
+from engine.arrays import read_only
+from engine.validation import checked_array, checked_integers, short_repr
+from engine.wording import format_count, format_decimals
 
-LEAST_EXPECTED = 5.0
-"""A separation counts when the law expects this many uncertain pairs, and as many certain ones: χ² asks for it (Cochran 1954).
+MIN_EXPECTED_PAIRS = 5.0
+"""Expected number of uncertain pairs, and of certain ones, for a separation to count; χ² requires it (Cochran 1954).
 
-The expected number decides, not the one found: that would keep the rare separations that happened to have many.
+The expected number decides, not the observed one, which would select separations with many uncertain pairs by chance.
 """
 
-LEAST_SEPARATIONS, LEAST_DECADES = 5, 1.9
-"""A power law is claimed from no fewer separations, and over no shorter range of them."""
+MIN_SEPARATIONS, MIN_DECADES = 5, 1.9
+"""Fewest separations, and their smallest range in decades, for an exponent."""
 
-LARGEST_BEND = 2.0
-"""The shares bend when the quadratic term of log f in log ε is this many of its standard errors away from zero."""
+MAX_BEND = 2.0
+"""Largest quadratic term of log f in log ε, in standard errors, that counts as a straight line."""
 
-TRANSITION = 10.0
-"""Below where the shares look straight the law begins this factor further down: a bend's end hides in the noise.
+TRANSITION_FACTOR = 10.0
+"""The fit begins this factor below the largest separation from which the shares look straight: noise hides the end of a bend.
 
-In trials of shares that bend over at some ε, the 95 % interval held the exponent in 63 to 76 % without this, in 94 to 97 %
-with it.
+In trials with shares that saturate at some ε, the 95 % interval held the exponent in 63 to 76 % of the cases without this factor,
+and in 94 to 97 % with it.
 """
 
-LEAST_PROBABILITY = 1e-4
-"""No power law is claimed when scatter about it as large as that found has a smaller probability."""
+MIN_PROBABILITY = 1e-4
+"""No power law is claimed if scatter as large as observed is less probable than this."""
 
 _CONFIDENCE = 0.95
 _ROUNDING = 1e-9
-_MOST_STEPS, _MOST_HALVINGS = 60, 40
-# The square of how far the likelihood's summit still is, in standard errors.
+_MAX_ITERATIONS, _MAX_HALVINGS = 60, 40
+# Squared distance from the maximum of the likelihood, in standard errors, at which the iteration stops.
 _CONVERGED = 1e-8
 
 
-def _nothing() -> np.ndarray:
+def _empty_counts() -> np.ndarray:
     return np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
 class UncertaintyExponent:
-    """How the share of uncertain pairs falls with their separation; all dimensionless, arrays are read-only.
+    """Share of uncertain pairs against their separation, and the fitted power law; dimensionless, arrays are read-only.
 
     Attributes
     ----------
     separations
-        (m,) ε, in units of the plane of starts.
+        (m,) ε, in units of the plane of initial conditions.
     pairs, uncertain
-        (m,) int64, pairs of starts that far apart, and how many of these have two fates.
+        (m,) int64, number of pairs of starts at each separation, and of those with two different fates.
     used
-        (m,) bool, the separations that the exponent rests on; without one, those last tried.
+        (m,) bool, the separations in the fit; without an exponent, those of the last attempt.
     exponent
-        α of f(ε) = A ε^α; NaN when no power law describes the shares, or when they are too few to tell.
+        α of f(ε) = A ε^α; NaN if the shares follow no power law or are too few.
     low, high
-        The 95 % interval of α; NaN without one.
+        95 % interval of α; NaN without an exponent.
     amplitude
         A; NaN without an exponent.
     misfit
-        χ² per degree of freedom of the used shares about the line; NaN when there were too few to fit one.
+        χ² per degree of freedom of the used shares about the fitted line; NaN if they are too few for a fit.
     one_inside, both_inside
-        (m,) int64, pairs of which one orbit or both were still inside at the horizon: all that a later one could change. The
-        former are among the uncertain. Empty where it is not known.
+        (m,) int64, number of pairs with one orbit or both still inside at the horizon, the only pairs that a longer integration
+        could change. Those of `one_inside` are part of `uncertain`. Empty if not known.
     horizon
-        Time to which orbits were followed; NaN where it is not known.
+        Integration time of the orbits, dimensionless; NaN if not known.
     """
 
     separations: np.ndarray
@@ -79,23 +81,23 @@ class UncertaintyExponent:
     high: float
     amplitude: float
     misfit: float
-    one_inside: np.ndarray = field(default_factory=_nothing, repr=False)
-    both_inside: np.ndarray = field(default_factory=_nothing, repr=False)
+    one_inside: np.ndarray = field(default_factory=_empty_counts, repr=False)
+    both_inside: np.ndarray = field(default_factory=_empty_counts, repr=False)
     horizon: float = float("nan")
 
     @property
     def shares(self) -> np.ndarray:
-        """(m,) f, the share of uncertain pairs at each separation; NaN where there are no pairs."""
+        """(m,) f, the share of uncertain pairs at each separation; NaN without pairs."""
         return np.where(self.pairs > 0, self.uncertain / np.maximum(self.pairs, 1), np.nan)
 
     @property
     def dimension(self) -> float:
-        """2 − α, the dimension of the basin boundary in the plane of starts; NaN without an exponent."""
+        """2 − α, the dimension of the basin boundary in the plane of initial conditions; NaN without an exponent."""
         return 2.0 - self.exponent
 
     @property
     def probability(self) -> float:
-        """That of a scatter about the line at least as large, were it chance alone; NaN when there were too few to fit one."""
+        """Probability of at least this scatter about the fitted line by chance alone; NaN without a fitted line."""
         freedom = int(np.count_nonzero(self.used)) - 2
         return float(stats.chi2.sf(self.misfit * freedom, freedom)) if np.isfinite(self.misfit) else float("nan")
 
@@ -106,11 +108,12 @@ class UncertaintyExponent:
         return sum(array.nbytes for array in arrays)
 
     def describe(self) -> str:
-        """The result in a sentence, or what stands in its way."""
+        """The result, or why there is none, in one sentence."""
         if np.isnan(self.exponent):
             return f"No uncertainty exponent: {self._obstacle()}."
-        digits = int(np.clip(np.ceil(-np.log10((self.high - self.low) / 2.0)), 1, 4))
-        alpha, low, high, dimension = (_written(n, digits) for n in (self.exponent, self.low, self.high, self.dimension))
+        decimals = int(np.clip(np.ceil(-np.log10((self.high - self.low) / 2.0)), 1, 4))
+        values = (self.exponent, self.low, self.high, self.dimension)
+        alpha, low, high, dimension = (format_decimals(value, decimals) for value in values)
         used = self.separations[self.used]
         return (
             f"α = {alpha} ({low} to {high}), so the boundary has dimension {dimension}, "
@@ -119,37 +122,34 @@ class UncertaintyExponent:
 
     def _caution(self) -> str:
         if self.high >= 1.0:
-            return "; a smooth boundary, α = 1, would do as well"
-        return "; one that fills the plane, α = 0, would do as well" if self.low <= 0.0 else ""
+            return "; a smooth boundary, α = 1, is also possible"
+        return "; a boundary that fills the plane, α = 0, is also possible" if self.low <= 0.0 else ""
 
     def _obstacle(self) -> str:
         pairs, uncertain = int(self.pairs.sum()), int(self.uncertain.sum())
         if not pairs:
             return "no pair of starts lies inside"
         if not uncertain:
-            return f"both orbits of every one of the {pairs} pairs have the same fate"
+            return f"both orbits have the same fate in all {format_count(pairs, 'pair')}"
         if np.isnan(self.misfit):
-            return f"{uncertain} uncertain pairs of {pairs} are too few, or over too short a range of separations"
+            return f"{uncertain} uncertain pairs of {pairs} are too few, or cover too short a range of separations"
         return f"no power law describes the shares of uncertain pairs (χ² = {self.misfit:.1f} per degree of freedom)"
 
 
-def _written(number: float, digits: int) -> str:
-    return f"{round(number, digits) + 0.0:.{digits}f}".replace("-", "−")
-
-
 def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> UncertaintyExponent:
-    """Fit f(ε) = A ε^α to how many pairs of starts are uncertain.
+    """Fit f(ε) = A ε^α to counts of uncertain pairs of starts.
 
-    The likelihood is that of binomial counts, k of n at each ε, and the largest one gives A and α (Grebogi, McDonald, Ott & Yorke
-    1983, Phys. Lett. A 99, 415, for the law). The law is one of small ε: while the shares bend (`LARGEST_BEND`) or scatter beyond
-    chance (`LEAST_PROBABILITY`), as where they saturate, the largest separation is left out; once they are straight, so are
-    those within a factor of `TRANSITION` of the largest one left. Separations with too few pairs (`LEAST_EXPECTED`) never count.
-    Nothing is claimed when that leaves too little (`LEAST_SEPARATIONS`, `LEAST_DECADES`).
+    A and α maximise the binomial likelihood of k uncertain pairs out of n at each ε (for the law see Grebogi, McDonald, Ott &
+    Yorke 1983, Phys. Lett. A 99, 415). The law holds for small ε. The largest separation is therefore left out as long as the
+    shares bend (`MAX_BEND`) or scatter too much (`MIN_PROBABILITY`), as they do where they saturate. From the first straight
+    range the separations within a factor of `TRANSITION_FACTOR` of its largest one are left out too. Separations with too few
+    pairs (`MIN_EXPECTED_PAIRS`) never count. There is no exponent if too few separations remain (`MIN_SEPARATIONS`,
+    `MIN_DECADES`).
 
-    The 95 % interval is the wider one of two: normal, from the binomial errors alone, and Student's t with these errors times
-    √(χ² per degree of freedom), which also holds the scatter of a boundary that looks a little different at each scale. In
-    trials it held the exponent in 94 to 97 %, and in 93 % when each of 17 shares, known to 7 %, was off by a further 8 %; with
-    15 %, half of all trials had no exponent, and 89 % of the others held it.
+    The 95 % interval is the wider of two: a normal interval from the binomial errors alone, and a Student t interval with these
+    errors times √(χ² per degree of freedom), which includes the scatter of a boundary that differs slightly from scale to scale.
+    In trials it held the exponent in 94 to 97 % of the cases, and in 93 % if each of 17 shares, known to 7 %, was off by another
+    8 %. With 15 %, half of the trials gave no exponent, and the interval held it in 89 % of the others.
 
     Parameters
     ----------
@@ -160,18 +160,17 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
 
     Returns
     -------
-    The `UncertaintyExponent`; its exponent, interval and amplitude are NaN when nothing can be claimed.
+    The `UncertaintyExponent`; exponent, interval and amplitude are NaN if no power law can be claimed.
 
     Raises
     ------
     ValueError
-        When a parameter is out of its range.
+        If a parameter is out of range.
     """
     epsilon, n, k = _checked_counts(separations, pairs, uncertain)
     law = _find_law(epsilon, n, k)
     used = np.isin(np.arange(epsilon.size), law.used)
-    for array in (epsilon, n, k, used):
-        array.flags.writeable = False
+    epsilon, n, k, used = (read_only(array) for array in (epsilon, n, k, used))
     if not law.holds:
         return UncertaintyExponent(epsilon, n, k, used, np.nan, np.nan, np.nan, np.nan, law.misfit)
     low, high = law.exponent - law.half_width, law.exponent + law.half_width
@@ -179,22 +178,22 @@ def fit_uncertainty(separations: Any, pairs: Any, uncertain: Any) -> Uncertainty
 
 
 def _checked_counts(separations: Any, pairs: Any, uncertain: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    epsilon = read_array("separations", separations).copy()
+    epsilon = checked_array("separations", separations).copy()
     if epsilon.ndim != 1 or not np.all((epsilon > 0.0) & np.isfinite(epsilon)) or np.unique(epsilon).size < epsilon.size:
-        raise ValueError(f"separations={shown(separations)}: must be different finite numbers above 0 in a row")
-    counts = [read_integers("pairs", pairs), read_integers("uncertain", uncertain)]
+        raise ValueError(f"separations={short_repr(separations)}: must be a sequence of different finite numbers above 0")
+    counts = [checked_integers("pairs", pairs), checked_integers("uncertain", uncertain)]
     for name, count in zip(("pairs", "uncertain"), counts, strict=True):
         if count.shape != epsilon.shape:
-            raise ValueError(f"{name}={shown(count)}: must be integers, as many as separations, {epsilon.size}")
+            raise ValueError(f"{name}={short_repr(count)}: must be one integer per separation, {epsilon.size}")
     n, k = (count.astype(np.int64) for count in counts)
     if np.any((k < 0) | (k > n)):
-        raise ValueError(f"uncertain={shown(uncertain)}: must be from 0 to pairs={shown(pairs)}")
+        raise ValueError(f"uncertain={short_repr(uncertain)}: must be from 0 to pairs={short_repr(pairs)}")
     return epsilon, n, k
 
 
 @dataclass(frozen=True, eq=False)
 class _Law:
-    """The most likely power law through the shares at the separations `used`, and how well it describes them."""
+    """Most likely power law for the shares at the separations `used` (indices), and its goodness of fit."""
 
     used: np.ndarray
     exponent: float = np.nan
@@ -202,51 +201,51 @@ class _Law:
     amplitude: float = np.nan
     misfit: float = np.nan
     bend: float = np.nan
-    likely: bool = False
+    plausible: bool = False
     holds: bool = False
 
 
 def _find_law(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law:
-    """The law that holds from the largest ε on that it can; the last one tried, which does not hold, when there is none."""
-    falling = np.argsort(-epsilon, kind="stable")
-    last = _Law(falling[:0])
-    for begin in range(falling.size):
-        tail = falling[begin:]
-        whole = _fit_law(_with_enough(tail, epsilon, n, k), epsilon, n, k)
-        if whole is None:
+    """The power law that holds from the largest possible ε downwards; if there is none, the last attempt, which does not hold."""
+    decreasing = np.argsort(-epsilon, kind="stable")
+    last = _Law(decreasing[:0])
+    for begin in range(decreasing.size):
+        tail = decreasing[begin:]
+        line = _fit_law(_with_enough_pairs(tail, epsilon, n, k), epsilon, n, k)
+        if line is None:
             break
-        last = whole
-        if whole.likely and abs(whole.bend) <= LARGEST_BEND:
-            inner = tail[epsilon[tail] * TRANSITION <= epsilon[tail[0]] * (1.0 + _ROUNDING)]
-            law = _fit_law(_with_enough(inner, epsilon, n, k), epsilon, n, k)
+        last = line
+        if line.plausible and abs(line.bend) <= MAX_BEND:
+            inner = tail[epsilon[tail] * TRANSITION_FACTOR <= epsilon[tail[0]] * (1.0 + _ROUNDING)]
+            law = _fit_law(_with_enough_pairs(inner, epsilon, n, k), epsilon, n, k)
             if law is None:
                 return _Law(last.used)
-            if law.likely:
+            if law.plausible:
                 return replace(law, holds=True)
             last = law
     return last
 
 
-def _with_enough(which: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """Those of the separations `which` where the law through all of them expects enough pairs of either kind."""
+def _with_enough_pairs(which: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Separations of `which` for which the law fitted to all of them expects enough uncertain and enough certain pairs."""
     which = which[k[which] < n[which]]
-    if np.count_nonzero(k[which]) < LEAST_SEPARATIONS:
+    if np.count_nonzero(k[which]) < MIN_SEPARATIONS:
         return which[:0]
     share = predict_shares(epsilon[which], n[which], k[which])
-    enough: np.ndarray = which[n[which] * np.minimum(share, 1.0 - share) >= LEAST_EXPECTED]
+    enough: np.ndarray = which[n[which] * np.minimum(share, 1.0 - share) >= MIN_EXPECTED_PAIRS]
     return enough
 
 
 def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndarray:
-    """f at each separation by the most likely power law; two of the k or more must not be 0, and no k must be n."""
+    """f at each separation by the most likely power law; at least two of the k must be above 0, and all k below n."""
     design = _powers(np.log(epsilon), 1)
     shares: np.ndarray = np.exp(design @ _maximise_likelihood(design, n, k)[0])
     return shares
 
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
-    """The law through the separations `used`; None when they are too few, or over too short a range."""
-    if used.size < LEAST_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < LEAST_DECADES:
+    """Power law fitted to the separations `used`; None if they are too few or cover too short a range."""
+    if used.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < MIN_DECADES:
         return None
     x, n, k = np.log(epsilon[used]), n[used], k[used]
     design = _powers(x, 1)
@@ -264,12 +263,12 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
         amplitude=float(np.exp(level - exponent * x.mean())),
         misfit=chi2 / freedom,
         bend=_measure_bend(x, n, k),
-        likely=bool(stats.chi2.sf(chi2, freedom) >= LEAST_PROBABILITY),
+        plausible=bool(stats.chi2.sf(chi2, freedom) >= MIN_PROBABILITY),
     )
 
 
 def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
-    """The quadratic term of log f in x, in standard errors; these are widened by what scatter a parabola leaves."""
+    """Quadratic term of log f in x, in standard errors, which include the scatter about the fitted parabola."""
     design = _powers(x, 2)
     coefficients, covariance = _maximise_likelihood(design, n, k)
     share = np.exp(design @ coefficients)
@@ -278,27 +277,28 @@ def _measure_bend(x: np.ndarray, n: np.ndarray, k: np.ndarray) -> float:
 
 
 def _powers(x: np.ndarray, degree: int) -> np.ndarray:
-    """(m, degree + 1) powers of x, moved and scaled to a range of length 1 about 0."""
+    """(m, degree + 1) powers of x, shifted to mean 0 and scaled to a range of length 1."""
     return np.vander((x - x.mean()) / np.ptp(x), degree + 1, increasing=True)
 
 
 def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients of log f, and their covariance, by Fisher's scoring; the log-likelihood is concave in them."""
+    """Coefficients of log f and their covariance, by Fisher scoring; the log-likelihood is concave in the coefficients."""
 
-    def likelihood(coefficients: np.ndarray) -> float:
+    def log_likelihood(coefficients: np.ndarray) -> float:
         log_share = design @ coefficients
         return float(k @ log_share + (n - k) @ np.log(-np.expm1(log_share))) if np.all(log_share < 0.0) else -np.inf
 
     coefficients = np.zeros(design.shape[1])
     coefficients[0] = np.log(k.sum() / n.sum())
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_ITERATIONS):
         share = np.exp(design @ coefficients)
         information = design.T @ (design * (n * share / (1.0 - share))[:, None])
         slope = design.T @ ((k - n * share) / (1.0 - share))
         step = np.linalg.solve(information, slope)
         if slope @ step < _CONVERGED:
             break
-        reached = likelihood(coefficients)
-        halvings = next((j for j in range(_MOST_HALVINGS) if likelihood(coefficients + 0.5**j * step) >= reached), _MOST_HALVINGS)
+        current = log_likelihood(coefficients)
+        trials = (j for j in range(_MAX_HALVINGS) if log_likelihood(coefficients + 0.5**j * step) >= current)
+        halvings = next(trials, _MAX_HALVINGS)
         coefficients = coefficients + 0.5**halvings * step
     return coefficients, np.linalg.inv(information)

@@ -1,4 +1,4 @@
-"""The merging test for Wada basins: whether all basins have one and the same boundary, as far as the pixels can tell."""
+"""Merging test for Wada basins: whether all basins share one boundary, up to the resolution of the image."""
 
 from __future__ import annotations
 
@@ -11,32 +11,34 @@ from scipy import ndimage
 
 from engine.arrays import read_only
 from engine.basins.labels import checked_labels
+from engine.wording import format_count
 
-FEWEST_BASINS = 3
-"""Wada is said of three or more basins; two always share their boundary."""
+MIN_BASINS = 3
+"""Fewest basins for the Wada property; two basins always share their boundary."""
 
-# In per cent of the boundary pixels: what `radius_99` holds.
-_NEARLY_ALL = 99
+# Percentage of the boundary pixels within `radius_99`.
+_PERCENTAGE = 99
+_NUMBER_WORDS = ("none", "one", "two")
 
 
 @dataclass(frozen=True, eq=False)
 class WadaTest:
-    """How far apart the boundaries of the basins of a picture lie; distances in pixels, arrays read-only.
+    """Distances between the boundaries of the basins of an image, in pixels; arrays are read-only.
 
     Attributes
     ----------
     basins
-        The labels tested, in rising order.
+        The labels of the basins in increasing order.
     radius
-        The least r for which every slim boundary lies within r pixels of every other: a whole number; infinity when a basin
-        touches no other, NaN for fewer than three basins or no boundary at all. One stray pixel decides it.
+        Smallest r for which every pixel of every slim boundary is within r pixels of each slim boundary: an integer, infinite
+        if a basin touches no other, NaN for fewer than three basins or without a boundary. A single pixel can decide it.
     radius_99
-        The least r that does so for 99 % of the boundary pixels.
+        The same for 99 % of the boundary pixels.
     boundary_pixels
-        How many pixels lie on any boundary.
+        Number of pixels on any boundary.
     shares
-        (k,) share of these that lie within r = 0, 1, … k − 1 = `radius` pixels of every slim boundary; the last one is 1.
-        Empty where `radius` is NaN or infinite.
+        (k,) share of these pixels within r = 0, 1, … k − 1 = `radius` pixels of every slim boundary; the last one is 1. Empty if
+        `radius` is NaN or infinite.
     """
 
     basins: tuple[int, ...]
@@ -46,64 +48,64 @@ class WadaTest:
     shares: np.ndarray = field(repr=False)
 
     @property
-    def is_question(self) -> bool:
-        """Whether there are three basins or more, and a boundary between them."""
+    def is_applicable(self) -> bool:
+        """Whether there are at least three basins and a boundary between some of them."""
         return not math.isnan(self.radius)
 
     def describe(self) -> str:
-        """The result in a sentence."""
-        number = len(self.basins)
-        if number < FEWEST_BASINS:
-            return f"Wada is no question: of the {FEWEST_BASINS} basins that it takes the picture holds {number}."
-        if not self.is_question:
-            return f"Wada is no question: no two of the {number} basins touch."
+        """The result in one sentence."""
+        count = len(self.basins)
+        if count < MIN_BASINS:
+            return f"The Wada test needs three basins; this view has {_NUMBER_WORDS[count]}."
+        if not self.is_applicable:
+            return f"The Wada test needs basins that touch; none of these {count} do."
         if math.isinf(self.radius):
-            return f"Not Wada: of the {number} basins at least one touches no other."
-        nearly_all = f"{_NEARLY_ALL} % of the {self.boundary_pixels} on them within {self.radius_99:g}"
-        return f"The boundaries of the {number} basins coincide within {self.radius:g} pixels, {nearly_all}."
+            return f"Not Wada: of the {count} basins at least one touches no other."
+        most = f"{_PERCENTAGE} % of the {self.boundary_pixels} boundary pixels within {self.radius_99:g}"
+        return f"The boundaries of the {count} basins coincide within {format_count(int(self.radius), 'pixel')}, {most}."
 
 
 def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
-    """How far the boundaries of all basins of a picture are from being one.
+    """Measure how far the boundaries of all basins of an image are from being identical.
 
-    For each basin all others are merged into one. The slim boundary of that picture of two colours are the pixels, of either
-    colour, with one of the other colour above, below, left or right. The basins are Wada, up to the resolution, when slim
-    boundaries fattened by few pixels hold one another (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8, 9954). Instead of a yes or
-    no for a given radius we return the least radius, and count shares of boundary pixels, not of the picture. We fatten by
-    chessboard distance: by r it turns a pixel into a square of 2r + 1.
+    For each basin all others are merged into one. The slim boundary of this two-colour image consists of the pixels of either
+    colour with a pixel of the other colour above, below, left or right. Basins are Wada, up to the resolution, if each slim
+    boundary, dilated by a few pixels, contains all others (Daza, Wagemakers & Sanjuán 2018, Sci. Rep. 8, 9954). Instead of a yes
+    or no for a given radius this function returns the smallest radius, and shares of the boundary pixels instead of the image.
+    Dilation uses the chessboard distance: radius r turns a pixel into a square with sides of 2r + 1.
 
     Parameters
     ----------
     labels
-        (rows, columns) of any integers; equal ones are one basin. For a map: `exit_labels`.
+        (rows, columns) integers; equal ones are one basin. For a map see `exit_labels`.
     valid
-        (rows, columns) bool, the pixels that count; None for all. The others have no boundary with their neighbours, nor has
-        the edge of the picture; distances are measured straight across them.
+        (rows, columns) bool, the pixels that count; None for all. Other pixels and the edge of the image form no boundary;
+        distances are measured straight across them.
 
     Returns
     -------
-    The `WadaTest`. No radius makes basins Wada by itself: when the picture is made finer, that of Wada basins stays a few
-    pixels, that of others grows in proportion.
+    The `WadaTest`. No single radius proves the Wada property: at finer resolution the radius of Wada basins stays at a few
+    pixels, while that of other basins grows in proportion.
 
     Raises
     ------
     ValueError
-        When labels or valid have a wrong shape or type.
+        If `labels` or `valid` has a wrong shape or type.
     """
     labels, valid = checked_labels(labels, valid)
     basins = tuple(np.unique(labels[valid]).tolist())
-    anywhere = _slim_boundary(labels, valid)
-    count = int(np.count_nonzero(anywhere))
-    if len(basins) < FEWEST_BASINS or not count:
+    boundary = _slim_boundary(labels, valid)
+    count = int(np.count_nonzero(boundary))
+    if len(basins) < MIN_BASINS or not count:
         return WadaTest(basins, math.nan, math.nan, count, read_only(np.empty(0)))
-    reach = np.sort(_furthest_boundary(labels, valid, basins, anywhere))
-    shares = np.cumsum(np.bincount(reach[np.isfinite(reach)].astype(np.intp))) / count
-    radius_99 = float(reach[-(-_NEARLY_ALL * count // 100) - 1])
-    return WadaTest(basins, float(reach[-1]), radius_99, count, read_only(shares))
+    distances = np.sort(_largest_distances(labels, valid, basins, boundary))
+    shares = np.cumsum(np.bincount(distances[np.isfinite(distances)].astype(np.intp))) / count
+    radius_99 = float(distances[-(-_PERCENTAGE * count // 100) - 1])
+    return WadaTest(basins, float(distances[-1]), radius_99, count, read_only(shares))
 
 
 def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
-    """bool: the pixels that count next to one that counts, too, and has another colour."""
+    """(rows, columns) bool, the pixels that count and have a neighbour that counts and has another colour."""
     slim = np.zeros(colours.shape, np.bool_)
     for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         differs = (colours[before] != colours[after]) & valid[before] & valid[after]
@@ -112,12 +114,12 @@ def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
     return slim
 
 
-def _furthest_boundary(labels: np.ndarray, valid: np.ndarray, basins: tuple[int, ...], where: np.ndarray) -> np.ndarray:
-    """For each pixel of `where` its distance from that slim boundary which is furthest away; infinity where one is missing."""
-    reach = np.zeros(np.count_nonzero(where))
+def _largest_distances(labels: np.ndarray, valid: np.ndarray, basins: tuple[int, ...], boundary: np.ndarray) -> np.ndarray:
+    """Distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has none."""
+    distances = np.zeros(np.count_nonzero(boundary))
     for basin in basins:
         slim = _slim_boundary(labels == basin, valid)
         if not slim.any():
-            return np.full_like(reach, np.inf)
-        np.maximum(reach, ndimage.distance_transform_cdt(~slim, "chessboard")[where], out=reach)
-    return reach
+            return np.full_like(distances, np.inf)
+        np.maximum(distances, ndimage.distance_transform_cdt(~slim, "chessboard")[boundary], out=distances)
+    return distances

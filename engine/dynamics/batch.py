@@ -1,4 +1,4 @@
-"""Many orbits on their way: their state in arrays, and the carrying on of any of them, tile by tile, on any executor."""
+"""A batch of orbits as arrays, and its parallel propagation in tiles on any executor."""
 
 from __future__ import annotations
 
@@ -21,33 +21,37 @@ from engine.taylor.kernels.propagate import VECTOR
 from engine.taylor.source.recurrence import TOLERANCE
 
 LANES = 64
+"""Orbits integrated side by side by a kernel."""
+
 LARGEST_TILE = 2048
-# Steps a tile may take before it comes back: about 50 ms, the grain of cancelling and of frames.
-BUDGET = 2_000_000
+"""Largest number of orbits per tile."""
+
+STEP_BUDGET = 2_000_000
+"""Largest number of steps per kernel call, about 50 ms: the interval at which cancellation and progress are handled."""
 
 
 @dataclass
 class OrbitBatch:
-    """State of n orbits, resumable at any time.
+    """The states of n orbits; their propagation can be continued at any time.
 
     Attributes
     ----------
     state
-        (n, 4) x, y, px, py at time `t`: where the orbit left, or the start of the step that goes on from here.
+        (n, 4) x, y, px, py at time `t`: where the orbit escaped, or where its next step starts.
     t
-        (n,) time reached; the escape time of an orbit that has left.
+        (n,) time reached; the escape time of an escaped orbit.
     crossings
         (n,) upward crossings of y = 0 until `t`.
     last_crossings
-        (n,) those between `t` and t_max, of a bounded orbit.
+        (n,) upward crossings between `t` and t_max of a bounded orbit.
     fate
         (n,) int8 codes, see `Fate`.
     curve_row
-        (n,) the row of `curves` that holds the exits of this orbit's energy.
+        (n,) the row of the exit curves array for the energy of this orbit.
     outside
-        (n,) int8: the channel beyond whose Lyapunov orbit the start lies, 0 inside.
+        (n,) int8: the channel beyond whose Lyapunov orbit the start lies; 0 if it lies inside.
     certificate
-        (n,) int8 codes, see `Certificate`: why an orbit is bounded that has not been followed to t_max; 0 for all others.
+        (n,) int8 codes, see `Certificate`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
     """
 
     state: np.ndarray
@@ -61,29 +65,34 @@ class OrbitBatch:
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
-        """Orbits at t = 0; a start whose state is not finite is forbidden. Outside starts are found by `mark_outside`."""
+        """Orbits at t = 0; starts with a non-finite state are forbidden. `mark_outside` finds the outside starts."""
         n = len(states)
         fate = np.where(np.isfinite(states).all(axis=1), Fate.NOT_COMPUTED, Fate.FORBIDDEN).astype(np.int8)
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         return cls(states.copy(), np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), codes[0], codes[1])
 
     def mark_outside(self, which: np.ndarray, curves: np.ndarray) -> None:
-        """Find those of the starts `which` that lie beyond an exit curve, and settle their fate."""
+        """Set `outside` and `fate` of those starts among `which` (indices) that lie beyond an exit curve."""
         x, y = self.state[which, 0], self.state[which, 1]
         channel = find_outside(x, y, curves, self.curve_row[which])
         channel[self.fate[which] == Fate.FORBIDDEN] = 0
         self.outside[which] = channel
         self.fate[which[channel > 0]] = Fate.OUTSIDE
 
-    def settle(self, which: np.ndarray, certificate: np.ndarray | int) -> None:
-        """Call those of the orbits `which` bounded that have a certificate."""
+    def mark_bounded(self, which: np.ndarray, certificate: np.ndarray | int) -> None:
+        """Store the certificates of the orbits `which` (indices); orbits with a certificate become bounded."""
         self.certificate[which] = certificate
         self.fate[which[self.certificate[which] != Certificate.NONE]] = Fate.BOUNDED
 
     def copy_to_images(self, which: np.ndarray, images: np.ndarray, channels: np.ndarray) -> None:
-        """Give the orbits `images` what became of the orbits `which`, of which they are the exact images under x → −x.
+        """Copy the results of the orbits `which` to the orbits `images`, their exact mirror images under x → −x.
 
-        channels: the channel that each one is carried into, see `Potential.mirror_channels`.
+        Parameters
+        ----------
+        which, images
+            Indices of the same shape.
+        channels
+            The image of each channel number, see `Potential.mirror_channels`.
         """
         self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
         for name in ("t", "crossings", "last_crossings"):
@@ -95,40 +104,50 @@ class OrbitBatch:
         self.certificate[images] = np.where(certified, Certificate.MIRRORED, Certificate.NONE)
 
     def reopen_bounded(self) -> None:
-        """Make orbits bounded until t_max undecided again, so that they can be carried on; certified ones stay bounded."""
+        """Make orbits integrated to t_max undecided again, for a later t_max; certified orbits stay bounded."""
         bounded = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
         self.fate[bounded] = Fate.NOT_COMPUTED
         self.last_crossings[bounded] = 0
 
     def certificates(self) -> np.ndarray:
-        """(n,) int8: the `Certificate` of each orbit, bounded ones followed to t_max included."""
-        followed = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
-        return np.where(followed, np.int8(Certificate.INTEGRATED), self.certificate)
+        """(n,) int8: the `Certificate` of each orbit, including `Certificate.INTEGRATED`."""
+        integrated = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
+        return np.where(integrated, np.int8(Certificate.INTEGRATED), self.certificate)
 
     @property
     def nbytes(self) -> int:
-        """Bytes held by the arrays."""
+        """Total size of the arrays in bytes."""
         return sum(getattr(self, field.name).nbytes for field in fields(self))
 
     def copy(self) -> OrbitBatch:
-        """The same orbits in arrays of their own."""
+        """A deep copy."""
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
 
 
 @dataclass
 class _Tile:
-    """A part of a batch on its way to a worker and back."""
+    """A part of a batch that one worker propagates.
+
+    Attributes
+    ----------
+    orbits
+        (n,) indices of the orbits in the whole batch.
+    batch
+        A copy of these orbits.
+    active
+        (n,) uint8: 1 for orbits that have neither escaped nor reached the horizon.
+    """
 
     orbits: np.ndarray
     batch: OrbitBatch
-    waiting: np.ndarray
+    active: np.ndarray
 
     @classmethod
-    def taken_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> _Tile:
+    def copy_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> _Tile:
         part = OrbitBatch(**{field.name: getattr(batch, field.name)[orbits] for field in fields(batch)})
         return cls(orbits, part, np.ones(orbits.size, np.uint8))
 
-    def put_back(self, batch: OrbitBatch) -> None:
+    def copy_to(self, batch: OrbitBatch) -> None:
         for field in fields(batch):
             getattr(batch, field.name)[self.orbits] = getattr(self.batch, field.name)
 
@@ -142,28 +161,29 @@ def _advance_tile(
     final: bool,
     tolerance: float = TOLERANCE,
 ) -> _Tile:
-    """The work of a worker: one budget's worth of steps."""
+    """Propagate the active orbits of a tile by `STEP_BUDGET` steps; runs in a worker."""
     kernels = kernels_of(potential)
-    todo = np.flatnonzero(tile.waiting)
+    todo = np.flatnonzero(tile.active)
     b = tile.batch
     kernels.advance(
-        todo, horizon, final, step_tolerance(potential, tolerance), BUDGET, LANES, gates, curves, b.curve_row,
-        b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.waiting,
+        todo, horizon, final, step_tolerance(potential, tolerance), STEP_BUDGET, LANES, gates, curves, b.curve_row,
+        b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active,
     )  # fmt: skip
     return tile
 
 
-def _tiles(batch: OrbitBatch, which: np.ndarray, workers: int) -> Iterator[_Tile]:
+def _split_into_tiles(batch: OrbitBatch, which: np.ndarray, workers: int) -> Iterator[_Tile]:
+    """About four tiles per worker, each a multiple of `LANES` orbits and at most `LARGEST_TILE`."""
     share = -(-which.size // (4 * workers))
     size = int(np.clip(-(-share // LANES) * LANES, LANES, LARGEST_TILE))
-    for orbits in (which[begin : begin + size] for begin in range(0, which.size, size)):
-        yield _Tile.taken_from(batch, orbits)
+    for begin in range(0, which.size, size):
+        yield _Tile.copy_from(batch, which[begin : begin + size])
 
 
-def _halves(tile: _Tile) -> list[np.ndarray]:
-    """What a tile still waits for, in two parts when that is worth a second worker."""
-    waiting = tile.orbits[tile.waiting != 0]
-    return [part for part in np.array_split(waiting, 2 if waiting.size >= VECTOR else 1) if part.size]
+def _split_active(tile: _Tile) -> list[np.ndarray]:
+    """The active orbits of a tile, in two parts if there are enough for two workers."""
+    active = tile.orbits[tile.active != 0]
+    return [part for part in np.array_split(active, 2 if active.size >= VECTOR else 1) if part.size]
 
 
 def propagate_batch(
@@ -179,30 +199,56 @@ def propagate_batch(
     on_progress: Callable[[], None] | None = None,
     tolerance: float = TOLERANCE,
 ) -> bool:
-    """Carry the undecided orbits among `which` on until they leave or reach `horizon`; the batch is changed in place.
+    """Integrate the undecided orbits among `which` until they escape or reach `horizon`; the batch is changed in place.
 
-    With `final` the horizon is t_max, and orbits still inside are bounded. Returns False when cancelled on the way, which leaves
-    the batch in a state to go on from. The outcome of each orbit is the same to the bit whatever the executor and the
-    interruptions. `tolerance` is that of the steps; another one than the usual gives a second opinion.
+    The result of each orbit is bit-identical for every executor and for every pattern of interruptions.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    curves
+        (energies, channels, columns) exit curves, see `exit_curves`.
+    batch
+        The orbits.
+    which
+        Indices of the orbits to propagate.
+    horizon
+        Time at which to stop, dimensionless.
+    final
+        Whether the horizon is t_max: orbits that reach it become bounded.
+    executor
+        Any `concurrent.futures.Executor`; None for the pool of this process.
+    cancel
+        When set, the propagation stops early; it can be continued by another call.
+    on_progress
+        Called after each group of completed tiles.
+    tolerance
+        Tolerance of the Taylor steps, for a well of size 1.
+
+    Returns
+    -------
+    Whether the propagation was completed; False if it was cancelled.
     """
     executor = executor or default_executor()
     workers = count_workers(executor)
     gates = exit_gates(curves)
-    todo = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
-    tiles = _tiles(batch, todo, workers)
+    undecided = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
+    tiles = _split_into_tiles(batch, undecided, workers)
     running: set[Future[_Tile]] = set()
 
     def submit(tile: _Tile) -> None:
         running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance))
 
-    def go_on(tile: _Tile) -> None:
-        tile.put_back(batch)
+    def store_and_continue(tile: _Tile) -> None:
+        tile.copy_to(batch)
         if is_cancelled(cancel):
             return
-        following = [tile] if tile.waiting.any() else list(islice(tiles, 1))
-        if len(following) + len(running) < workers:
-            following = [_Tile.taken_from(batch, part) for tile in following for part in _halves(tile)]
-        for tile in following:
+        pending = [tile] if tile.active.any() else list(islice(tiles, 1))
+        # Near the end, keep all workers busy with smaller tiles.
+        if len(pending) + len(running) < workers:
+            pending = [_Tile.copy_from(batch, part) for tile in pending for part in _split_active(tile)]
+        for tile in pending:
             submit(tile)
 
     for tile in islice(tiles, 2 * workers):
@@ -210,9 +256,9 @@ def propagate_batch(
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
-            # Of a job that is cancelled, calls that no thread has taken up are cancelled too.
+            # After cancellation the executor may cancel calls that have not started.
             if not future.cancelled():
-                go_on(future.result())
+                store_and_continue(future.result())
         if on_progress is not None and not is_cancelled(cancel):
             on_progress()
     return not is_cancelled(cancel)

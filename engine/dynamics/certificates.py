@@ -1,4 +1,4 @@
-"""Why an orbit is called bounded: followed to the end, or certified early."""
+"""Why an orbit is classified as bounded: integrated to t_max, or certified early."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from enum import IntEnum
 
 
 class Certificate(IntEnum):
-    """What the word bounded rests on, strongest claim about this very orbit first.
+    """The reason why an orbit is classified as bounded.
 
-    ``NONE`` stands where nothing is called bounded. ``INTEGRATED``: followed to t_max. ``CLOSED``: its energy is below
-    every saddle. ``QUASI_PERIODIC``: its weighted averages converge as those of a torus do, and of very few other orbits.
-    ``ENCLOSED``: invariant curves of certified orbits part it from every exit; it may be chaotic itself. ``MIRRORED``: the
-    mirror image of an orbit certified early.
+    ``NONE``: not classified as bounded. ``INTEGRATED``: integrated to t_max. ``CLOSED``: its energy is below every saddle.
+    ``QUASI_PERIODIC``: its weighted Birkhoff averages converge as on an invariant torus, which is very rare for other orbits.
+    ``ENCLOSED``: invariant curves of certified orbits separate it from every exit; it may itself be chaotic. ``MIRRORED``: the
+    mirror image of an orbit that was certified early.
     """
 
     NONE = 0
@@ -22,16 +22,16 @@ class Certificate(IntEnum):
     MIRRORED = 5
 
 
-_SENTENCES = {
+_PHRASES = {
     Certificate.NONE: "",
-    Certificate.INTEGRATED: "followed to t_max",
+    Certificate.INTEGRATED: "integrated to t_max",
     Certificate.CLOSED: "its energy is below every saddle",
     Certificate.QUASI_PERIODIC: "certified: quasi-periodic, as on an invariant torus",
-    Certificate.ENCLOSED: "certified: invariant curves part it from every exit",
+    Certificate.ENCLOSED: "certified: invariant curves separate it from every exit",
     Certificate.MIRRORED: "certified: mirror image of a certified orbit",
 }
 
 
 def describe_certificate(certificate: int) -> str:
-    """A phrase for a certificate code."""
-    return _SENTENCES[Certificate(certificate)]
+    """A phrase for a `Certificate` code."""
+    return _PHRASES[Certificate(certificate)]

@@ -1,4 +1,4 @@
-"""What became of a list of orbits."""
+"""Outcomes of a list of orbits of one energy."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.potentials.potential import Potential
-from engine.validation import LARGEST_NUMBER, read_array, read_number, read_t_max
+from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
 
 ENERGY_TOLERANCE = 1e-9
-"""Most that a start's energy may differ from the energy it is said to have."""
+"""Largest difference between the energy of a start and the given energy, for a well of size 1."""
 
 
 @dataclass(frozen=True, eq=False)
 class Outcomes:
-    """What became of n orbits: the arrays that `classify_orbits` returns.
+    """Outcomes of n orbits, as returned by `classify_orbits`.
 
     Attributes
     ----------
     fate
         int8 codes: channel k ≥ 1, or a `Fate`.
     escape_time
-        float64, time of the outward crossing of the Lyapunov orbit; NaN for orbits that have not left.
+        float64, time of the outward crossing of the Lyapunov orbit; NaN for orbits that have not escaped.
     crossings
-        int32, upward crossings of y = 0 (start not counted) before the escape, or until t_max; 0 where there is no orbit.
+        int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
     energy_error
-        float64, |H − h| / |h| at the end; NaN where there is no orbit.
+        float64, |H − h| / |h| at the end; NaN if there is no orbit.
     """
 
     fate: np.ndarray
@@ -41,15 +41,14 @@ class Outcomes:
     energy_error: np.ndarray
 
 
-def read_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
-    """The outcomes of a batch as it stands; energy (n,) is what the error is measured against."""
+def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
+    """The outcomes of a batch in its current state; `energy` (n,) is the reference for the energy errors."""
     orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
     crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
     error = np.abs(potential.energy(batch.state) - energy) / np.maximum(np.abs(energy), np.finfo(float).tiny)
     decided = batch.fate >= Fate.BOUNDED
-    return Outcomes(
-        batch.fate.copy(), np.where(batch.fate >= 1, batch.t, np.nan), crossings, np.where(decided, error, np.nan)
-    )  # fmt: skip
+    escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
+    return Outcomes(batch.fate.copy(), escape_time, crossings, np.where(decided, error, np.nan))
 
 
 def classify_orbits(
@@ -61,52 +60,50 @@ def classify_orbits(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> Outcomes:
-    """Fate, escape time and crossings of any list of orbits of one energy.
+    """Fate, escape time and number of crossings of orbits of one energy.
 
     Parameters
     ----------
     potential
-        The `Potential`.
+        The potential.
     energy
-        h, finite, dimensionless.
+        h, finite, at most 1e9 in magnitude, dimensionless.
     states
-        (n, 4) x, y, px, py; finite, all on that energy to 1e-9.
+        (n, 4) x, y, px, py; finite, with that energy to within 1e-9 `Potential.length`².
     t_max
-        How long each orbit is followed, 0 < t_max ≤ 1e8.
+        Largest integration time, 0 < t_max ≤ 1e8, dimensionless.
     executor
         Any `concurrent.futures.Executor`; None for the pool of this process.
     cancel
-        When set, orbits not yet decided stay `Fate.NOT_COMPUTED`.
+        When set, orbits without a result stay `Fate.NOT_COMPUTED`.
 
     Raises
     ------
     ValueError
-        When a state is not finite or not on the energy, or a parameter is out of its range.
+        If a state is not finite or has another energy, or a parameter is out of range.
     """
     states = _checked_states(potential, energy, states)
-    t_max = read_t_max(t_max)
+    t_max = checked_t_max(t_max)
     curves = exit_curves(potential, energy)[None]
     batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
-    everything = np.arange(len(states))
-    batch.mark_outside(everything, curves)
-    propagate_batch(potential, curves, batch, everything, t_max, final=True, executor=executor, cancel=cancel)
-    return read_outcomes(potential, np.full(len(states), float(energy)), batch)
+    every_orbit = np.arange(len(states))
+    batch.mark_outside(every_orbit, curves)
+    propagate_batch(potential, curves, batch, every_orbit, t_max, final=True, executor=executor, cancel=cancel)
+    return collect_outcomes(potential, np.full(len(states), float(energy)), batch)
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
-    energy = read_number("energy", energy)
-    states_array: np.ndarray = np.ascontiguousarray(read_array("states", states))
-    if states_array.ndim != 2 or states_array.shape[1] != 4:
-        raise ValueError(f"states of shape {states_array.shape}: must be (n, 4) with columns x, y, px, py")
-    usable = (np.abs(states_array) <= LARGEST_NUMBER).all(axis=1)
-    if not usable.all():
-        row = int(np.argmin(usable))
-        raise ValueError(f"states: row {row} holds a number that is not finite, or beyond {LARGEST_NUMBER:g}")
-    off = np.abs(potential.energy(states_array) - energy)
-    if np.any(off > ENERGY_TOLERANCE * potential.length**2):
-        row = int(np.argmax(off))
-        raise ValueError(
-            f"states: row {row} has energy {float(potential.energy(states_array[row]))!r}; "
-            f"all must have energy={energy} to {ENERGY_TOLERANCE:g}"
-        )
-    return states_array
+    energy = checked_number("energy", energy)
+    array: np.ndarray = np.ascontiguousarray(checked_array("states", states))
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise ValueError(f"states of shape {array.shape}: must be (n, 4) with columns x, y, px, py")
+    legal = (np.abs(array) <= LARGEST_NUMBER).all(axis=1)
+    if not legal.all():
+        row = int(np.argmin(legal))
+        raise ValueError(f"states: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
+    difference = np.abs(potential.energy(array) - energy)
+    if np.any(difference > ENERGY_TOLERANCE * potential.length**2):
+        row = int(np.argmax(difference))
+        row_energy = float(potential.energy(array[row]))
+        raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {ENERGY_TOLERANCE:g}")
+    return array

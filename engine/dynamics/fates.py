@@ -1,17 +1,19 @@
-"""What became of an orbit, in codes for arrays and in words for people; and what makes a bounded one chaotic."""
+"""Codes and texts for the outcome of an orbit, and the criterion for chaos."""
 
 from __future__ import annotations
 
 from enum import IntEnum
 
+import numpy as np
+
 from engine.taylor.kernels import events
 
 CHAOS_THRESHOLD = 1e-7
-"""A bounded orbit is chaotic when its SALI has fallen to this or below (Skokos 2001; the paper's criterion)."""
+"""A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 
 class Fate(IntEnum):
-    """Code of an outcome. A code of 1 or more, which is no member, is the number of the channel the orbit left by."""
+    """Code of the outcome of an orbit. Codes from 1 are not members; they are the number of the channel it escaped through."""
 
     BOUNDED = events.BOUNDED
     FORBIDDEN = -1
@@ -21,9 +23,9 @@ class Fate(IntEnum):
 
 
 class Regularity(IntEnum):
-    """Character of a bounded orbit; ``NO_QUESTION`` for one that escapes or does not exist, ``NOT_JUDGED`` until it is known."""
+    """Character of a bounded orbit. ``NOT_APPLICABLE``: it escapes or does not exist; ``NOT_JUDGED``: not computed yet."""
 
-    NO_QUESTION = 0
+    NOT_APPLICABLE = 0
     REGULAR = 1
     CHAOTIC = 2
     NOT_JUDGED = 3
@@ -33,14 +35,14 @@ class Regularity(IntEnum):
 
 
 class Trust(IntEnum):
-    """Whether the answer of a pixel survives.
+    """Whether the outcome of a pixel is robust against small changes.
 
-    ``NO_QUESTION`` for one that is forbidden, outside or failed. ``LIKE_NEIGHBOURS``: its neighbours say the same, so that it was
-    not tested. ``CONFIRMED``: tested, and nothing changed. ``DOUBTFUL``: its fate, or its crossings before the escape, changed.
-    ``NOT_TESTED`` until it is known.
+    ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
+    outcome. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate or its number of crossings before the escape changed.
+    ``NOT_TESTED``: not computed yet.
     """
 
-    NO_QUESTION = 0
+    NOT_APPLICABLE = 0
     LIKE_NEIGHBOURS = 1
     CONFIRMED = 2
     DOUBTFUL = 3
@@ -51,19 +53,24 @@ class Trust(IntEnum):
 
 
 _SENTENCES = {
-    Fate.BOUNDED: "Bounded: has not left by t_max.",
-    Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here, its kinetic energy would be negative.",
-    Fate.OUTSIDE: "Outside: the start already lies beyond a Lyapunov orbit.",
-    Fate.NOT_COMPUTED: "Not decided yet.",
-    Fate.FAILED: "Failed: the integration broke down here; please report this start.",
+    Fate.BOUNDED: "Bounded: has not escaped by t_max.",
+    Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here because its kinetic energy would be negative.",
+    Fate.OUTSIDE: "Outside: the start lies beyond a Lyapunov orbit.",
+    Fate.NOT_COMPUTED: "Not computed yet.",
+    Fate.FAILED: "Failed: the integration broke down; please report this start.",
 }
 
 
 def describe_fate(fate: int) -> str:
-    """A sentence for a fate code; channels by their number."""
+    """A sentence for a fate code, including channel numbers."""
     return f"Escaped through channel {fate}." if fate >= 1 else _SENTENCES[Fate(fate)]
 
 
+def is_chaotic(sali: np.ndarray) -> np.ndarray:
+    """Whether bounded orbits with these final SALI values (any shape) are chaotic; bool, and True for NaN."""
+    return np.logical_not(sali > CHAOS_THRESHOLD)
+
+
 def judge_regularity(sali: float) -> Regularity:
-    """Regular or chaotic, from the SALI a bounded orbit ends with (0 to √2)."""
-    return Regularity.CHAOTIC if sali <= CHAOS_THRESHOLD else Regularity.REGULAR
+    """Regular or chaotic, from the final SALI of a bounded orbit (0 to √2)."""
+    return Regularity.CHAOTIC if is_chaotic(np.asarray(sali)) else Regularity.REGULAR

@@ -1,4 +1,4 @@
-"""Work on many orbits side by side at a fixed step, tile by tile, on any executor."""
+"""Parallel fixed-step computations on many orbits, in tiles of `LANES` orbits on any executor."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR
 
 
-def glide(
+def map_tiles(
     work: Callable[..., np.ndarray],
     potential: Potential,
     states: np.ndarray,
@@ -25,29 +25,51 @@ def glide(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> np.ndarray:
-    """(n, *shape): what `work(potential, tile, *arguments)` makes of each tile of the (n, columns) states.
+    """Apply a function to many states in parallel, tile by tile.
 
-    A tile is a (columns, lanes) array of its own; lanes is LANES, or in the last one as many whole vectors as it needs, filled
-    with copies of its last orbit. `work` is a function of a module, so that processes elsewhere can run it; it returns
-    (lanes, *shape) numbers. When `cancel` is set, orbits not reached are NaN.
+    Parameters
+    ----------
+    work
+        ``work(potential, tile, *arguments)`` returns a (lanes, *shape) array. `tile` is a (columns, lanes) array that `work` may
+        change. `work` must be a module-level function, so that it can be pickled for other processes.
+    potential
+        The potential.
+    states
+        (n, columns) one row per orbit.
+    arguments
+        Further arguments of `work`.
+    shape
+        Shape of the result for one orbit.
+    executor
+        Any `concurrent.futures.Executor`; None for the pool of this process.
+    cancel
+        When set, no further tiles are submitted.
+
+    Returns
+    -------
+    (n, *shape) the results; NaN for orbits that were not computed because of `cancel`.
     """
     executor = executor or default_executor()
-    ahead = 2 * count_workers(executor)
+    most_running = 2 * count_workers(executor)
     running: deque[tuple[int, Future[np.ndarray]]] = deque()
     results = np.full((len(states), *shape), np.nan)
 
-    def collect(most: int) -> None:
-        while len(running) > most:
+    def collect(left_running: int) -> None:
+        while len(running) > left_running:
             begin, future = running.popleft()
             if not future.cancelled():
                 results[begin : begin + LANES] = future.result()[: len(states) - begin]
 
     for begin in range(0, len(states), LANES):
-        collect(ahead - 1)
+        collect(most_running - 1)
         if is_cancelled(cancel):
             break
-        lanes = min(LANES, -(-(len(states) - begin) // VECTOR) * VECTOR)
-        tile = states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()
-        running.append((begin, executor.submit(work, potential, tile, *arguments)))
+        running.append((begin, executor.submit(work, potential, _copy_tile(states, begin), *arguments)))
     collect(0)
     return results
+
+
+def _copy_tile(states: np.ndarray, begin: int) -> np.ndarray:
+    """(columns, lanes) up to `LANES` states from row `begin`; the last state is repeated to fill whole SIMD vectors."""
+    lanes = min(LANES, -(-(len(states) - begin) // VECTOR) * VECTOR)
+    return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

@@ -1,14 +1,15 @@
-"""Lyapunov orbits: the unstable periodic orbit over each open saddle, whose curve across the channel is the exit.
+"""Lyapunov orbits: the unstable periodic orbits over the open saddles. Their paths across the channels are the exits.
 
-At energy h above a saddle the orbit swings between two points at rest on the zero-velocity curve and runs back along the
-same path (Contopoulos 1990, Astron. Astrophys. 231, 41). A start at rest on the wall a little too far in falls inward, one
-too far out falls outward; the orbit is the root of the velocity along the channel at the moment the swing turns back.
+At an energy h above the saddle the orbit oscillates between two points at rest on the zero-velocity curve (Contopoulos 1990,
+Astron. Astrophys. 231, 41). An orbit that starts at rest on the zero-velocity curve too close to the well moves inward, one that
+starts too far out moves outward. The Lyapunov orbit is the root of the velocity along the channel at the turning point.
 """
 
 from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from types import ModuleType
 
@@ -16,21 +17,22 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy import optimize
 
+from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels import events
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
-from engine.validation import read_number
+from engine.validation import checked_number
 
-# In units of the distance from the well's bottom to the saddle: how far along the channel a start may run before it is
-# plain which way it falls, the first stride of the search for a bracket, and how far that search goes.
-_REACH = 1.0
+# Lengths along the channel, in units of the distance of the saddle from the origin: where a trial orbit has left the saddle for
+# good, the first step of the bracket search, and where this search ends.
+_LARGEST_EXCURSION = 1.0
 _FIRST_STRIDE = 0.01
-_FURTHEST = 2.0
+_LARGEST_OFFSET = 2.0
 
-_SAMPLES_PER_SWING = 100
-_LARGEST_MISFIT = 1e-11
-# In units of the distance of the saddle, taken as a power of 2.
+_SAMPLES_PER_HALF_PERIOD = 100
+_LARGEST_FIT_ERROR = 1e-11
+# Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
 _GATE_MARGIN = 1e-3
 _MOST_STEPS = 400
 # Column k holds the power series of the Chebyshev polynomial T_k.
@@ -44,21 +46,21 @@ _CHEBYSHEV_TO_POWER = np.column_stack(
 
 @dataclass(frozen=True, eq=False)
 class LyapunovOrbit:
-    """One Lyapunov orbit; lengths and times are dimensionless.
+    """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
 
     Attributes
     ----------
     channel
-        Number of the exit channel it closes, from 1.
+        Number of its exit channel, from 1.
     energy
         Its energy h.
     period
-        Time for there and back.
+        Its period.
     x, y
-        (201,) path over one whole period, evenly spaced in time, from rest on one wall to the other and back: the first
-        and the last point are the same.
+        (201,) path over one period, evenly spaced in time, from rest on one side of the channel to the other and back; the first
+        and the last point are equal.
     curve
-        The exit as a row of numbers for the kernels (columns in `engine.taylor.kernels.events`).
+        (columns,) the exit curve for the kernels; columns as in `engine.taylor.kernels.events`.
     """
 
     channel: int
@@ -68,91 +70,97 @@ class LyapunovOrbit:
     y: np.ndarray
     curve: np.ndarray
 
+    def __post_init__(self) -> None:
+        for array in (self.x, self.y, self.curve):
+            read_only(array)
+
     @property
     def half_path(self) -> np.ndarray:
-        """(101, 2) the path from wall to wall, once: what to draw."""
+        """(101, 2) the path over half a period, from one side of the channel to the other, for plots."""
         return np.column_stack([self.x, self.y])[: self.x.size // 2 + 1]
 
 
 def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """The Lyapunov orbit over each saddle that lies below `energy`.
+    """The Lyapunov orbit over each saddle below `energy`.
 
     Parameters
     ----------
     potential
         Any `Potential`.
     energy
-        h, finite, dimensionless; for cases I and II tested to 0.5, for III to 1.0.
+        h, finite, dimensionless; tested up to 0.5 for cases I and II and up to 1.0 for case III.
 
     Returns
     -------
-    In channel order; empty at or below the escape energy, where nothing can leave.
+    The orbits in channel order; empty at or below the escape energy.
 
     Raises
     ------
     ValueError
-        When `energy` is not finite, or so high that no Lyapunov orbit that crosses its channel as a graph is found, or that the
+        If `energy` is not finite, or so high that a Lyapunov orbit is not found or not a graph across its channel, or that
         exits meet.
     """
-    return _find_all(potential, read_number("energy", energy))
+    return _cached_orbits(potential, checked_number("energy", energy))
+
+
+class _SearchError(Exception):
+    """A Lyapunov orbit that was not found or cannot be used as an exit."""
 
 
 @functools.lru_cache(maxsize=4096)
-def _find_all(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """Found in units of the potential's length, in which every absolute length of the search and of the steps is at home."""
+def _cached_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """The orbits, computed in units of the potential's length, as the tolerances of the search are for wells of size 1."""
     length = potential.length
-    if length == 1.0:
-        orbits = _find_in_units(potential, energy, energy)
-    else:
-        found = _find_in_units(potential.in_units(length), energy / length**2, energy)
-        orbits = tuple(_enlarged(orbit, length) for orbit in found)
-    _check_apart(potential, energy, orbits)
+    try:
+        if length == 1.0:
+            orbits = _find_orbits(potential, energy)
+        else:
+            scaled = _find_orbits(potential.in_units(length), energy / length**2)
+            orbits = tuple(_rescaled(orbit, length) for orbit in scaled)
+        _check_exits_apart(potential, orbits)
+    except _SearchError as error:
+        raise ValueError(f"energy={energy}: {error} (potential {potential.name})") from None
     return orbits
 
 
-def _find_in_units(potential: Potential, energy: float, named: float) -> tuple[LyapunovOrbit, ...]:
-    """The orbits of a potential of length 1; errors name the energy as the caller knows it."""
+def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """The orbits of a potential of length 1; those of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
     for channel in potential.open_channels(energy):
         image = int(potential.mirror_channels[channel]) if potential.mirror_in_x else channel
-        found[channel] = _mirrored(found[image], channel) if image in found else _find(potential, energy, channel, named)
+        found[channel] = _mirrored(found[image], channel) if image in found else _find_orbit(potential, energy, channel)
         if image == channel and potential.mirror_in_x:
-            found[channel] = _symmetrised(found[channel])
+            found[channel] = _symmetrized(found[channel])
     return tuple(found.values())
 
 
-def _enlarged(orbit: LyapunovOrbit, length: float) -> LyapunovOrbit:
-    """An orbit found in units of `length`, a power of 2, in the units of its potential: no digit changes."""
+def _rescaled(orbit: LyapunovOrbit, length: float) -> LyapunovOrbit:
+    """An orbit in units of `length`, a power of 2, converted to the units of its potential without rounding."""
     curve = orbit.curve * length
     directions = slice(events.OUTWARD_X, events.BEARING_Y + 1)
     curve[directions] = orbit.curve[directions]
-    arrays = (orbit.x * length, orbit.y * length, curve)
-    for array in arrays:
-        array.flags.writeable = False
-    return LyapunovOrbit(orbit.channel, orbit.energy * length**2, orbit.period, *arrays)
+    return LyapunovOrbit(orbit.channel, orbit.energy * length**2, orbit.period, orbit.x * length, orbit.y * length, curve)
 
 
-def _check_apart(potential: Potential, energy: float, orbits: tuple[LyapunovOrbit, ...]) -> None:
-    """Every exit must lie in the directions in which its saddle is the nearest: by that rule a point is said to be outside."""
-    towards = potential.saddles / np.hypot(*potential.saddles.T)[:, None] if orbits else potential.saddles
+def _check_exits_apart(potential: Potential, orbits: tuple[LyapunovOrbit, ...]) -> None:
+    """Each exit must lie where its own saddle is the nearest in direction, as the test for outside points assumes."""
+    if not orbits:
+        return
+    directions = potential.saddles / np.hypot(*potential.saddles.T)[:, None]
     for orbit in orbits:
-        nearest = np.argmax(orbit.half_path @ towards.T, axis=1) + 1
+        nearest = np.argmax(orbit.half_path @ directions.T, axis=1) + 1
         if np.any(nearest != orbit.channel):
             other = int(nearest[nearest != orbit.channel][0])
-            meet = f"the exits of channels {orbit.channel} and {other} meet"
-            raise ValueError(f"energy={energy}: too high for potential {potential.name}: {meet}")
+            raise _SearchError(f"too high, the exits of channels {orbit.channel} and {other} meet")
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
-    """The image under x → −x, exact to the bit, so that mirror images of orbits escape at the very same time."""
-    arrays = (-orbit.x, orbit.y.copy(), _mirrored_curve(orbit.curve))
-    for array in arrays:
-        array.flags.writeable = False
-    return LyapunovOrbit(channel, orbit.energy, orbit.period, *arrays)
+    """The exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
+    return LyapunovOrbit(channel, orbit.energy, orbit.period, -orbit.x, orbit.y, _mirrored_curve(orbit.curve))
 
 
 def _mirrored_curve(curve: np.ndarray) -> np.ndarray:
-    """An exit curve in the axes of the mirrored saddle, where u is the same and q has the other sign."""
+    """An exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
     image = curve.copy()
     image[[events.SADDLE_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
     image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
@@ -160,83 +168,68 @@ def _mirrored_curve(curve: np.ndarray) -> np.ndarray:
     return image
 
 
-def _symmetrised(orbit: LyapunovOrbit) -> LyapunovOrbit:
-    """An orbit that is its own mirror image, made so to the bit."""
-    curve = 0.5 * (orbit.curve + _mirrored_curve(orbit.curve))
-    curve.flags.writeable = False
-    return replace(orbit, curve=curve)
+def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
+    """An orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
+    return replace(orbit, curve=0.5 * (orbit.curve + _mirrored_curve(orbit.curve)))
 
 
-@functools.cache
-def channel_axes(potential: Potential, channel: int) -> np.ndarray:
-    """Unit vector along the unstable direction of a channel's saddle, pointing away from the well."""
-    return potential.outward_direction(channel)
-
-
-def _find(potential: Potential, energy: float, channel: int, named: float) -> LyapunovOrbit:
+def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
     kernels = kernels_of(potential)
-    saddle = potential.saddles[channel - 1]
-    outward = channel_axes(potential, channel)
-    scale = float(np.hypot(*saddle))
+    saddle, outward = potential.saddles[channel - 1], potential.outward_directions[channel - 1]
+    distance = float(np.hypot(*saddle))
     steps = np.empty((_MOST_STEPS, 5))
-    frame = (*saddle, *outward, energy, _REACH * scale, TOLERANCE, steps)
+    arguments = (*saddle, *outward, energy, _LARGEST_EXCURSION * distance, TOLERANCE, steps)
 
-    def drift(u: float) -> float:
-        return float(kernels.swing(u, *frame)[0])
+    def outward_velocity(u: float) -> float:
+        """The velocity along the channel at the turning point, after a start at rest at offset u from the saddle."""
+        return float(kernels.swing(u, *arguments)[0])
 
-    bracket = _bracket(drift, scale)
+    bracket = _find_bracket(outward_velocity, distance)
     if bracket is None:
-        raise ValueError(f"energy={named}: no Lyapunov orbit found across channel {channel} of potential {potential.name}")
-    u = optimize.brentq(drift, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
-    _, half_period, count = kernels.swing(u, *frame)
+        raise _SearchError(f"no Lyapunov orbit found across channel {channel}")
+    u = optimize.brentq(outward_velocity, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
+    _, half_period, count = kernels.swing(u, *arguments)
     if not np.isfinite(half_period):
-        raise ValueError(f"energy={named}: the Lyapunov orbit of channel {channel} of {potential.name} does not turn back")
-    x, y = _dense_path(kernels, steps[:count], half_period)
-    curve = _exit_curve(saddle, outward, x, y)
+        raise _SearchError(f"the Lyapunov orbit of channel {channel} does not turn back")
+    x, y = _sample_path(kernels, steps[:count], half_period)
+    curve = _fit_exit_curve(saddle, outward, x, y)
     if curve is None:
-        raise ValueError(
-            f"energy={named}: too high for potential {potential.name}: across channel {channel} the Lyapunov orbit is no "
-            f"longer a smooth graph, so the exit is not defined by it"
-        )
-    whole = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
-    arrays = (x[whole], y[whole], curve)
-    for array in arrays:
-        array.flags.writeable = False
-    return LyapunovOrbit(channel, energy, 2.0 * half_period, *arrays)
+        raise _SearchError(f"too high, across channel {channel} the Lyapunov orbit is not a smooth graph and defines no exit")
+    there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
+    return LyapunovOrbit(channel, energy, 2.0 * half_period, x[there_and_back], y[there_and_back], curve)
 
 
-def _bracket(drift: object, scale: float) -> tuple[float, float] | None:
-    """Two neighbouring starts, the inner of which falls inward and the outer outward; strides grow from the saddle on."""
-    assert callable(drift)
-    here, stride = 0.0, _FIRST_STRIDE * scale
-    first = drift(here)
+def _find_bracket(outward_velocity: Callable[[float], float], distance: float) -> tuple[float, float] | None:
+    """An inner start that moves inward and an outer one that moves outward, searched from the saddle with growing strides."""
+    here, stride = 0.0, _FIRST_STRIDE * distance
+    first = outward_velocity(here)
     if np.isnan(first):
         return None
     inward = first < 0
-    while abs(here) < _FURTHEST * scale:
+    while abs(here) < _LARGEST_OFFSET * distance:
         there = here + stride if inward else here - stride
-        value = drift(there)
-        if np.isnan(value):
+        velocity = outward_velocity(there)
+        if np.isnan(velocity):
             return None
-        if (value < 0) != inward:
+        if (velocity < 0) != inward:
             return (here, there) if inward else (there, here)
         here, stride = there, 1.5 * stride
     return None
 
 
-def _dense_path(kernels: ModuleType, steps: np.ndarray, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """x, y at evenly spaced times from 0 to `duration`."""
+def _sample_path(kernels: ModuleType, steps: np.ndarray, duration: float) -> tuple[np.ndarray, np.ndarray]:
+    """x and y (101,) at evenly spaced times from 0 to `duration`, from the Taylor series of the steps (x, y, px, py, t)."""
     x_jet, y_jet = np.empty((2, ORDER + 1, len(steps)))
     kernels.jets(len(steps), *(np.ascontiguousarray(column) for column in steps[:, :4].T), x_jet, y_jet)
-    times = np.linspace(0.0, duration, _SAMPLES_PER_SWING + 1)
+    times = np.linspace(0.0, duration, _SAMPLES_PER_HALF_PERIOD + 1)
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     tau = times - steps[row, 4]
     powers = tau ** np.arange(ORDER + 1)[:, None]
     return (x_jet[:, row] * powers).sum(axis=0), (y_jet[:, row] * powers).sum(axis=0)
 
 
-def _exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray | None:
-    """The path as u = f(s); None when it is not a graph over s or not smooth enough for the fit."""
+def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray | None:
+    """The path as a graph u = f(s), s ∈ [−1, 1]; None if it is not a graph or not smooth enough for the fit."""
     u = outward[0] * (x - saddle[0]) + outward[1] * (y - saddle[1])
     q = outward[0] * (y - saddle[1]) - outward[1] * (x - saddle[0])
     middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
@@ -245,49 +238,55 @@ def _exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: np.nd
         return None
     basis = chebyshev.chebvander(s, events.CURVE_DEGREE)
     fit = np.linalg.lstsq(basis, u, rcond=None)[0]
-    if np.max(np.abs(basis @ fit - u)) > _LARGEST_MISFIT:
+    if np.max(np.abs(basis @ fit - u)) > _LARGEST_FIT_ERROR:
         return None
-    power = _CHEBYSHEV_TO_POWER @ fit
+    coefficients = _CHEBYSHEV_TO_POWER @ fit
     degrees = np.arange(events.CURVE_DEGREE + 1)
-    slopes = [float(np.sum(power * degrees * side ** (degrees - 1))) for side in (-1.0, 1.0)]
-    curve = np.empty(events.CURVE_COLUMNS)
-    curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
-    curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *slopes
-    curve[events.COEFFICIENTS :] = power
+    end_slopes = [float(np.sum(coefficients * degrees * end ** (degrees - 1))) for end in (-1.0, 1.0)]
+    curve = _straight_curve(saddle, outward)
+    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
+    curve[events.COEFFICIENTS :] = coefficients
     return curve
 
 
-def closed_curves(potential: Potential) -> np.ndarray:
-    """(channels, columns) curves of channels that are all closed: straight across their saddles.
+def _straight_curve(saddle: np.ndarray, outward: np.ndarray) -> np.ndarray:
+    """(columns,) the curve f = 0: a straight line across the saddle."""
+    curve = np.zeros(events.CURVE_COLUMNS)
+    curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
+    curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
+    curve[events.HALF_WIDTH] = 1.0
+    return curve
 
-    No orbit of lower energy than the saddle gets there from inside; what such an energy allows beyond is outside.
+
+def closed_channel_curves(potential: Potential) -> np.ndarray:
+    """(channels, columns) exit curves for closed channels: straight lines across the saddles.
+
+    No orbit with an energy below the saddle reaches such a line from inside; starts beyond it are outside.
     """
-    curves = np.zeros((potential.channels, events.CURVE_COLUMNS))
-    for k, saddle in enumerate(potential.saddles):
-        curves[k, events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *channel_axes(potential, k + 1)
-        curves[k, events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curves[:, events.HALF_WIDTH] = 1.0
-    return curves
+    rows = [_straight_curve(*row) for row in zip(potential.saddles, potential.outward_directions, strict=True)]
+    return np.array(rows).reshape(potential.channels, events.CURVE_COLUMNS)
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
     """(channels, columns) exit curves at one energy, for the kernels."""
-    curves = closed_curves(potential)
+    curves = closed_channel_curves(potential)
     for orbit in find_lyapunov_orbits(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
     return curves
 
 
-def find_outside_exits(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """int8, shaped like x and y: the channel beyond whose Lyapunov orbit each point lies, 0 inside."""
+def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """int8, shaped like x and y: the channel beyond whose Lyapunov orbit each point lies, 0 if it lies inside."""
     row = np.zeros(x.size, np.int64)
     outside: np.ndarray = events.find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row)
     return outside.reshape(x.shape)
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """(channels, 3) lines a x + b y = c across each channel, a little inside every exit curve of (…, channels, columns)."""
+    """(channels, 3) lines a x + b y = c across the channels, slightly inside all exit curves (…, channels, columns).
+
+    The kernels use them as a cheap test: only an orbit beyond a gate can have escaped.
+    """
     channels, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), channels, columns)
     s = np.linspace(-1.0, 1.0, 201)

@@ -1,4 +1,4 @@
-"""Planes of initial conditions: what a point of a picture starts as, and where nothing can start.
+"""Planes of initial conditions: the start for each point of a plane, forbidden regions, and default windows.
 
 | plane   | start                                | ordinate |
 |---------|--------------------------------------|----------|
@@ -17,22 +17,23 @@ from typing import Never
 import contourpy
 import numpy as np
 
-from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits, find_outside_exits
+from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits, find_outside_channels
 from engine.potentials.potential import Potential
-from engine.validation import read_number, shown
+from engine.validation import checked_number, short_repr
 
-# The default window leaves this share of its side free around what it shows.
+# Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
-_SCAN = 801
-# How far from the origin the interior is looked for: in units of the potential's length, and of its furthest exit.
-_FURTHEST = 4.0
-_BEYOND_EXITS = 2.0
+_SCAN_POINTS = 801
+# The interior is searched up to this distance from the origin: in units of the potential's length, and of the distance of the
+# outermost exit saddle.
+_SEARCH_LENGTHS = 4.0
+_SEARCH_SADDLE_DISTANCES = 2.0
 _RAYS = 180
 _CONTOUR_SAMPLES = 201
 
 
 class Plane(Enum):
-    """A plane of initial conditions; the value is its name on paper."""
+    """A plane of initial conditions; the value is its name in texts."""
 
     X_Y = "(x, y)"
     X_PX = "(x, px)"
@@ -45,14 +46,14 @@ class Plane(Enum):
 
     @classmethod
     def _missing_(cls, value: object) -> Never:
-        raise ValueError(f"plane={shown(value)}: must be one of {', '.join(plane.value for plane in cls)}")
+        raise ValueError(f"plane={short_repr(value)}: must be one of {', '.join(plane.value for plane in cls)}")
 
 
 @dataclass(frozen=True)
 class Window:
-    """A rectangle of a plane, edges included, dimensionless.
+    """A rectangle of a plane, including its edges, dimensionless.
 
-    Raises ValueError when an edge is not finite or beyond ±1e9, or a side is empty or reversed.
+    Raises ValueError if an edge is not finite or beyond ±1e9, or a lower edge is not below the upper edge.
     """
 
     x_low: float
@@ -65,16 +66,16 @@ class Window:
             ("x", self.x_low, self.x_high),
             ("ordinate", self.ordinate_low, self.ordinate_high),
         ):
-            edges = [read_number(f"window {name} edge", edge) for edge in (low, high)]
+            edges = [checked_number(f"window {name} edge", edge) for edge in (low, high)]
             if not edges[0] < edges[1]:
-                raise ValueError(f"window {name} range {low} … {high}: needs two finite numbers, the lower one first")
+                raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
-        """x (columns,) and ordinate (rows,) of the pixel centres; exactly symmetric in a symmetric window."""
-        return _centres(self.x_low, self.x_high, columns), _centres(self.ordinate_low, self.ordinate_high, rows)
+        """x (columns,) and ordinate (rows,) of the pixel centres; they are exactly symmetric if the window is."""
+        return _interval_centres(self.x_low, self.x_high, columns), _interval_centres(self.ordinate_low, self.ordinate_high, rows)
 
 
-def _centres(low: float, high: float, count: int) -> np.ndarray:
+def _interval_centres(low: float, high: float, count: int) -> np.ndarray:
     offsets = (2 * np.arange(count) + 1 - count) / (2 * count)
     return 0.5 * (low + high) + (high - low) * offsets
 
@@ -82,59 +83,90 @@ def _centres(low: float, high: float, count: int) -> np.ndarray:
 def start_states(
     potential: Potential, plane: Plane, energy: float | np.ndarray, x: np.ndarray, ordinate: np.ndarray
 ) -> np.ndarray:
-    """(n, 4) states x, y, px, py of starts (x, ordinate) on a plane; py is NaN where the start is forbidden.
+    """The initial conditions of points of a plane.
 
-    `energy` is h, or for (x, h) ignored: there the ordinate is the energy.
+    Parameters
+    ----------
+    potential
+        The potential.
+    plane
+        The plane of initial conditions.
+    energy
+        h, a number or (n,); ignored for (x, h), where the ordinate is the energy.
+    x, ordinate
+        (n,) coordinates on the plane.
+
+    Returns
+    -------
+    (n, 4) x, y, px, py; py is NaN where the start is forbidden.
     """
     zero = np.zeros_like(x)
     y, px = (ordinate, zero) if plane is Plane.X_Y else (zero, ordinate if plane is Plane.X_PX else zero)
     h = ordinate if plane is Plane.X_H else energy
     with np.errstate(over="ignore", invalid="ignore"):
-        # Far enough away, and at no energy, nothing starts.
+        # An overflow far from the origin gives a forbidden start.
         doubled = 2.0 * (h - potential.value(x, y)) - px * px
     return np.column_stack([x, y, px, np.sqrt(np.where(doubled >= 0, doubled, np.nan))])
 
 
 def find_mirror_images(potential: Potential, plane: Plane, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray | None:
-    """For each pixel the one whose orbit is the exact image of its own under x → −x.
+    """For each pixel, the pixel whose orbit is its exact mirror image under x → −x.
 
     Parameters
     ----------
+    potential
+        The potential.
+    plane
+        The plane of initial conditions.
     x, ordinate
         (columns,), (rows,) pixel centres.
 
     Returns
     -------
-    (rows · columns,) pixel numbers, row by row; None where the potential, or the grid to the bit, has no such symmetry.
+    (rows · columns,) pixel indices in row-major order; None if the potential or the grid is not exactly symmetric.
     """
-    turned = plane is Plane.X_PX
-    exact = np.array_equal(x, -x[::-1]) and (not turned or np.array_equal(ordinate, -ordinate[::-1]))
-    if not (potential.mirror_in_x and exact):
+    # On (x, px) the sign of px changes as well.
+    flips_ordinate = plane is Plane.X_PX
+    symmetric = np.array_equal(x, -x[::-1]) and (not flips_ordinate or np.array_equal(ordinate, -ordinate[::-1]))
+    if not (potential.mirror_in_x and symmetric):
         return None
-    numbers = np.arange(x.size * ordinate.size).reshape(ordinate.size, x.size)
-    return (numbers[::-1, ::-1] if turned else numbers[:, ::-1]).ravel()
+    pixels = np.arange(x.size * ordinate.size).reshape(ordinate.size, x.size)
+    return (pixels[::-1, ::-1] if flips_ordinate else pixels[:, ::-1]).ravel()
 
 
 def required_energy(potential: Potential, plane: Plane, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-    """The lowest energy at which a start exists; for (x, h), V(x, 0) − h, which is positive where it does not."""
+    """The lowest energy at which a start exists; for (x, h), V(x, 0) − h, which is positive where the start is forbidden."""
     y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
     kinetic = {Plane.X_Y: 0.0, Plane.X_PX: 0.5 * ordinate**2, Plane.X_H: -ordinate}[plane]
-    needed: np.ndarray = kinetic + potential.value(x, y)
-    return needed
+    required: np.ndarray = kinetic + potential.value(x, y)
+    return required
 
 
 def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float, window: Window) -> list[np.ndarray]:
-    """The limiting curve of a plane inside a window, as (n, 2) pieces: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
+    """The boundary of the forbidden region of a plane: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
 
-    For (x, h) `energy` is ignored.
+    Parameters
+    ----------
+    potential
+        The potential.
+    plane
+        The plane of initial conditions.
+    energy
+        h, dimensionless; ignored for (x, h).
+    window
+        The part of the plane to trace.
+
+    Returns
+    -------
+    The pieces of the curve, each (n, 2).
     """
     level = 0.0 if plane is Plane.X_H else energy
     return trace_equipotentials(potential, plane, (level,), window)[0]
 
 
 def trace_equipotentials(potential: Potential, plane: Plane, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
-    """The limiting curves that several energies would have on (x, y) or (x, px): for each its (n, 2) pieces."""
-    levels = [read_number("energies", energy) for energy in energies]
+    """The zero-velocity curves of several energies on (x, y) or (x, px): a list of (n, 2) pieces for each energy."""
+    levels = [checked_number("energies", energy) for energy in energies]
     x, ordinate = (
         np.linspace(low, high, _CONTOUR_SAMPLES)
         for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
@@ -144,39 +176,55 @@ def trace_equipotentials(potential: Potential, plane: Plane, energies: Sequence[
 
 
 def default_window(potential: Potential, plane: Plane, energy: float | tuple[float, float]) -> Window:
-    """The window that shows the whole interior: all starts that exist and are not outside.
+    """A window that shows the whole interior: all starts that are neither forbidden nor outside.
 
-    For (x, y) and (x, px) it is a square; for (x, h) `energy` is the pair of lowest and highest h.
+    Parameters
+    ----------
+    potential
+        The potential.
+    plane
+        The plane of initial conditions.
+    energy
+        h, dimensionless; for (x, h) the pair (lowest, highest).
+
+    Returns
+    -------
+    The window; for (x, y) and (x, px) it is a square.
+
+    Raises
+    ------
+    ValueError
+        If an energy is out of range, or there is no interior at this energy.
     """
-    highest = _highest_energy(energy)
+    highest = _checked_highest_energy(energy)
     if Plane(plane) is Plane.X_Y:
-        return _square(*_interior_extent(potential, highest))
+        return _square_window(*_interior_box(potential, highest))
     x_low, x_high = _interior_interval(potential, highest)
     if isinstance(energy, tuple):
         margin = _MARGIN * (x_high - x_low)
         return Window(x_low - margin, x_high + margin, *energy)
-    x = np.linspace(x_low, x_high, _SCAN)
+    x = np.linspace(x_low, x_high, _SCAN_POINTS)
     px = np.sqrt(2.0 * max(highest - np.min(potential.value(x, np.zeros_like(x))), 0.0))
-    return _square(x_low, x_high, -float(px), float(px))
+    return _square_window(x_low, x_high, -float(px), float(px))
 
 
-def _highest_energy(energy: float | tuple[float, float]) -> float:
+def _checked_highest_energy(energy: float | tuple[float, float]) -> float:
     if not isinstance(energy, tuple):
-        return read_number("energy", energy)
-    ends = [read_number("energy", one) for one in energy]
-    if len(ends) != 2 or not ends[0] < ends[1]:
-        raise ValueError(f"energy={shown(energy)}: must be one finite number, or on (x, h) a pair (low, high)")
-    return ends[1]
+        return checked_number("energy", energy)
+    energies = [checked_number("energy", one) for one in energy]
+    if len(energies) != 2 or not energies[0] < energies[1]:
+        raise ValueError(f"energy={short_repr(energy)}: must be one finite number, or on (x, h) a pair (low, high)")
+    return energies[1]
 
 
-def _square(x_low: float, x_high: float, low: float, high: float) -> Window:
+def _square_window(x_low: float, x_high: float, low: float, high: float) -> Window:
     half = 0.5 * max(x_high - x_low, high - low) * (1.0 + 2.0 * _MARGIN)
     x, ordinate = 0.5 * (x_low + x_high), 0.5 * (low + high)
     return Window(x - half, x + half, ordinate - half, ordinate + half)
 
 
-def _connected_run(allowed: np.ndarray) -> slice:
-    """The run of True around the middle of a scan."""
+def _run_around_middle(allowed: np.ndarray) -> slice:
+    """The run of True values around the middle of an array."""
     middle = allowed.size // 2
     blocked = np.flatnonzero(~allowed)
     low = blocked[blocked < middle].max(initial=-1) + 1
@@ -185,27 +233,28 @@ def _connected_run(allowed: np.ndarray) -> slice:
 
 
 def _interior_interval(potential: Potential, energy: float) -> tuple[float, float]:
-    """The x between which the axis y = 0 lies in the interior, to about a thousandth."""
-    furthest = _furthest(potential)
-    x = np.linspace(-furthest, furthest, 4 * _SCAN)
+    """The range of x of the interior on the axis y = 0, with a resolution of about a thousandth."""
+    radius = _search_radius(potential)
+    x = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     zero = np.zeros_like(x)
-    outside = find_outside_exits(potential, energy, x, zero)
-    run = _connected_run((potential.value(x, zero) <= energy) & (outside == 0))
-    _check_interior(energy, x[run])
-    return _rounded(x[run][0], potential), _rounded(x[run][-1], potential)
+    outside = find_outside_channels(potential, energy, x, zero)
+    interior = x[_run_around_middle((potential.value(x, zero) <= energy) & (outside == 0))]
+    _check_interior(energy, interior)
+    return _rounded(interior[0], potential), _rounded(interior[-1], potential)
 
 
-def _furthest(potential: Potential) -> float:
-    """No point of the interior is further from the origin than this, unless the energy is many times the escape energy."""
-    return max(_FURTHEST * potential.length, _BEYOND_EXITS * float(np.hypot(*potential.saddles.T).max(initial=0.0)))
+def _search_radius(potential: Potential) -> float:
+    """A radius that contains the interior, unless the energy is many times the escape energy."""
+    outermost = float(np.hypot(*potential.saddles.T).max(initial=0.0))
+    return max(_SEARCH_LENGTHS * potential.length, _SEARCH_SADDLE_DISTANCES * outermost)
 
 
-def _interior_extent(potential: Potential, energy: float) -> tuple[float, float, float, float]:
-    """The box around the interior of the (x, y) plane: rays from the well's bottom to its walls, and the exits."""
+def _interior_box(potential: Potential, energy: float) -> tuple[float, float, float, float]:
+    """The bounding box of the interior of the (x, y) plane, from rays that start at the origin and from the exits."""
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
-    radius = np.linspace(0.0, _furthest(potential), _SCAN // 2)
+    radius = np.linspace(0.0, _search_radius(potential), _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
-    outside = find_outside_exits(potential, energy, x, y)
+    outside = find_outside_channels(potential, energy, x, y)
     inside = np.logical_and.accumulate((potential.value(x, y) <= energy) & (outside == 0), axis=1)
     x, y = x[inside], y[inside]
     _check_interior(energy, x)
@@ -216,11 +265,11 @@ def _interior_extent(potential: Potential, energy: float) -> tuple[float, float,
 
 
 def _check_interior(energy: float, x: np.ndarray) -> None:
-    """ValueError unless the interior reaches over more than one x."""
+    """Raise ValueError unless the interior has more than one x."""
     if x.size == 0 or not x.min() < x.max():
-        raise ValueError(f"energy={energy}: there is no interior to show; must be above that of the well's bottom by 1e-5 or so")
+        raise ValueError(f"energy={energy}: the interior is empty; must be at least about 1e-5 above the minimum of the well")
 
 
 def _rounded(edge: float, potential: Potential) -> float:
-    """To twelve decimals of the potential's length, so that the window of a symmetric interior is symmetric to the bit."""
+    """Round to 12 decimals in units of the potential's length, so that the window of a symmetric interior is symmetric."""
     return round(float(edge) / potential.length, 12) * potential.length

@@ -1,4 +1,4 @@
-"""Points of orbits on the surface of section y = 0, py > 0, by fixed-step integration."""
+"""Crossings of the surface of section y = 0, py > 0, by fixed-step integration."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from concurrent.futures import Executor
 import numpy as np
 
 from engine.dynamics.compiled import fixed_step_size, kernels_of
-from engine.dynamics.fixed_step_batches import glide
+from engine.dynamics.fixed_step_batches import map_tiles
 from engine.potentials.potential import Potential
 
 
@@ -21,9 +21,9 @@ def find_section_points(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> np.ndarray:
-    """The first `count` upward crossings of y = 0 of each orbit, the start not counted.
+    """The first `count` upward crossings of y = 0 of each orbit, not counting the start.
 
-    Exits are not seen: the points of an orbit that leaves end, or turn to nonsense far outside, where it does.
+    Exits are not detected: after an orbit has escaped, its points are missing or meaningless.
 
     Parameters
     ----------
@@ -32,22 +32,22 @@ def find_section_points(
     states
         (n, 4) x, y, px, py, finite.
     count
-        How many points to look for, 1 or more.
+        Largest number of points per orbit, at least 1.
     duration
-        For how long, dimensionless.
+        Integration time, dimensionless.
     executor
         Any `concurrent.futures.Executor`; None for the pool of this process.
     cancel
-        When set, points not yet found stay NaN.
+        When set, the points of orbits not yet computed stay NaN.
 
     Returns
     -------
-    (n, count, 2) x and px; NaN where fewer were found.
+    (n, count, 2) x and px; NaN for points that were not found.
     """
-    return glide(_pierce, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
+    return map_tiles(_find_section_points, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
 
 
-def _pierce(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
+def _find_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
     points = np.full((tile.shape[1], count, 2), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))

@@ -1,4 +1,4 @@
-"""Early certificates for the orbits of a map that have not left: quasi-periodic ones, and what their invariant curves enclose."""
+"""Early certificates that orbits of a map are bounded: quasi-periodic orbits, and orbits enclosed by their invariant curves."""
 
 from __future__ import annotations
 
@@ -12,45 +12,53 @@ import numpy as np
 from engine.dynamics.batch import LANES
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.section_points import find_section_points
+from engine.execution import is_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.invariant_sets.exit_entry_points import find_entry_points
 from engine.invariant_sets.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.potentials.potential import Potential
 
 SHORTEST_T_MAX = 1e4
-"""Below this t_max, following all orbits costs no more than certifying them."""
+"""Smallest t_max for which certificates cost less than integrating all orbits."""
 
-# To how many digits an orbit's averages over the window before must have agreed to make the next one worth trying.
-_PROMISING = 3.5
-# A window is tried on every promising orbit when it takes less than this share of the time still to be covered; a longer one only
-# on the few most promising, for the sake of what their curves enclose, and only when that costs less than this share of all work.
-_SHARE_OF_TIME, _SHARE_OF_WORK = 0.4, 0.1
-_MOST_SEEDS = 2 * LANES
-_STRIDES = (16, 8, 4, 2, 1)
-# Section points of an orbit whose invariant curve is sought, for how long, and of how many such orbits a round.
+# An orbit is tested with the next window if its averages over the previous one agreed to at least this many digits.
+_PROMISING_DIGITS = 3.5
+# All promising orbits are tested with a window if that takes less than this share of the remaining time. A longer window is used
+# only on the few most promising orbits, for the curves they give, and only if that costs less than this share of the work left.
+_MAX_TIME_SHARE, _MAX_WORK_SHARE = 0.4, 0.1
+_MAX_SEEDS = 2 * LANES
+_LATTICE_STRIDES = (16, 8, 4, 2, 1)
+# Section points per orbit and the time to collect them; orbits per round for which an invariant curve is computed.
 _CURVE_POINTS = 800
 _CURVE_TIME = 8000.0
-_CURVES_A_ROUND = 192
+_MAX_CURVES_PER_ROUND = 192
 _FIRST_POINT_TIME = 30.0
 
 
 class BoundednessCertifier:
-    """The certifying of the open orbits of one map, all of one energy or (on the (x, h) plane) of many.
+    """Certifies undecided orbits of one map, all of one energy or, on the (x, h) plane, of several.
 
     Parameters
     ----------
     potential
         The `Potential`.
     energy
-        The common energy; None when orbits differ in it, and no curve of one is a wall for another.
+        The common energy; None when the energies differ, as the invariant curves of one orbit then do not bound another.
     states
-        (n, 4) the orbits now, all finite.
-    place
-        (n, 2) row and column of each.
+        (n, 4) current states x, y, px, py, finite.
+    grid_indices
+        (n, 2) row and column of each orbit's pixel.
     time_left
-        How long each orbit would have to be followed otherwise: what a certificate saves.
-    executor, cancel
-        As everywhere.
+        Time each orbit would otherwise be integrated, dimensionless; the cost that a certificate saves.
+    executor
+        Any `concurrent.futures.Executor`; None for the default pool of this process.
+    cancel
+        When set, the work stops within about 0.1 s.
+
+    Attributes
+    ----------
+    certificate
+        (n,) int8 `Certificate` codes found so far.
     """
 
     def __init__(
@@ -58,101 +66,106 @@ class BoundednessCertifier:
         potential: Potential,
         energy: float | None,
         states: np.ndarray,
-        place: np.ndarray,
+        grid_indices: np.ndarray,
         time_left: float,
         executor: Executor | None = None,
         cancel: threading.Event | None = None,
     ) -> None:
-        self.potential, self.states, self.place = potential, states, place
-        self._pool: dict[str, Any] = {"executor": executor, "cancel": cancel}
+        self.potential, self.states, self.grid_indices = potential, states, grid_indices
         self._cancel, self._time_left = cancel, time_left
+        self._execution: dict[str, Any] = {"executor": executor, "cancel": cancel}
         self.certificate = np.zeros(len(states), np.int8)
         self._digits = np.full(len(states), np.inf)
-        self._entries = () if energy is None else find_entry_points(potential, energy)
-        self._walls_help = bool(self._entries) and all(map(len, self._entries))
-        if self._walls_help:
-            self._points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, **self._pool)[:, 0]
-            self._parted = np.zeros((len(states), len(self._entries)), bool)
+        self._entry_points = () if energy is None else find_entry_points(potential, energy)
+        self._use_curves = bool(self._entry_points) and all(map(len, self._entry_points))
+        if self._use_curves:
+            self._points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, **self._execution)[:, 0]
+            self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
     def run(self, on_round: Callable[[], None]) -> None:
-        """Certify what can be; `on_round` is called whenever some more may have been."""
-        for window, chosen in self._rounds():
-            if self._is_cancelled():
+        """Certify as many orbits as possible; `on_round` is called after each round of tests."""
+        for window, tested in self._rounds():
+            if is_cancelled(self._cancel):
                 return
-            self._digits[chosen] = count_agreeing_digits(self.potential, self.states[chosen], window, **self._pool)
-            certified = chosen[self._digits[chosen] >= CERTIFIED_DIGITS]
+            self._digits[tested] = count_agreeing_digits(self.potential, self.states[tested], window, **self._execution)
+            certified = tested[self._digits[tested] >= CERTIFIED_DIGITS]
             self.certificate[certified] = Certificate.QUASI_PERIODIC
-            if self._walls_help:
-                self._build_walls(certified)
+            if self._use_curves:
+                self._certify_enclosed(certified)
             on_round()
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
-        """(window, orbits) of each round; what a round certifies is taken into account in the next."""
+        """(window, orbits) of each round; orbits certified in one round are left out of the next."""
         for window in WINDOWS:
-            promising = self._digits >= _PROMISING
-            if 2.0 * window <= _SHARE_OF_TIME * self._time_left:
-                yield from ((window, chosen) for chosen in self._lattices(promising))
-            elif self._walls_help:
-                yield from ((window, chosen) for chosen in self._seeds(promising, 2.0 * window))
+            promising = self._digits >= _PROMISING_DIGITS
+            duration = 2.0 * window
+            if duration <= _MAX_TIME_SHARE * self._time_left:
+                yield from ((window, tested) for tested in self._lattices(promising))
+            elif self._use_curves:
+                yield from ((window, tested) for tested in self._most_promising(promising, duration))
 
     def _lattices(self, candidates: np.ndarray) -> Iterator[np.ndarray]:
-        """All candidates, a coarse lattice first, so that the curves of few can enclose many."""
-        for stride in _STRIDES:
-            chosen = np.flatnonzero(self._open() & candidates & np.all(self.place % stride == stride // 2, axis=1))
-            if chosen.size:
-                yield chosen
+        """All candidates, pixels of a coarse lattice first, as the curves of a few orbits can enclose many others."""
+        for stride in _LATTICE_STRIDES:
+            on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
+            tested = np.flatnonzero(self._uncertified() & candidates & on_lattice)
+            if tested.size:
+                yield tested
 
-    def _seeds(self, candidates: np.ndarray, duration: float) -> Iterator[np.ndarray]:
-        """The most promising candidates, again and again while that saves more than it costs."""
+    def _most_promising(self, candidates: np.ndarray, duration: float) -> Iterator[np.ndarray]:
+        """Small groups of candidates with the most digits, until a group costs more than it saves."""
         candidates = candidates.copy()
         while True:
-            before = np.count_nonzero(self._open())
-            affordable = int(_SHARE_OF_WORK * before * self._time_left / duration) // LANES * LANES
-            waiting = np.flatnonzero(self._open() & candidates)
-            best_first = waiting[np.argsort(-self._digits[waiting], kind="stable")]
-            chosen = best_first[: min(affordable, _MOST_SEEDS)]
-            if not chosen.size:
+            before = np.count_nonzero(self._uncertified())
+            affordable = int(_MAX_WORK_SHARE * before * self._time_left / duration) // LANES * LANES
+            remaining = np.flatnonzero(self._uncertified() & candidates)
+            best_first = remaining[np.argsort(-self._digits[remaining], kind="stable")]
+            tested = best_first[: min(affordable, _MAX_SEEDS)]
+            if not tested.size:
                 return
-            candidates[chosen] = False
-            yield chosen
-            saved = before - np.count_nonzero(self._open())
-            if saved * self._time_left < chosen.size * duration:
+            candidates[tested] = False
+            yield tested
+            saved = before - np.count_nonzero(self._uncertified())
+            if saved * self._time_left < tested.size * duration:
                 return
 
-    def _is_cancelled(self) -> bool:
-        return self._cancel is not None and self._cancel.is_set()
+    def _uncertified(self) -> np.ndarray:
+        """(n,) bool: orbits without a certificate."""
+        uncertified: np.ndarray = self.certificate == Certificate.NONE
+        return uncertified
 
-    def _open(self) -> np.ndarray:
-        still_open: np.ndarray = self.certificate == Certificate.NONE
-        return still_open
-
-    def _build_walls(self, certified: np.ndarray) -> None:
-        certified = certified[:: -(-certified.size // _CURVES_A_ROUND) or 1]
-        points = find_section_points(self.potential, self.states[certified], _CURVE_POINTS, _CURVE_TIME, **self._pool)
-        curves = [None if self._is_cancelled() else find_invariant_curve(p[np.isfinite(p).all(axis=1)]) for p in points]
-        for number in _from_both_ends([0.0 if curve is None else curve.area for curve in curves]):
-            if self._is_cancelled():
+    def _certify_enclosed(self, certified: np.ndarray) -> None:
+        """Certify orbits enclosed by the invariant curves of some newly certified ones."""
+        certified = certified[:: -(-certified.size // _MAX_CURVES_PER_ROUND) or 1]
+        curves = self._find_curves(certified)
+        for number in _alternating_by_size([0.0 if curve is None else curve.area for curve in curves]):
+            if is_cancelled(self._cancel):
                 return
             curve = curves[number]
-            # Within walls already, a torus parts nothing more.
-            if curve is not None and not self._parted[certified[number]].all():
-                self._part(curve)
+            # The curve of an orbit that is enclosed already separates nothing more.
+            if curve is not None and not self._separated[certified[number]].all():
+                self._apply_curve(curve)
                 if self.potential.mirror_in_x:
-                    self._part(curve.mirrored())
+                    self._apply_curve(curve.mirrored())
 
-    def _part(self, wall: InvariantCurve) -> None:
-        """Note which open orbits a wall parts from which exits, and certify those parted from all."""
-        exits = [wall.find_side(points) for points in self._entries]
-        sides = np.array([side.min() if side.min() == side.max() else 0 for side in exits])
-        orbits = np.flatnonzero(~self._parted.all(axis=1) & np.isfinite(self._points).all(axis=1))
-        own = wall.find_side(self._points[orbits])
-        self._parted[orbits] |= own[:, None] * sides == -1
-        enclosed = self._parted.all(axis=1) & self._open()
+    def _find_curves(self, orbits: np.ndarray) -> list[InvariantCurve | None]:
+        """The invariant curve of each orbit, None where it has none or the work was cancelled."""
+        points = find_section_points(self.potential, self.states[orbits], _CURVE_POINTS, _CURVE_TIME, **self._execution)
+        return [None if is_cancelled(self._cancel) else find_invariant_curve(own[np.isfinite(own).all(axis=1)]) for own in points]
+
+    def _apply_curve(self, curve: InvariantCurve) -> None:
+        """Record which orbits a curve separates from which exits, and certify those separated from all exits."""
+        entry_sides = [curve.find_side(points) for points in self._entry_points]
+        exit_side = np.array([sides.min() if sides.min() == sides.max() else 0 for sides in entry_sides])
+        orbits = np.flatnonzero(~self._separated.all(axis=1) & np.isfinite(self._points).all(axis=1))
+        orbit_side = curve.find_side(self._points[orbits])
+        self._separated[orbits] |= orbit_side[:, None] * exit_side == -1
+        enclosed = self._separated.all(axis=1) & self._uncertified()
         self.certificate[enclosed] = Certificate.ENCLOSED
 
 
-def _from_both_ends(sizes: list[float]) -> Iterator[int]:
-    """Numbers by size: the largest, the smallest, the second largest, …; of nested curves the outer and inner ones come first."""
+def _alternating_by_size(sizes: list[float]) -> Iterator[int]:
+    """Indices of the largest, the smallest, the second largest, …: of nested curves the outermost and innermost come first."""
     order = np.argsort(sizes, kind="stable")[::-1]
     for k in range(order.size):
         yield int(order[k // 2] if k % 2 == 0 else order[-1 - k // 2])

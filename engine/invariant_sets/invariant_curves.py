@@ -1,7 +1,8 @@
-"""Closed invariant curves on the section y = 0, and what they part.
+"""Closed invariant curves on the section y = 0, and which side of them a point lies on.
 
-At one energy an orbit of two degrees of freedom cannot pass through an invariant torus. A quasi-periodic orbit pierces the
-section in a closed curve, or in a chain of them around the islands of a resonance; what is on one side stays there.
+In a system of two degrees of freedom, an orbit cannot cross an invariant torus of its own energy. A quasi-periodic orbit meets
+the section in one closed curve, or in a chain of closed curves around the islands of a resonance. An orbit that starts on one
+side stays on that side.
 """
 
 from __future__ import annotations
@@ -14,28 +15,28 @@ import numpy as np
 import shapely
 
 MOST_ISLANDS = 24
-"""Longest chain of islands that is looked for."""
+"""Largest number of islands in a chain that is searched for."""
 
-_FEWEST_POINTS = 40
-# How near to the polygon the curve is taken to be, in units of the height g θ/8 of an arc that turns by θ over a gap g between
-# points. Where gaps are even the polygon turns by θ at a point. Near a resonance p/q the points gather in q bunches with wide
-# gaps between them; at the edge of a bunch it turns by θ/2, the angle between the curve and the gap. So the curve is within a
-# quarter of the margin.
-_MARGIN = 8.0
-# Largest margin, in units of the square root of the enclosed area.
-_WIDEST = 0.1
+_MIN_POINTS_PER_LOOP = 40
+# Distance from the polygon within which the curve is assumed to lie, in units of the height g θ/8 of an arc that turns by θ over
+# a gap g between points. With even gaps the polygon turns by θ at each point. Near a resonance p/q the points form q bunches with
+# wide gaps between them, and at the edge of a bunch the polygon turns by θ/2, the angle between curve and gap. The curve thus
+# stays within a quarter of the margin.
+_MARGIN_FACTOR = 8.0
+# Largest margin accepted, relative to the square root of the enclosed area.
+_MAX_RELATIVE_MARGIN = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class InvariantCurve:
-    """All loops in which one torus pierces the section: a wall that no orbit of the same energy passes.
+    """The loops in which one invariant torus meets the section; no orbit of the same energy crosses them.
 
     Attributes
     ----------
     loops
-        A polygon for each loop, in the plane (x, px).
+        One polygon per loop, in the plane (x, px).
     margins
-        How near to its polygon each loop is known to be.
+        For each loop, the distance from its polygon within which the exact curve lies.
     """
 
     loops: tuple[shapely.Polygon, ...]
@@ -43,14 +44,23 @@ class InvariantCurve:
 
     @property
     def area(self) -> float:
-        """Enclosed by all loops together, dimensionless."""
+        """Area enclosed by all loops, dimensionless."""
         return float(sum(loop.area for loop in self.loops))
 
     def find_side(self, points: np.ndarray) -> np.ndarray:
-        """(n,) int8 side of the torus on which each of the (n, 2) points lies: −1 in a loop, 1 outside all, 0 too near to tell.
+        """Find on which side of the torus points of the section lie.
 
-        The torus cuts its energy surface in two. Stepping across a loop changes the part, and the flow carries the loops' insides
-        into each other: these are the one side, and all of the section outside the loops is the other.
+        The torus divides its energy surface into two parts. Crossing a loop changes the part, and the flow maps the interiors of
+        the loops onto each other. So the interiors form one side, and the section outside all loops forms the other.
+
+        Parameters
+        ----------
+        points
+            (n, 2) x and px, finite.
+
+        Returns
+        -------
+        (n,) int8: −1 inside a loop, 1 outside all loops, 0 within the margin of a loop.
         """
         side = np.ones(len(points), np.int8)
         for outer, inner in self._bounds:
@@ -61,7 +71,7 @@ class InvariantCurve:
 
     @cached_property
     def _bounds(self) -> list[tuple[shapely.Polygon, shapely.Polygon]]:
-        """What each loop certainly lies within, and what certainly lies within it."""
+        """For each loop, a polygon that contains the exact curve and one that the exact curve contains."""
         polygons = [
             (loop.buffer(margin, quad_segs=1), loop.buffer(-margin, quad_segs=1))
             for loop, margin in zip(self.loops, self.margins, strict=True)
@@ -70,65 +80,66 @@ class InvariantCurve:
         return polygons
 
     def mirrored(self) -> InvariantCurve:
-        """Its image under (x, px) → (−x, −px)."""
+        """The image under (x, px) → (−x, −px)."""
         return InvariantCurve(tuple(shapely.transform(loop, np.negative) for loop in self.loops), self.margins)
 
 
 def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
-    """The closed curves that the section points of a quasi-periodic orbit lie on.
+    """Connect the section points of a quasi-periodic orbit to closed curves.
 
     Parameters
     ----------
     points
-        (n, 2) successive points x, px of one orbit, finite.
+        (n, 2) x and px of successive section points of one orbit, finite.
 
     Returns
     -------
-    A curve with as many loops as the orbit's chain has islands, one for an orbit about a fixed point; None when the points
-    are too few, or not dense enough on smooth curves that do not cross themselves.
+    A curve with one loop per island, or one loop for an orbit around a fixed point. None when there are too few points, or when
+    they do not lie densely enough on smooth curves without self-intersections.
     """
     for islands in range(1, MOST_ISLANDS + 1):
-        if len(points) < islands * _FEWEST_POINTS:
+        if len(points) < islands * _MIN_POINTS_PER_LOOP:
             break
-        loops = _close_chain(points, islands)
+        loops = _find_loops(points, islands)
         if loops:
             polygons, margins = zip(*loops, strict=True)
             return InvariantCurve(polygons, margins)
     return None
 
 
-def _close_chain(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon, float]]:
-    """The loops of a chain of so many islands; none when any of them does not close."""
+def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon, float]]:
+    """The loop around each island of a chain with its margin; an empty list if any loop is not closed."""
     loops = []
     for first in range(islands):
-        loop = _close(points[first::islands])
+        loop = _find_loop(points[first::islands])
         if loop is None:
             return []
         loops.append(loop)
     return loops
 
 
-def _close(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
-    """The loop through successive points of a rotation and its margin; None when they do not lie on one."""
-    order = _order_along(points)
+def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
+    """The loop through successive points of a rotation and its margin; None when they are not on a closed curve."""
+    order = _order_along_curve(points)
     if order is None:
         return None
     loop = points[order]
-    margin = _MARGIN * float(_arc_heights(loop).max())
+    margin = _MARGIN_FACTOR * float(_arc_heights(loop).max())
     polygon = shapely.Polygon(loop)
-    fits = margin <= _WIDEST * np.sqrt(polygon.area) and polygon.is_valid
-    return (polygon, margin) if fits else None
+    accepted = margin <= _MAX_RELATIVE_MARGIN * np.sqrt(polygon.area) and polygon.is_valid
+    return (polygon, margin) if accepted else None
 
 
-def _order_along(points: np.ndarray) -> np.ndarray | None:
-    """The order of successive points of a rotation along their closed curve; None when they are not those of one.
+def _order_along_curve(points: np.ndarray) -> np.ndarray | None:
+    """Indices that sort successive points of a rotation along their closed curve; None when they are not from a rotation.
 
-    The neighbours of the first point are the points of the nearest returns ahead and behind, a and b steps later. No point comes
-    nearer, so there are at most a + b (three-gap theorem, Sós 1958), in the order of the rotation by p/(a + b) with p a ≡ 1.
+    The neighbours of the first point on the curve are its nearest returns ahead and behind, after a and b steps. As no other
+    point is nearer, there are at most a + b points (three-gap theorem, Sós 1958), in the order of the rotation by p/(a + b) with
+    p a ≡ 1.
     """
-    away = points[1:] - points[0]
-    distance = np.hypot(*away.T)
-    ahead = away @ away[np.argmin(distance)] > 0.0
+    offset = points[1:] - points[0]
+    distance = np.hypot(*offset.T)
+    ahead = offset @ offset[np.argmin(distance)] > 0.0
     if ahead.all():
         return None
     a = 1 + int(np.argmin(np.where(ahead, distance, np.inf)))
@@ -139,10 +150,10 @@ def _order_along(points: np.ndarray) -> np.ndarray | None:
 
 
 def _arc_heights(loop: np.ndarray) -> np.ndarray:
-    """How high a curve arches over the gap after each point of a closed loop, by the sharper of the turns at its ends."""
+    """(n,) height of the curve's arc over the gap after each point of a loop (n, 2), from the larger turn at the gap's ends."""
     step = np.roll(loop, -1, axis=0) - loop
-    before = np.roll(step, 1, axis=0)
-    cross = before[:, 0] * step[:, 1] - before[:, 1] * step[:, 0]
-    turn = np.abs(np.arctan2(cross, np.sum(before * step, axis=1)))
+    previous = np.roll(step, 1, axis=0)
+    cross = previous[:, 0] * step[:, 1] - previous[:, 1] * step[:, 0]
+    turn = np.abs(np.arctan2(cross, np.sum(previous * step, axis=1)))
     heights: np.ndarray = np.hypot(*step.T) * np.maximum(turn, np.roll(turn, -1)) / 8.0
     return heights

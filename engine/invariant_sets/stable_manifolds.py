@@ -1,9 +1,10 @@
-"""Stable manifolds of the Lyapunov orbits, cut by the section y = 0, py > 0: the boundaries between exit basins on (x, px).
+"""Stable manifolds of the Lyapunov orbits on the section y = 0, py > 0: the boundaries between exit basins on (x, px).
 
-Orbits that tend to the Lyapunov orbit over an exit fill a tube, its stable manifold. Inside the tube are those that leave there,
-outside those that turn back. Followed backward in time into the well, the tube meets the section again and again: its images.
-Kinetic energy is even in the momenta, so the tube backward in time is the unstable manifold with all momenta reversed. It is
-that one which is followed here, forward, from near the Lyapunov orbit; its downward passages (x, px) of y = 0 give (x, −px).
+Orbits that tend to the Lyapunov orbit over an exit form a tube, its stable manifold. Orbits inside the tube leave through that
+exit, orbits outside it turn back. Backward in time the tube enters the well and intersects the section repeatedly; the successive
+intersections are called its images. As the kinetic energy is even in the momenta, the tube backward in time is the unstable
+manifold with reversed momenta. The code therefore integrates the unstable manifold forward from near the Lyapunov orbit; each
+downward passage (x, px) of y = 0 gives a point (x, −px) of the stable manifold.
 """
 
 from __future__ import annotations
@@ -22,43 +23,43 @@ from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.dynamics.planes import Plane, Window, default_window
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
-from engine.validation import read_count
+from engine.validation import checked_count
 
 MOST_IMAGES = 6
-"""Images beyond are threads too fine and too many for any picture."""
+"""Largest number of images; later ones are too fine and too many to plot."""
 
 ORBITS_PER_IMAGE = 20_000
-"""So many orbits times the images are followed for a channel at most, some 0.3 s of work an image; what is finer is left out."""
+"""Orbits integrated per channel and image at most, about 0.3 s of work; finer structure is left out."""
 
 SPACING = 1 / 200
-"""Share of the side of the window that neighbours in it are apart at most, before straight parts are thinned."""
+"""Largest distance between neighbouring points as a share of the window's side, before straight parts are thinned."""
 
-# A part of the plane is drawn with a rim of this share of its sides, so that curves do not end at its edge.
-_RIM = 0.1
+# Curves in a window extend beyond its edges by this share of its sides.
+_WINDOW_MARGIN = 0.1
 
-# How far from the chord of its neighbours a point may lie, and how much of that thinning may take away: shares of the spacing.
-_SAGITTA, _THINNED = 0.05, 0.025
-# Points next to each other on an arc are reached at about the same time.
-_TIME_APART = 0.3
-# The orbits of a tube are numbered from 0 to 1: how many are followed at first, and how narrow an interval may become, for all
-# images before the next width is tried. Below the last, rounding of the launch shows.
-_FIRST_ORBITS = 512
-_NARROWEST = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
-_MOST_PARTS = 8
+# Largest distance of a point from the chord of its neighbours, and how much of it thinning may remove, as shares of the spacing.
+_MAX_SAGITTA, _THINNING_TOLERANCE = 0.05, 0.025
+# Largest difference in passage time between neighbouring points of an arc.
+_MAX_TIME_GAP = 0.3
+# Orbits of a tube have phases from 0 to 1: the number of first intervals, and the smallest widths to which intervals are refined,
+# each for all images before the next. Below the last width rounding errors of the start states are visible.
+_FIRST_INTERVALS = 512
+_MIN_WIDTHS = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+_MAX_PARTS = 8
 
 
 @dataclass(frozen=True, eq=False)
 class ManifoldArc:
-    """A piece of the section of one stable manifold.
+    """A connected piece of one stable manifold on the section.
 
     Attributes
     ----------
     channel
         Exit channel of the Lyapunov orbit, from 1.
     image
-        1 for the first cut of the tube with y = 0, py > 0 met backward in time, 2 for the next, …
+        1 for the tube's first intersection with y = 0, py > 0 backward in time, 2 for the next, …
     x, px
-        (n,) points in order along the curve, dimensionless, read-only; n ≥ 2. A closed curve ends where it begins.
+        (n,) points in order along the curve, dimensionless, read-only; n ≥ 2. The last point of a closed curve equals the first.
     """
 
     channel: int
@@ -69,18 +70,18 @@ class ManifoldArc:
 
 @dataclass(frozen=True, eq=False)
 class StableManifolds:
-    """The sections of the stable manifolds of all Lyapunov orbits of one energy with y = 0, py > 0.
+    """Intersections of the stable manifolds of all Lyapunov orbits of one energy with y = 0, py > 0.
 
     Attributes
     ----------
     potential, energy
-        Of all orbits.
+        The `Potential` and h, dimensionless.
     arcs
-        By channel, then image.
+        Sorted by channel, then image.
     images
-        How many images of each tube were looked for.
+        Number of images computed for each tube.
     truncated
-        Whether an arc was left unfinished: one that winds round another arc for ever, or one too fine to be resolved.
+        Whether an arc is incomplete: it winds around another arc infinitely often, or is too fine to be resolved.
     """
 
     potential: Potential
@@ -104,12 +105,12 @@ def find_stable_manifolds(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> StableManifolds:
-    """The curves on (x, px) that part orbits that leave through a channel from those that turn back before it.
+    """Find the curves on (x, px) that separate orbits leaving through a channel from orbits turning back before it.
 
-    On one side of an arc of image n orbits leave through its channel after exactly n − 1 upward crossings of y = 0, the start
-    not counted; on the other they turn back before that exit, to leave later if at all. Where the Lyapunov orbit itself crosses
-    y = 0 (channel 1 of Case II), orbits cross it the more often the longer they stay near: there images are numbered along the
-    curve, which begins at that orbit's own point, and the number of crossings is not fixed.
+    On one side of an arc of image n, orbits leave through its channel after exactly n − 1 upward crossings of y = 0, the start
+    not counted. On the other side they turn back before that exit, and leave later or never. Where the Lyapunov orbit itself
+    crosses y = 0 (channel 1 of Case II), orbits cross it more often the longer they stay near that orbit; images are then
+    numbered along the curve, which starts at the orbit's own point, and the number of crossings is not fixed.
 
     Parameters
     ----------
@@ -118,78 +119,83 @@ def find_stable_manifolds(
     energy
         h, finite, dimensionless.
     images
-        How many successive cuts of each tube with the section to look for, 1 to `MOST_IMAGES`.
+        Number of successive intersections of each tube with the section, 1 to `MOST_IMAGES`.
     window
-        The part of (x, px) to be drawn, for a closer look: points are as close there as its size asks for, as far as the number
-        of orbits allows, and what lies beyond is left out. None for the whole plane.
+        Part of (x, px) to resolve in a zoom: the spacing of points follows from its size, as far as the number of orbits allows,
+        and curves beyond it are left out. None for the whole plane.
     executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
+        Any `concurrent.futures.Executor`; None for the default pool of this process.
     cancel
         When set, the work stops within about 0.1 s.
 
     Returns
     -------
-    `StableManifolds`; no arcs at or below the escape energy. An arc ends where the tube has left through an exit, backward in
-    time: it winds towards another manifold's section, in infinitely many turns of which the first few are given. Points are
-    on the manifold to 1e-10.
+    `StableManifolds`; no arcs at or below the escape energy. An arc ends where the tube, backward in time, leaves through an
+    exit: it winds towards another manifold's section in infinitely many turns, of which the first few are given. Points lie on
+    the manifold to 1e-10.
 
     Raises
     ------
     concurrent.futures.CancelledError
         When cancelled.
     ValueError
-        When `energy` is not finite or too high for unstable Lyapunov orbits, or `images` is out of its range.
+        When `energy` is not finite or too high for unstable Lyapunov orbits, or `images` is out of range.
 
     Notes
     -----
-    Tubes and their part in escapes: Contopoulos 1990, Astron. Astrophys. 231, 41; Koon, Lo, Marsden & Ross 2000, Chaos 10, 427.
+    Tubes and their role in escapes: Contopoulos 1990, Astron. Astrophys. 231, 41; Koon, Lo, Marsden & Ross 2000, Chaos 10, 427.
     """
-    images = read_count("images", images, 1, MOST_IMAGES)
+    images = checked_count("images", images, 1, MOST_IMAGES)
     arcs: dict[int, list[ManifoldArc]] = {}
     truncated = False
-    grain = _Grain.of(default_window(potential, Plane.X_PX, energy), window)
+    spacing = _PointSpacing.for_window(default_window(potential, Plane.X_PX, energy), window)
     for orbit in find_lyapunov_orbits(potential, energy):
-        image = int(potential.mirror_channels[orbit.channel]) if potential.mirror_in_x else orbit.channel
-        if image in arcs and window is None:
-            # x → −x carries (x, px) into (−x, −px).
-            mirrored = ((arc.image, read_only(-arc.x), read_only(-arc.px)) for arc in arcs[image])
-            arcs[orbit.channel] = [ManifoldArc(orbit.channel, *fields) for fields in mirrored]
+        mirror_channel = int(potential.mirror_channels[orbit.channel]) if potential.mirror_in_x else orbit.channel
+        if mirror_channel in arcs and window is None:
+            arcs[orbit.channel] = [_mirrored(arc, orbit.channel) for arc in arcs[mirror_channel]]
             continue
-        arcs[orbit.channel], unfinished = _find_arcs(potential, orbit, images, grain, executor, cancel)
+        arcs[orbit.channel], unfinished = _find_arcs(potential, orbit, images, spacing, executor, cancel)
         truncated = truncated or unfinished
     return StableManifolds(potential, float(energy), tuple(arc for found in arcs.values() for arc in found), images, truncated)
+
+
+def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
+    """The image under x → −x, which maps (x, px) to (−x, −px)."""
+    return ManifoldArc(channel, arc.image, read_only(-arc.x), read_only(-arc.px))
 
 
 def _find_arcs(
     potential: Potential,
     orbit: LyapunovOrbit,
     images: int,
-    grain: _Grain,
+    spacing: _PointSpacing,
     executor: Executor | None,
     cancel: threading.Event | None,
 ) -> tuple[list[ManifoldArc], bool]:
-    """The arcs of one channel, and whether any is unfinished."""
+    """The arcs of one channel, and whether any of them is incomplete."""
     tube = UnstableManifold.from_orbit(potential, orbit)
-    most = tube.near_cuts + images
-    cuts = _refine(lambda numbers: tube.follow(numbers, most, executor, cancel), most, grain, images * ORBITS_PER_IMAGE)
+    count = tube.near_passages + images
+    passages = _refine(
+        lambda phases: tube.find_passages(phases, count, executor, cancel), count, spacing, images * ORBITS_PER_IMAGE
+    )
     arcs = []
     unfinished = False
     for image in range(1, images + 1):
-        first = 0 if image == 1 else tube.near_cuts + image - 1
-        # Near the Lyapunov orbit each cut goes on where the one before it ends.
-        curve = np.concatenate([cuts[:, k] for k in range(first, tube.near_cuts + image)])
-        pieces = _split(curve, grain, closed=tube.near_cuts == 0)
+        first = 0 if image == 1 else tube.near_passages + image - 1
+        # The passages near the Lyapunov orbit join end to end and belong to image 1.
+        curve = np.concatenate([passages[:, k] for k in range(first, tube.near_passages + image)])
+        pieces = _split(curve, spacing, closed=tube.near_passages == 0)
         unfinished |= not (len(pieces) == 1 and np.isfinite(curve).all())
-        arcs += [_arc(orbit.channel, image, line) for piece in pieces for line in grain.trim(piece)]
+        arcs += [_arc(orbit.channel, image, line) for piece in pieces for line in spacing.thin(piece)]
     return arcs, unfinished
 
 
 @dataclass(frozen=True)
-class _Grain:
-    """How close points are to be: `fine` in the part of the plane that is drawn, `coarse` elsewhere.
+class _PointSpacing:
+    """Largest distance between neighbouring points: `fine` in the window that is drawn, `coarse` elsewhere.
 
-    The part is given by its `low` and `high` corners on the plane of the unstable manifold, where px has the other sign; None for
-    all.
+    The window is given by its `low` and `high` corners on the plane of the unstable manifold, where px has the opposite sign;
+    None for the whole plane.
     """
 
     coarse: float
@@ -198,75 +204,85 @@ class _Grain:
     high: np.ndarray | None = None
 
     @classmethod
-    def of(cls, whole: Window, part: Window | None) -> _Grain:
+    def for_window(cls, whole: Window, window: Window | None) -> _PointSpacing:
         coarse = SPACING * (whole.x_high - whole.x_low)
-        if part is None:
+        if window is None:
             return cls(coarse, coarse)
-        corners = np.array([[part.x_low, -part.ordinate_high], [part.x_high, -part.ordinate_low]])
-        sides = corners[1] - corners[0]
-        return cls(coarse, min(coarse, SPACING * float(sides.max())), corners[0] - _RIM * sides, corners[1] + _RIM * sides)
+        low, high = np.array([[window.x_low, -window.ordinate_high], [window.x_high, -window.ordinate_low]])
+        sides = high - low
+        fine = min(coarse, SPACING * float(sides.max()))
+        return cls(coarse, fine, low - _WINDOW_MARGIN * sides, high + _WINDOW_MARGIN * sides)
 
-    def spacings(self, points: np.ndarray) -> np.ndarray:
-        """(n − 1,) how far apart neighbours of the points (n, 2) may be."""
+    def between(self, points: np.ndarray) -> np.ndarray:
+        """(n − 1,) largest distance allowed between neighbours of the points (n, 2)."""
         if self.low is None or self.high is None:
             return np.full(len(points) - 1, self.fine)
-        # Between two points a curve may bulge by as much as they are apart.
-        apart = np.abs(np.diff(points, axis=0)).max(axis=1)[:, None]
-        ahead, behind = points[1:], points[:-1]
-        near = (np.minimum(ahead, behind) - apart <= self.high) & (np.maximum(ahead, behind) + apart >= self.low)
+        # Between two points, a curve may bulge by as much as their distance.
+        distance = np.abs(np.diff(points, axis=0)).max(axis=1)[:, None]
+        start, end = points[:-1], points[1:]
+        near = (np.minimum(end, start) - distance <= self.high) & (np.maximum(end, start) + distance >= self.low)
         spacing: np.ndarray = np.where(near.all(axis=1), self.fine, self.coarse)
         return spacing
 
-    def trim(self, piece: np.ndarray) -> Iterator[np.ndarray]:
-        """The (m, 2) lines of a piece that are drawn, without points that their neighbours imply."""
-        line = shapely.simplify(shapely.LineString(piece), _THINNED * self.fine, preserve_topology=False)
+    def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
+        """The (m, 2) lines of a piece within the window, without points that their neighbours imply."""
+        line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
         if self.low is not None and self.high is not None:
             line = shapely.clip_by_rect(line, *self.low, *self.high)
         yield from (shapely.get_coordinates(part) for part in shapely.get_parts(line) if not part.is_empty)
 
 
-def _refine(follow: Callable[[np.ndarray], np.ndarray], most: int, grain: _Grain, room: int) -> np.ndarray:
-    """(n, most, 3) cuts of orbits in order, enough of them for smooth curves unless that takes more than `room` orbits."""
-    numbers = np.linspace(0.0, 1.0, _FIRST_ORBITS + 1)
-    cuts = follow(numbers)
-    for narrowest, image in itertools.product(_NARROWEST, range(most)):
+def _refine(find_passages: Callable[[np.ndarray], np.ndarray], count: int, spacing: _PointSpacing, max_orbits: int) -> np.ndarray:
+    """(n, count, 3) passages of orbits of rising phase, refined until curves are smooth or `max_orbits` have been added."""
+    phases = np.linspace(0.0, 1.0, _FIRST_INTERVALS + 1)
+    passages = find_passages(phases)
+    for min_width, passage in itertools.product(_MIN_WIDTHS, range(count)):
         while True:
-            width = np.diff(numbers)
-            parts = _affordable(_parts_wanted(cuts[:, image], grain), width, narrowest, room)
+            width = np.diff(phases)
+            parts = _affordable(_parts_needed(passages[:, passage], spacing), width, min_width, max_orbits)
             if parts.max() == 1:
                 break
-            gap = np.repeat(np.arange(parts.size), parts - 1)
-            place = np.arange(gap.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1) + 1
-            new = numbers[gap] + width[gap] * place / parts[gap]
-            numbers, cuts = np.insert(numbers, gap + 1, new), np.insert(cuts, gap + 1, follow(new), axis=0)
-            room -= new.size
-    return cuts
+            interval, new = _subdivide(phases, width, parts)
+            phases = np.insert(phases, interval + 1, new)
+            passages = np.insert(passages, interval + 1, find_passages(new), axis=0)
+            max_orbits -= new.size
+    return passages
 
 
-def _affordable(parts: np.ndarray, width: np.ndarray, narrowest: float, room: int) -> np.ndarray:
-    """The parts that intervals are split into when none may become narrower than that and no more than `room` orbits be added."""
-    parts = np.minimum(parts, np.maximum(width / narrowest, 1.0)).astype(int)
+def _subdivide(phases: np.ndarray, width: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """For each new phase, the interval it lies in and its value, when intervals are split into equal `parts` (n,)."""
+    interval = np.repeat(np.arange(parts.size), parts - 1)
+    position = np.arange(interval.size) - np.repeat(np.cumsum(parts - 1) - (parts - 1), parts - 1) + 1
+    return interval, phases[interval] + width[interval] * position / parts[interval]
+
+
+def _affordable(parts: np.ndarray, width: np.ndarray, min_width: float, max_orbits: int) -> np.ndarray:
+    """Limit `parts` (n,) so that no part is narrower than `min_width` and at most `max_orbits` are added, widest first."""
+    parts = np.minimum(parts, np.maximum(width / min_width, 1.0)).astype(int)
     widest_first = np.argsort(-width, kind="stable")
-    parts[widest_first[np.cumsum(parts[widest_first] - 1) > room]] = 1
+    parts[widest_first[np.cumsum(parts[widest_first] - 1) > max_orbits]] = 1
     return parts
 
 
-def _parts_wanted(points: np.ndarray, grain: _Grain) -> np.ndarray:
-    """(n − 1,) into how many parts each interval between neighbours (n, 3) is to be split, 1 where all is well."""
-    spacing = grain.spacings(points[:, :2])
-    there = np.isfinite(points[:, 0])
+def _parts_needed(points: np.ndarray, spacing: _PointSpacing) -> np.ndarray:
+    """(n − 1,) number of parts into which to split the intervals between neighbours of (n, 3) x, px, time; 1 to keep one."""
+    allowed = spacing.between(points[:, :2])
+    exists = np.isfinite(points[:, 0])
     step = np.diff(points, axis=0)
     length = np.hypot(step[:, 0], step[:, 1])
-    parts = np.ceil(np.maximum(length / spacing, np.abs(step[:, 2]) / _TIME_APART))
-    parts = np.where(np.isnan(parts), np.where(there[1:] != there[:-1], _MOST_PARTS, 1), np.maximum(parts, 1))
-    sharp = _sagitta(step[:, :2], length) > _SAGITTA * np.minimum(spacing[1:], spacing[:-1])
+    parts = np.ceil(np.maximum(length / allowed, np.abs(step[:, 2]) / _MAX_TIME_GAP))
+    parts = np.where(np.isnan(parts), np.where(exists[1:] != exists[:-1], _MAX_PARTS, 1), np.maximum(parts, 1))
+    sharp = _sagitta(step[:, :2], length) > _MAX_SAGITTA * np.minimum(allowed[1:], allowed[:-1])
     parts[:-1][sharp] = np.maximum(parts[:-1][sharp], 2)
     parts[1:][sharp] = np.maximum(parts[1:][sharp], 2)
-    return np.minimum(parts, _MOST_PARTS)
+    return np.minimum(parts, _MAX_PARTS)
 
 
 def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """How far each inner point lies from the chord of its neighbours; where the curve turns back, from the farther of them."""
+    """Distance of each inner point from the chord of its neighbours; where the curve reverses, from the farther neighbour.
+
+    step, length: (n − 1, 2) and (n − 1,) differences between neighbouring points and their lengths; NaN distances become 0.
+    """
     before, after = step[:-1], step[1:]
     area = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
     chord = np.maximum(np.hypot(*(before + after).T), np.finfo(float).tiny)
@@ -275,21 +291,22 @@ def _sagitta(step: np.ndarray, length: np.ndarray) -> np.ndarray:
     return np.where(np.isnan(area), 0.0, sagitta)
 
 
-def _split(curve: np.ndarray, grain: _Grain, closed: bool) -> list[np.ndarray]:
-    """The (m, 2) pieces, m ≥ 2, of a curve (n, 3) between its breaks; of a closed one the last goes on as the first."""
+def _split(curve: np.ndarray, spacing: _PointSpacing, closed: bool) -> list[np.ndarray]:
+    """The (m, 2) pieces, m ≥ 2, of a curve (n, 3) between its gaps; on a closed curve the last piece is joined to the first."""
     step = np.diff(curve, axis=0)
-    joined = (np.hypot(step[:, 0], step[:, 1]) <= 2.0 * grain.spacings(curve[:, :2])) & (np.abs(step[:, 2]) <= 2.0 * _TIME_APART)
+    short = np.hypot(step[:, 0], step[:, 1]) <= 2.0 * spacing.between(curve[:, :2])
+    joined = short & (np.abs(step[:, 2]) <= 2.0 * _MAX_TIME_GAP)
     edges = np.concatenate([[0], np.flatnonzero(~joined) + 1, [len(curve)]])
     runs = [(begin, end) for begin, end in itertools.pairwise(edges) if end - begin > 1]
     pieces = [curve[begin:end, :2] for begin, end in runs]
     if closed and runs and runs[0][0] == 0 and runs[-1][1] == len(curve):
-        # Its first and last orbit are the same one.
+        # The first and the last orbit of a closed curve are the same.
         last = pieces.pop()
         pieces[:1] = [np.concatenate([last[:-1], pieces[0] if pieces else last[:1]])]
     return pieces
 
 
 def _arc(channel: int, image: int, line: np.ndarray) -> ManifoldArc:
-    """A line (m, 2) of the unstable manifold as an arc of the stable one: with momenta reversed."""
+    """The arc of the stable manifold given by a line (m, 2) of the unstable one: its momenta are reversed."""
     x, px = line.T
     return ManifoldArc(channel, image, read_only(x.copy()), read_only(-px))

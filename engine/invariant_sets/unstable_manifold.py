@@ -1,146 +1,171 @@
-"""Tubes of orbits that come in from the Lyapunov orbit over an exit: the inner branch of its unstable manifold, forward."""
+"""The inner branch of the unstable manifold of a Lyapunov orbit: a tube of orbits that lead from the exit into the well."""
 
 from __future__ import annotations
 
 import math
 import threading
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of, step_tolerance
-from engine.dynamics.fixed_step_batches import glide
-from engine.dynamics.lyapunov_orbits import LyapunovOrbit, channel_axes, exit_curves, exit_gates
-from engine.execution import is_cancelled
+from engine.dynamics.fixed_step_batches import map_tiles
+from engine.dynamics.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
+from engine.execution import raise_if_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
 
-# Displacement in phase space from the Lyapunov orbit, at most, at which the tube is launched. How far a launch lies off the tube,
-# by the time the tube has grown to the well's size, falls like its third power: 4e-8 for 1e-2, 3e-11 for 1e-3, and so 3e-13 here.
-_LAUNCH = 2e-4
-# On the way from one cut to the next the tube may stay near another Lyapunov orbit, for so many periods at most that matter.
-_MOST_PERIODS = 12.0
-# An orbit over a saddle multiplies by 38 and more; at 1 it would be stable, or about to be.
-_LEAST_MULTIPLIER = 1.5
-# A Lyapunov orbit that crosses y = 0 itself is a point of the section, and one endless curve leads away from it. The first
-# image ends where a displacement, if it went on growing as near that orbit, would be so many times as far as the saddle is.
-_FIRST_IMAGE_ENDS = 6.0
+# Largest displacement from the Lyapunov orbit at which orbits of the tube start. The distance of such a start from the manifold,
+# by the time the tube has grown to the size of the well, scales with its third power: 4e-8 for 1e-2, 3e-11 for 1e-3, so 3e-13.
+_MAX_DISPLACEMENT = 2e-4
+# Between two section passages an orbit may stay near another Lyapunov orbit; longer stays than this many periods are not needed.
+_MAX_PERIODS_PER_PASSAGE = 12.0
+# Lyapunov orbits over a saddle have multipliers of 38 and more; an orbit with multiplier 1 is about to become stable.
+_MIN_MULTIPLIER = 1.5
+# A Lyapunov orbit that crosses y = 0 is itself a point of the section, from which one endless curve starts. Its first image ends
+# where a displacement that kept growing by the multiplier would reach this multiple of the saddle's distance from the origin.
+_FIRST_IMAGE_END = 6.0
 
 
 @dataclass(frozen=True, eq=False)
 class UnstableManifold:
-    """The inner branch of a Lyapunov orbit's unstable manifold, as a family of orbits numbered from 0 to 1.
+    """The inner branch of a Lyapunov orbit's unstable manifold, as a one-parameter family of orbits.
 
-    A displacement from one point of the orbit, in the unstable direction, grows by the multiplier in a period. So displacements
-    between one size and that many times as large are all the orbits of the branch, and numbers 0 and 1 are the same one.
+    A displacement from a fixed point of the Lyapunov orbit, in the unstable direction, grows by the multiplier per period. The
+    displacements between one size and the multiplier times that size therefore give each orbit of the branch once (a fundamental
+    domain). They are parametrised by a phase from 0 to 1; both ends give the same orbit.
 
     Attributes
     ----------
     potential, orbit
-        What it belongs to.
+        The `Potential` and its Lyapunov orbit.
     direction
         (4,) unit vector in phase space at the orbit's first point, where it is at rest: the unstable direction, inward.
     multiplier
-        The unstable eigenvalue of the monodromy matrix, above 1.
-    smallest, largest
-        Displacements of numbers 0 and 1.
-    near_cuts
-        How many passages of y = 0 belong to the neighbourhood of the Lyapunov orbit: 0 where that does not cross y = 0.
+        Unstable eigenvalue of the monodromy matrix, above 1.
+    min_displacement, max_displacement
+        Displacements of phase 0 and of phase 1, dimensionless.
+    near_passages
+        Number of initial passages of y = 0 near the Lyapunov orbit; 0 if that orbit does not cross y = 0.
     """
 
     potential: Potential
     orbit: LyapunovOrbit
     direction: np.ndarray
     multiplier: float
-    smallest: float
-    largest: float
-    near_cuts: int
+    min_displacement: float
+    max_displacement: float
+    near_passages: int
 
     @classmethod
     def from_orbit(cls, potential: Potential, orbit: LyapunovOrbit) -> UnstableManifold:
-        """The tube of a Lyapunov orbit; ValueError when that orbit is not unstable in the way in which saddles make it so."""
+        """Build the manifold of a Lyapunov orbit.
+
+        Raises
+        ------
+        ValueError
+            When the orbit is not unstable.
+        """
         monodromy = _monodromy(potential, orbit)
         multiplier, direction = _leading_eigenvector(monodromy)
-        if not multiplier > _LEAST_MULTIPLIER:
-            raise ValueError(f"energy={orbit.energy}: the Lyapunov orbit of channel {orbit.channel} has no unstable direction")
-        if direction[:2] @ channel_axes(potential, orbit.channel) > 0.0:
+        if not multiplier > _MIN_MULTIPLIER:
+            raise ValueError(
+                f"energy={orbit.energy}: the Lyapunov orbit of channel {orbit.channel} is not unstable; "
+                f"its multiplier {multiplier:.3g} must be above {_MIN_MULTIPLIER:g}"
+            )
+        if direction[:2] @ potential.outward_directions[orbit.channel - 1] > 0.0:
             direction = -direction
-        largest, near_cuts = _LAUNCH, 0
+        largest, near_passages = _MAX_DISPLACEMENT, 0
         if orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0:
-            end = _FIRST_IMAGE_ENDS * float(np.hypot(*potential.saddles[orbit.channel - 1]))
-            periods = math.ceil(math.log(end / _LAUNCH) / math.log(multiplier))
-            largest, near_cuts = end * multiplier**-periods, periods - 1
-        tube = cls(potential, orbit, read_only(direction), multiplier, largest / multiplier, largest, near_cuts)
-        return replace(tube, largest=tube._size_after_period(_leading_eigenvector(monodromy.T)[1]))
+            end = _FIRST_IMAGE_END * float(np.hypot(*potential.saddles[orbit.channel - 1]))
+            periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
+            largest, near_passages = end * multiplier**-periods, periods - 1
+        manifold = cls(potential, orbit, read_only(direction), multiplier, largest / multiplier, largest, near_passages)
+        left_eigenvector = _leading_eigenvector(monodromy.T)[1]
+        return replace(manifold, max_displacement=manifold._displacement_after_period(left_eigenvector))
 
-    def _size_after_period(self, across: np.ndarray) -> float:
-        """The displacement at which number 0 comes by again, its growth not being quite linear.
+    def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
+        """The displacement that the orbit of phase 0 has after one period; nonlinear terms make it differ from the linear one.
 
-        across (4,): the left eigenvector of the multiplier; what it gives for a displacement is its unstable part.
+        left_eigenvector (4,): that of the multiplier; its product with a displacement is proportional to the unstable component.
         """
         kernels = kernels_of(self.potential)
-        (start,) = self.launch(np.array([self.smallest]))
+        (start,) = self.start_states(np.array([self.min_displacement]))
         steps = trace_steps(kernels, start, self.orbit.period, self.potential.channels, tolerance=step_tolerance(self.potential))
-        back = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
-        size = self.largest
+        target = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
+        displacement = self.max_displacement
         for _ in range(3):
-            (tried,) = self.launch(np.array([size]))
-            size += float(across @ (back - tried) / (across @ self.direction))
-        return size
+            (trial,) = self.start_states(np.array([displacement]))
+            displacement += float(left_eigenvector @ (target - trial) / (left_eigenvector @ self.direction))
+        return displacement
 
-    def follow(
-        self, numbers: np.ndarray, most: int, executor: Executor | None = None, cancel: threading.Event | None = None
+    def find_passages(
+        self, phases: np.ndarray, count: int, executor: Executor | None = None, cancel: threading.Event | None = None
     ) -> np.ndarray:
-        """(n, most, 3) x, px and time of the first downward passages of y = 0 of these orbits, before they leave.
+        """Find the first downward passages of y = 0 of the orbits with these phases, until they escape.
 
-        NaN where there are fewer. Times count from when the displacement, growing as it does at first, is 1: alike for 0 and 1.
-        Raises CancelledError when cancelled.
+        Parameters
+        ----------
+        phases
+            (n,) from 0 to 1.
+        count
+            Number of passages per orbit, at least 1.
+        executor
+            Any `concurrent.futures.Executor`; None for the default pool of this process.
+        cancel
+            When set, the work stops within about 0.1 s.
+
+        Returns
+        -------
+        (n, count, 3) x, px and time; NaN for missing passages. Time 0 is when the displacement, growing exponentially at its
+        initial rate, would be 1, so that phases 0 and 1 give the same times.
+
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            When cancelled.
         """
-        sizes = self.sizes(numbers)
-        pace = self.orbit.period / math.log(self.largest / self.smallest)
+        displacements = self.displacements(phases)
+        growth_time = self.orbit.period / math.log(self.max_displacement / self.min_displacement)
         curves = exit_curves(self.potential, self.orbit.energy)
-        horizon = most * _MOST_PERIODS * self.orbit.period - pace * math.log(self.smallest)
-        arguments = (most, curves, exit_gates(curves), horizon)
-        cuts = glide(_cut, self.potential, self.launch(sizes), *arguments, shape=(most, 3), executor=executor, cancel=cancel)
-        if is_cancelled(cancel):
-            raise CancelledError
-        cuts[:, :, 2] += pace * np.log(sizes)[:, None]
-        return cuts
+        duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
+        passages = map_tiles(
+            _passages, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
+            shape=(count, 3), executor=executor, cancel=cancel,
+        )  # fmt: skip
+        raise_if_cancelled(cancel)
+        passages[:, :, 2] += growth_time * np.log(displacements)[:, None]
+        return passages
 
-    def sizes(self, numbers: np.ndarray) -> np.ndarray:
-        """(n,) displacements of the orbits with these numbers."""
-        sizes: np.ndarray = self.smallest * (self.largest / self.smallest) ** numbers
-        return sizes
+    def displacements(self, phases: np.ndarray) -> np.ndarray:
+        """(n,) displacements of the orbits with phases (n,), in geometric progression."""
+        displacements: np.ndarray = self.min_displacement * (self.max_displacement / self.min_displacement) ** phases
+        return displacements
 
-    def launch(self, sizes: np.ndarray) -> np.ndarray:
-        """(n, 4) states displaced by these sizes from rest at the wall, and put back on the energy."""
-        states: np.ndarray = np.array([self.orbit.x[0], self.orbit.y[0], 0.0, 0.0]) + sizes[:, None] * self.direction
+    def start_states(self, displacements: np.ndarray) -> np.ndarray:
+        """(n, 4) states displaced by (n,) from the Lyapunov orbit's point of rest, projected back onto its energy."""
+        states: np.ndarray = np.array([self.orbit.x[0], self.orbit.y[0], 0.0, 0.0]) + displacements[:, None] * self.direction
         for _ in range(3):
-            slope = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
+            gradient = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
             excess = self.potential.energy(states) - self.orbit.energy
-            states = states - (excess / np.sum(slope * slope, axis=1))[:, None] * slope
+            states = states - (excess / np.sum(gradient * gradient, axis=1))[:, None] * gradient
         return states
 
 
 def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
-    """The eigenvalue that is largest in size, and its unit vector, real parts."""
+    """The eigenvalue of largest modulus and its unit eigenvector; real parts."""
     values, vectors = np.linalg.eig(matrix)
     leading = int(np.argmax(np.abs(values)))
     return float(values[leading].real), vectors[:, leading].real.copy()
 
 
 def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """(4, 4) linearised flow over a period, from rest."""
+    """(4, 4) linearised flow over one period from the orbit's point of rest."""
     kernels = kernels_of(potential)
-    steps = trace_steps(
-        kernels,
-        np.array([orbit.x[0], orbit.y[0], 0.0, 0.0]),
-        orbit.period,
-        potential.channels,
-        tolerance=step_tolerance(potential),
-    )
+    start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
+    steps = trace_steps(kernels, start, orbit.period, potential.channels, tolerance=step_tolerance(potential))
     durations = np.diff(steps[:, 4], append=orbit.period)
     columns = np.eye(4)
     for state, duration in zip(steps[:, :4], durations, strict=True):
@@ -148,8 +173,11 @@ def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
     return columns
 
 
-def _cut(potential: Potential, tile: np.ndarray, most: int, curves: np.ndarray, gates: np.ndarray, horizon: float) -> np.ndarray:
-    cuts = np.full((tile.shape[1], most, 3), np.nan)
+def _passages(
+    potential: Potential, tile: np.ndarray, count: int, curves: np.ndarray, gates: np.ndarray, duration: float
+) -> np.ndarray:
+    """(lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
+    passages = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
-    kernels_of(potential).cut(step_tolerance(potential), horizon, gates, curves, tile, cuts, found)
-    return cuts
+    kernels_of(potential).cut(step_tolerance(potential), duration, gates, curves, tile, passages, found)
+    return passages

@@ -1,4 +1,4 @@
-"""Maps of escapes, computed: at once, or band by band where memory asks for it."""
+"""Computation of escape maps: all pixels at once, or in blocks of rows where memory requires it."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ from typing import Any
 
 import numpy as np
 
+from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.execution import is_cancelled
-from engine.maps.result import IMAGES, EscapeMap
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
-from engine.maps.run import MapRun, carry_through
+from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.trust import compute_trust
 
 LARGEST_RUN = 2**20
-"""Most pixels whose orbits are held in memory at once; larger maps are computed in bands of rows, which keep results only."""
+"""Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
 
-_SHORTEST_PAUSE, _LONGEST_PAUSE = 0.1, 1.0
-# Of the time that has passed, the share that one frame lasts.
+_MIN_PAUSE, _MAX_PAUSE = 0.1, 1.0
+# Pause between frames as a share of the time elapsed.
 _PAUSE_SHARE = 0.3
 
 
@@ -36,45 +37,52 @@ def compute_map(
     resume: EscapeMap | None = None,
     with_trust: bool = False,
 ) -> EscapeMap:
-    """Compute a map of escapes.
+    """Compute an escape map.
 
     Parameters
     ----------
     spec
         The request.
     on_frame
-        Called in this thread with the map so far, often at first: coarse pixels first, then all, then longer horizons
-        (`frame_pause`). A map of more than `LARGEST_RUN` pixels comes band by band.
+        Called in this thread with the map so far, at increasing intervals (`frame_pause`): first coarse, then at full
+        resolution, then with longer integration times. A map of more than `LARGEST_RUN` pixels is filled block by block.
     cancel
         When set, the map is returned as it is within about 0.1 s, with ``complete`` False.
     executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
+        Any `concurrent.futures.Executor`; None for the default pool of this process.
     resume
-        An earlier map, finished or cancelled, whose spec differs at most by a smaller or equal t_max: its orbits go on
-        from where they are. Maps computed in bands hold none.
+        An earlier map, complete or cancelled, whose spec differs at most by a smaller t_max: its orbits are continued. Maps
+        computed in blocks cannot be resumed.
     with_trust
-        Whether to find out which pixels to trust, too (`compute_trust`), once the map is whole; when cancelled, pixels not tested
-        yet are `Trust.NOT_TESTED`.
+        Whether to compute the reliability of each pixel as well (`compute_trust`) once the map is complete; when cancelled,
+        pixels not tested yet are `Trust.NOT_TESTED`.
 
     Returns
     -------
-    `EscapeMap`; fates, escape times, and the crossings of what escapes, are equal to the bit whatever the executor, the
-    interruptions and the resumptions. Which certificate a bounded orbit has may depend on these.
+    `EscapeMap`; fates, escape times and the crossings of escaping orbits are bit-identical for every executor, interruption and
+    resumption. Which certificate a bounded orbit has may depend on these.
 
     Raises
     ------
     ValueError
-        When `resume` belongs to another map, or no exit is defined at an energy that `spec` asks for.
+        When `resume` belongs to another map, or no exit is defined at an energy of `spec`.
     """
     if resume is not None:
         _check_resumable(spec, resume)
     if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
-        result = _compute_in_bands(spec, on_frame, cancel, executor)
+        result = _compute_in_blocks(spec, on_frame, cancel, executor)
     else:
         result = _compute_at_once(spec, on_frame, cancel, executor, resume)
     if not (with_trust and result.complete):
         return result
     return replace(result, trust=compute_trust(result, None, cancel, executor).trust)
+
+
+def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
+    if resume.batch is None:
+        raise ValueError("resume: this map has no integration state; must be a map returned by compute_map, not a frame")
+    if replace(resume.spec, t_max=spec.t_max) != spec or resume.spec.t_max > spec.t_max:
+        raise ValueError(f"resume: a map of {resume.spec} cannot be continued to {spec}; must be equal but for a smaller t_max")
 
 
 def _compute_at_once(
@@ -84,77 +92,76 @@ def _compute_at_once(
     executor: Executor | None,
     resume: EscapeMap | None,
 ) -> EscapeMap:
-    run = MapRun(spec, resume)
+    run = MapRun(spec, resume, coarse_first=on_frame is not None)
     if on_frame is None:
-        # Nobody looks at coarse stages.
-        run.stride = 1
-    begun = time.monotonic()
-    due: float | None = None
-
-    def publish(stage_over: bool) -> None:
-        nonlocal due
-        now = time.monotonic()
-        # The first frame is the whole of the coarsest stage.
-        if on_frame is None or (now < due if due is not None else not stage_over):
-            return
-        frame = run.frame()
-        if not frame.complete:
-            on_frame(frame)
-            due = time.monotonic() + frame_pause(now - begun)
-
-    carry_through(run, executor, cancel, publish)
+        run.run(executor, cancel)
+        return run.result()
+    run.run(executor, cancel, _FrameThrottle(run, on_frame))
     result = run.result()
-    if on_frame is not None and result.complete:
+    if result.complete:
         on_frame(replace(result, batch=None))
     return result
 
 
+class _FrameThrottle:
+    """Progress callback of a `MapRun` that publishes incomplete frames, with growing pauses between them."""
+
+    def __init__(self, run: MapRun, on_frame: Callable[[EscapeMap], None]) -> None:
+        self._run, self._on_frame = run, on_frame
+        self._started = time.monotonic()
+        self._next_frame: float | None = None
+
+    def __call__(self, stage_over: bool) -> None:
+        now = time.monotonic()
+        # The first frame is published when the coarsest stage is over.
+        is_due = stage_over if self._next_frame is None else now >= self._next_frame
+        if not is_due:
+            return
+        frame = self._run.frame()
+        if not frame.complete:
+            self._on_frame(frame)
+            self._next_frame = time.monotonic() + frame_pause(now - self._started)
+
+
 def frame_pause(elapsed: float) -> float:
-    """Seconds to wait after a frame that came `elapsed` seconds into the work: a quick map need not show every stage of it."""
-    return min(max(_SHORTEST_PAUSE, _PAUSE_SHARE * elapsed), _LONGEST_PAUSE)
+    """Pause in seconds after a frame, given the time in seconds since the start of the computation."""
+    return min(max(_MIN_PAUSE, _PAUSE_SHARE * elapsed), _MAX_PAUSE)
 
 
-def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
-    if resume.batch is None:
-        raise ValueError("resume: this map holds no orbits to go on from; give one that compute_map returned, not a frame")
-    if replace(resume.spec, t_max=spec.t_max) != spec or resume.spec.t_max > spec.t_max:
-        raise ValueError(f"resume: a map of {resume.spec} cannot go on to {spec}; all but a larger t_max must be equal")
-
-
-def _compute_in_bands(
+def _compute_in_blocks(
     spec: MapSpec,
     on_frame: Callable[[EscapeMap], None] | None,
     cancel: threading.Event | None,
     executor: Executor | None,
 ) -> EscapeMap:
-    canvas = _blank(spec)
-    done = 0
+    whole = _empty_map(spec)
+    rows_done = 0
     for rows in row_blocks(spec, LARGEST_RUN):
         run = MapRun(spec, rows=rows)
-        carry_through(run, executor, cancel)
-        part = run.frame()
-        for name in IMAGES:
-            getattr(canvas, name)[rows] = getattr(part, name)
-        done += rows.size
-        stopped = is_cancelled(cancel)
-        canvas = replace(canvas, progress=done / spec.resolution[1], horizon=part.horizon)
-        if stopped:
+        run.run(executor, cancel)
+        block = run.frame()
+        for name in PIXEL_ARRAYS:
+            getattr(whole, name)[rows] = getattr(block, name)
+        rows_done += rows.size
+        cancelled = is_cancelled(cancel)
+        whole = replace(whole, progress=rows_done / spec.resolution[1], horizon=block.horizon)
+        if cancelled:
             break
         if on_frame is not None:
-            on_frame(_read_only(canvas))
-    return replace(_read_only(canvas), complete=not np.any(canvas.fate == Fate.NOT_COMPUTED))
+            on_frame(_read_only_views(whole))
+    return replace(_read_only_views(whole), complete=not np.any(whole.fate == Fate.NOT_COMPUTED))
 
 
-def _read_only(canvas: EscapeMap) -> EscapeMap:
-    """The same map for others to look at; a copy would not be within the bound on memory."""
-    images: dict[str, Any] = {name: getattr(canvas, name).view() for name in IMAGES}
-    for image in images.values():
-        image.flags.writeable = False
-    return replace(canvas, **images)
-
-
-def _blank(spec: MapSpec) -> EscapeMap:
-    """A map of which nothing is known."""
+def _empty_map(spec: MapSpec) -> EscapeMap:
+    """A map without any computed pixels, whose arrays can be written."""
     x, ordinate = spec.pixel_centres()
-    images: dict[str, Any] = {name: np.full((ordinate.size, x.size), value, dtype) for name, (dtype, value) in IMAGES.items()}
-    return EscapeMap(spec, x, ordinate, stride=1, horizon=0.0, progress=0.0, complete=False, **images)
+    arrays: dict[str, Any] = {
+        name: np.full((ordinate.size, x.size), value, dtype) for name, (dtype, value) in PIXEL_ARRAYS.items()
+    }
+    return EscapeMap(spec, x, ordinate, stride=1, horizon=0.0, progress=0.0, complete=False, **arrays)
+
+
+def _read_only_views(escape_map: EscapeMap) -> EscapeMap:
+    """The same map with read-only views of its arrays; copies would need too much memory."""
+    views: dict[str, Any] = {name: read_only(getattr(escape_map, name).view()) for name in PIXEL_ARRAYS}
+    return replace(escape_map, **views)

@@ -1,4 +1,4 @@
-"""A map of escapes: the result, and what can be read off it."""
+"""Escape maps: the result arrays and quantities derived from them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from engine.dynamics.fates import Fate, Trust
 from engine.dynamics.planes import Window
 from engine.maps.spec import MapSpec
 
-IMAGES: dict[str, tuple[type, float]] = {
+PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
     "escape_time": (np.float64, np.nan),
     "crossings": (np.int32, 0),
@@ -24,40 +24,40 @@ IMAGES: dict[str, tuple[type, float]] = {
     "outside": (np.int8, 0),
     "started": (np.bool_, False),
 }
-"""The arrays of a map that have a number for each pixel: their type, and the number where nothing is known."""
+"""Names of the (rows, columns) arrays of a map, with their data types and the values of pixels not computed yet."""
 
 
 @dataclass(frozen=True, eq=False)
 class EscapeMap:
-    """A map, finished or on its way; arrays are (rows, columns) with row 0 lowest, and read-only.
+    """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
 
     Attributes
     ----------
     spec
-        What was asked for.
+        The request.
     x, ordinate
         (columns,), (rows,) pixel centres.
     fate, escape_time, crossings, energy_error
-        As in `Outcomes`; pixels not decided yet are `Fate.NOT_COMPUTED`.
+        As in `Outcomes`; undecided pixels are `Fate.NOT_COMPUTED`.
     certificate
-        int8, the `Certificate` of each bounded orbit: what that word rests on. Crossings and energy error of an orbit
-        that was not followed to t_max count as far as it was.
+        int8, the `Certificate` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit certified
+        early refer to the time up to which it was integrated.
     outside
         int8, the channel beyond whose Lyapunov orbit the start lies, 0 inside.
     stride
-        Of each square of this many pixels a side at least one has been started; 1 when all have.
+        At least one pixel of each square of `stride` pixels a side has been started; 1 when all have.
     horizon
-        Time to which this stage follows orbits; t_max in the last one.
+        Time up to which orbits are integrated in the current stage; t_max in the last stage.
     progress
-        Share of the work that is certainly done, 0 to 1: undecided orbits count by the time they have covered.
+        Share of the work done, 0 to 1; an undecided orbit counts by the share of t_max it has covered.
     complete
         Whether every pixel is decided.
     started
         bool, the pixels whose orbits have been started.
     batch
-        State to go on from with ``resume``; None in frames.
+        Integration state for ``resume``; None in frames.
     trust
-        (rows, columns) int8, the `Trust` of each pixel where it was asked for; else None.
+        (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
     """
 
     spec: MapSpec
@@ -79,32 +79,45 @@ class EscapeMap:
 
     @property
     def interior(self) -> np.ndarray:
-        """(rows, columns) bool, the starts that exist and are not outside."""
+        """(rows, columns) bool, the pixels that are neither forbidden nor outside."""
         return find_interior(self.fate)
 
     @property
     def undecided(self) -> float:
-        """Share of the interior starts whose fate is still open."""
+        """Share of the interior pixels that are undecided; 0 if there are none."""
         return float(np.mean(self.fate[self.interior] == Fate.NOT_COMPUTED)) if self.interior.any() else 0.0
 
     @property
     def worst_energy_error(self) -> float:
-        """Largest relative energy error of any decided orbit; NaN when there is none."""
+        """Largest relative energy error of the decided orbits; NaN if there are none."""
         errors = self.energy_error[np.isfinite(self.energy_error)]
         return float(errors.max()) if errors.size else float("nan")
 
     @property
     def nbytes(self) -> int:
-        """Bytes held by the arrays, the state to go on from included."""
-        images: list[np.ndarray] = [getattr(self, name) for name in IMAGES]
-        images += [self.trust] if self.trust is not None else []
-        return sum(image.nbytes for image in images) + (self.batch.nbytes if self.batch else 0)
+        """Bytes held by the arrays, including the integration state."""
+        arrays: list[np.ndarray] = [getattr(self, name) for name in PIXEL_ARRAYS]
+        arrays += [self.trust] if self.trust is not None else []
+        return sum(array.nbytes for array in arrays) + (self.batch.nbytes if self.batch else 0)
+
+    def check_complete(self, name: str) -> None:
+        """Raise ValueError, with `name` as the parameter, unless the map is complete."""
+        if not self.complete:
+            raise ValueError(f"{name}: the map is not complete, its progress is {self.progress:.1%}; must be a complete map")
+
+    def coordinates(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) x and (n,) ordinate of the centres of pixels (n,), which are numbered row by row from 0."""
+        rows, columns = np.divmod(pixels, self.x.size)
+        return self.x[columns], self.ordinate[rows]
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
         """Share of the starts for each channel, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
 
-        Out of the interior starts; with `count_outside` starts outside count as escaped at once through the channel they
-        lie in, as the paper's percentages do (they then depend on the window).
+        Parameters
+        ----------
+        count_outside
+            Whether outside starts count as escaped at once through the channel they lie in, as in the percentages of Zotos
+            (2014); the shares then depend on the window. By default they are shares of the interior starts.
         """
         fate = self.fate
         if count_outside:
@@ -114,45 +127,45 @@ class EscapeMap:
         return {int(code): float(np.mean(fate == code)) if fate.size else 0.0 for code in codes}
 
     def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
-        """fate, escape_time, crossings and certificate of the one pixel that stands for each square of `stride`.
+        """fate, escape_time, crossings and certificate of one started pixel per square of `stride` pixels a side.
 
         Returns
         -------
-        The images, (rows, columns) over `stride` rounded up, and the window that they fill: up to a square larger than the
-        map's, as the last squares may reach beyond it.
+        The arrays, of (rows, columns) / `stride` rounded up, and the window they cover. It may extend beyond the map's window by
+        less than one square, as the last squares may be incomplete.
         """
         names = ("fate", "escape_time", "crossings", "certificate")
         if self.stride == 1:
             return {name: getattr(self, name) for name in names}, self.spec.window
-        places = np.ix_(*(np.unique(anchors(size, self.stride)) for size in self.fate.shape))
-        images = {name: getattr(self, name)[places] for name in names}
-        (rows, columns), window = images["fate"].shape, self.spec.window
+        pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
+        arrays = {name: getattr(self, name)[pixels] for name in names}
+        (rows, columns), window = arrays["fate"].shape, self.spec.window
         x_high = window.x_low + (window.x_high - window.x_low) * columns * self.stride / self.fate.shape[1]
         high = window.ordinate_low + (window.ordinate_high - window.ordinate_low) * rows * self.stride / self.fate.shape[0]
-        return images, Window(window.x_low, x_high, window.ordinate_low, high)
+        return arrays, Window(window.x_low, x_high, window.ordinate_low, high)
 
     def to_xarray(self) -> xr.Dataset:
-        """The map with named axes, units and provenance, fit for NetCDF."""
-        spec = self.spec
-        dims = (spec.plane.ordinate, "x")
+        """The map as a dataset with named axes, units and provenance, which can be written as NetCDF."""
+        plane = self.spec.plane
+        dims = (plane.ordinate, "x")
         variables = {
             "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **describe_codes(Fate)}),
             "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
             "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
             "outside": (dims, self.outside, {"long_name": "channel beyond whose Lyapunov orbit the start lies, 0 inside"}),
-            "certificate": (dims, self.certificate, {"long_name": "what bounded rests on", **describe_codes(Certificate)}),
+            "certificate": (dims, self.certificate, {"long_name": "why the orbit is bounded", **describe_codes(Certificate)}),
             "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
         }
         if self.trust is not None:
-            variables["trust"] = (dims, self.trust, {"long_name": "whether the answer survives", **describe_codes(Trust)})
+            variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})
         coordinates = {
-            spec.plane.ordinate: (spec.plane.ordinate, self.ordinate, {"units": "1"}),
+            plane.ordinate: (plane.ordinate, self.ordinate, {"units": "1"}),
             "x": ("x", self.x, {"units": "1"}),
         }
         return xr.Dataset(variables, coordinates, self.provenance())
 
     def provenance(self) -> dict[str, Any]:
-        """What made this map, in plain values: the request, the integrator, its version, the worst energy error, the counts."""
+        """How the map was made, in plain values: request, integrator, version, worst energy error, pixels per fate code."""
         codes, counts = np.unique(self.fate, return_counts=True)
         return {
             **self.spec.provenance(),
@@ -163,16 +176,16 @@ class EscapeMap:
 
 
 def describe_codes(codes: type[IntEnum]) -> dict[str, str]:
-    """The attribute of a labelled array that tells what its codes mean."""
+    """The dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``."""
     return {"codes": "; ".join(f"{code.value}: {code.name.lower()}" for code in codes)}
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:
-    """bool, shaped like the codes: the starts that exist and are not outside."""
+    """bool array of the same shape: starts that are neither forbidden nor outside."""
     interior: np.ndarray = (fate != Fate.FORBIDDEN) & (fate != Fate.OUTSIDE)
     return interior
 
 
-def anchors(size: int, stride: int) -> np.ndarray:
-    """For each index the one that stands for its square."""
+def representative_indices(size: int, stride: int) -> np.ndarray:
+    """(size,) for each row or column, the one computed first in its block of `stride`: the middle, or the last one there is."""
     return np.minimum(np.arange(size) // stride * stride + stride // 2, size - 1)

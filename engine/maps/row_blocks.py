@@ -1,4 +1,4 @@
-"""A map cut into bands of rows, each of which can be computed, kept and lost on its own."""
+"""Division of a map into blocks of rows that can be computed, stored and recomputed independently."""
 
 from __future__ import annotations
 
@@ -10,18 +10,22 @@ from engine.dynamics.planes import Plane
 from engine.maps.spec import MapSpec
 
 
-def row_blocks(spec: MapSpec, most: int) -> Iterator[np.ndarray]:
-    """Numbers of rows, rising, that together hold every pixel once; on (x, px) each band with its mirror image.
+def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
+    """Divide the rows of a map into blocks; on (x, px) each block contains the mirror images of its rows.
 
     Parameters
     ----------
     spec
         The map.
-    most
-        Most pixels of a band, 1 or more; a band has one row at least, and on (x, px) one and its image.
+    max_pixels
+        Largest number of pixels in a block, at least 1. A block has at least one row, on (x, px) one row and its mirror image.
+
+    Yields
+    ------
+    Increasing row numbers of each block; together the blocks contain every row once.
     """
     columns, rows = spec.resolution
-    height = max(most // columns, 1)
+    height = max(max_pixels // columns, 1)
     if spec.plane is not Plane.X_PX:
         yield from (np.arange(low, min(low + height, rows)) for low in range(0, rows, height))
         return

@@ -1,4 +1,4 @@
-"""One map on its way: coarse to fine, short horizon to long, certificates between; cancellable and resumable."""
+"""The computation of one map in stages: coarse to fine, short to long integration times, with certificates in between."""
 
 from __future__ import annotations
 
@@ -6,47 +6,49 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from engine.arrays import read_only
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.classification import Outcomes, read_outcomes
+from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import closed_curves, exit_curves
-from engine.dynamics.planes import Plane, find_mirror_images
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
-from engine.maps.result import EscapeMap, anchors, find_interior
+from engine.maps.pixels import MirrorPixels
+from engine.maps.result import EscapeMap, find_interior, representative_indices
 from engine.maps.spec import MapSpec
 
-# A first frame holds at most this many pixels.
 COARSE_PIXELS = 1200
-SHORTEST_HORIZON = 100.0
-HORIZON_FACTOR = 10.0
-# Most escapes are over by then: what is still open is worth a certificate.
+"""Largest number of pixels in the first frame."""
+
 CERTIFIED_FROM = 1000.0
+"""Time from which undecided orbits are tested for certificates; most escapes happen earlier."""
+
+_FIRST_HORIZON = 100.0
+_HORIZON_FACTOR = 10.0
 
 
-def _coarsest_stride(resolution: tuple[int, int]) -> int:
-    stride = 1
-    while -(-resolution[0] // stride) * -(-resolution[1] // stride) > COARSE_PIXELS:
-        stride *= 2
-    return stride
-
-
-def _horizons(t_max: float) -> list[float]:
-    """Short first, each ten times the last, and t_max; times between half and all of t_max are not worth a stage."""
-    horizons = []
-    horizon = SHORTEST_HORIZON
+def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float]:
+    """Integration times of successive stages: a geometric sequence up to half of t_max, then t_max."""
+    horizon = first
     while horizon < 0.5 * t_max:
-        horizons.append(horizon)
-        horizon *= HORIZON_FACTOR
-    return [*horizons, t_max]
+        yield horizon
+        horizon *= factor
+    yield t_max
+
+
+def certifies_before(spec: MapSpec, reached: float, horizon: float) -> bool:
+    """Whether orbits integrated up to `reached` are to be tested for certificates before they go on to `horizon`."""
+    return spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= reached
 
 
 class MapRun:
-    """The computation of a map, or of some rows of it, on its way: the batch behind its pixels and the stage it is in.
+    """State of the computation of a map, or of some of its rows.
 
     Of two pixels that are mirror images of each other only the first is computed.
 
@@ -55,140 +57,146 @@ class MapRun:
     spec
         The request.
     resume
-        An earlier map to go on from.
+        An earlier map, with its integration state, to continue from.
     rows
-        Numbers of the rows, rising; None for all.
+        Increasing row numbers; None for all rows.
+    coarse_first
+        Whether to start with coarse stages, whose frames give an overview early.
+
+    Attributes
+    ----------
+    stride, horizon
+        Those of the current stage, see `EscapeMap`.
     """
 
-    def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, rows: np.ndarray | None = None) -> None:
+    def __init__(
+        self, spec: MapSpec, resume: EscapeMap | None = None, rows: np.ndarray | None = None, *, coarse_first: bool = True
+    ) -> None:
         self.spec = spec
         self.x, self.ordinate = spec.pixel_centres()
         self.ordinate = self.ordinate if rows is None else self.ordinate[rows]
         self.shape = (self.ordinate.size, self.x.size)
-        self.images = find_mirror_images(spec.potential, spec.plane, self.x, self.ordinate)
+        self.stride = _coarsest_stride(self.shape) if coarse_first else 1
+        self.horizon = min(_FIRST_HORIZON, spec.t_max)
+        self._mirror = MirrorPixels(spec, self.x, self.ordinate)
         x, ordinate = (grid.ravel() for grid in np.meshgrid(self.x, self.ordinate))
-        rows = np.repeat(np.arange(self.shape[0]), self.shape[1])
-        self.energy = ordinate if isinstance(spec.energy, tuple) else np.full(x.size, spec.energy)
-        self.curve_row = rows if spec.plane is Plane.X_H else np.zeros(x.size, np.int64)
+        self._energy = ordinate if isinstance(spec.energy, tuple) else np.full(x.size, spec.energy)
+        # On (x, h) each row has its own energy and exits.
+        row = np.repeat(np.arange(self.shape[0]), self.shape[1])
+        self._curve_row = row if spec.plane is Plane.X_H else np.zeros(x.size, np.int64)
+        self._curves = np.repeat(closed_channel_curves(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
+        self._rows_without_exits = set(range(len(self._curves)))
         if resume is None:
-            self.batch = OrbitBatch.from_starts(spec.start_states(x, ordinate), self.curve_row)
-            self.started = np.zeros(x.size, bool)
+            self._batch = OrbitBatch.from_starts(spec.start_states(x, ordinate), self._curve_row)
+            self._started = np.zeros(x.size, bool)
         else:
             assert resume.batch is not None
-            self.batch, self.started = resume.batch.copy(), resume.started.ravel().copy()
-            self.batch.reopen_bounded()
-        self.curves = np.repeat(closed_curves(spec.potential)[None], self.curve_row[-1] + 1, axis=0)
-        self.stride = _coarsest_stride(self.shape)
-        self.horizon = min(SHORTEST_HORIZON, spec.t_max)
-        self.unsolved = set(range(len(self.curves)))
+            self._batch, self._started = resume.batch.copy(), resume.started.ravel().copy()
+            self._batch.reopen_bounded()
 
-    def levels(self) -> Iterator[tuple[np.ndarray, int]]:
-        """(pixels, stride) of each refinement, coarse to fine; the last one holds all pixels."""
-        numbers = np.arange(self.started.size).reshape(self.shape)
-        stride = 1 if self.started.all() else self.stride
+    def run(
+        self,
+        executor: Executor | None = None,
+        cancel: threading.Event | None = None,
+        on_progress: Callable[[bool], None] = lambda stage_over: None,
+    ) -> None:
+        """Run all stages until done or cancelled; `on_progress(stage_over)` is called whenever pixels may have changed."""
+        for pixels, stride, horizon in self._stages():
+            if is_cancelled(cancel):
+                break
+            if certifies_before(self.spec, self.horizon, horizon):
+                self._certify(executor, cancel, lambda: on_progress(False))
+            self._begin_stage(pixels, stride, horizon)
+            propagate_batch(
+                self.spec.potential, self._curves, self._batch, pixels, horizon,
+                final=horizon == self.spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: on_progress(False),
+            )  # fmt: skip
+            on_progress(True)
+
+    def _stages(self) -> Iterator[tuple[np.ndarray, int, float]]:
+        """(pixels, stride, horizon): every refinement at the shortest horizon, then all pixels at longer ones."""
+        first_horizon, *later_horizons = rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, self.spec.t_max)
+        for pixels, stride in self._refinements():
+            yield pixels, stride, first_horizon
+        for horizon in later_horizons:
+            yield pixels, stride, horizon
+
+    def _refinements(self) -> Iterator[tuple[np.ndarray, int]]:
+        """(pixels, stride) of each refinement, coarse to fine; the last one contains all pixels."""
+        numbers = np.arange(self._started.size).reshape(self.shape)
+        stride = 1 if self._started.all() else self.stride
         while stride > 1:
-            rows, columns = (np.unique(anchors(size, stride)) for size in self.shape)
-            yield self._first_of_images(numbers[np.ix_(rows, columns)].ravel()), stride
+            rows, columns = (np.unique(representative_indices(size, stride)) for size in self.shape)
+            yield self._mirror.firsts_of(numbers[np.ix_(rows, columns)].ravel()), stride
             stride //= 2
-        yield self._first_of_images(numbers.ravel()), 1
+        yield self._mirror.firsts_of(numbers.ravel()), 1
 
-    def _first_of_images(self, pixels: np.ndarray) -> np.ndarray:
-        """The pixels to compute for these, each once."""
-        return pixels if self.images is None else np.unique(np.minimum(pixels, self.images[pixels]))
-
-    def stages(self) -> Iterator[tuple[np.ndarray, int, float]]:
-        """(pixels, stride, horizon): every level at the shortest horizon, then all pixels at longer ones."""
-        horizons = _horizons(self.spec.t_max)
-        for pixels, stride in self.levels():
-            yield pixels, stride, horizons[0]
-        everything = self._first_of_images(np.arange(self.started.size))
-        for horizon in horizons[1:]:
-            yield everything, 1, horizon
-
-    def begin(self, pixels: np.ndarray, stride: int, horizon: float) -> np.ndarray:
-        """Start a stage: find the exits that its pixels need, mark starts that lie outside, and return the exit curves."""
+    def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float) -> None:
+        """Compute the exits that the pixels need, and start pixels not started yet."""
         self.stride, self.horizon = stride, horizon
-        for row in self.unsolved.intersection(np.unique(self.curve_row[pixels]).tolist()):
-            self.curves[row] = exit_curves(self.spec.potential, self._row_energy(row))
-            self.unsolved.discard(row)
-        fresh = pixels[~self.started[pixels]]
-        self.batch.mark_outside(fresh, self.curves)
-        self.started[fresh] = True
-        return self.curves
+        for row in self._rows_without_exits.intersection(np.unique(self._curve_row[pixels]).tolist()):
+            energy = float(self.ordinate[row]) if self.spec.plane is Plane.X_H else float(self._energy[0])
+            self._curves[row] = exit_curves(self.spec.potential, energy)
+            self._rows_without_exits.discard(row)
+        fresh = pixels[~self._started[pixels]]
+        self._batch.mark_outside(fresh, self._curves)
+        self._started[fresh] = True
 
-    def certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
-        """Settle the open orbits that can be shown never to leave."""
-        spec, batch = self.spec, self.batch
-        waiting = np.flatnonzero(batch.fate == Fate.NOT_COMPUTED)
-        waiting = np.intersect1d(waiting, self._first_of_images(waiting))
-        closed = self.energy[waiting] <= spec.potential.escape_energy
-        batch.settle(waiting[closed], Certificate.CLOSED)
-        waiting = waiting[~closed]
-        place = np.column_stack(np.divmod(waiting, self.shape[1]))
+    def _certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
+        """Mark undecided orbits as bounded that have a certificate."""
+        spec, batch = self.spec, self._batch
+        undecided = self._mirror.firsts_among(np.flatnonzero(batch.fate == Fate.NOT_COMPUTED))
+        closed = self._energy[undecided] <= spec.potential.escape_energy
+        batch.mark_bounded(undecided[closed], Certificate.CLOSED)
+        undecided = undecided[~closed]
         energy = None if isinstance(spec.energy, tuple) else spec.energy
-        time_left = spec.t_max - self.horizon
-        certification = BoundednessCertifier(spec.potential, energy, batch.state[waiting], place, time_left, executor, cancel)
+        grid_indices = np.column_stack(np.divmod(undecided, self.shape[1]))
+        certifier = BoundednessCertifier(
+            spec.potential, energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, executor, cancel
+        )
 
-        def settle() -> None:
-            batch.settle(waiting, certification.certificate)
+        def mark_certified() -> None:
+            batch.mark_bounded(undecided, certifier.certificate)
             on_round()
 
-        certification.run(settle)
-
-    def _row_energy(self, row: int) -> float:
-        return float(self.ordinate[row]) if self.spec.plane is Plane.X_H else float(self.energy[0])
+        certifier.run(mark_certified)
 
     def result(self) -> EscapeMap:
-        """The last frame, with the state to go on from."""
-        return replace(self.frame(), batch=self.batch)
-
-    def outcomes(self) -> Outcomes:
-        """What is known of each pixel; (n,) arrays."""
-        if self.images is not None:
-            first = np.flatnonzero(self.started & (self.images > np.arange(self.images.size)))
-            self.batch.copy_to_images(first, self.images[first], self.spec.potential.mirror_channels)
-            self.started[self.images[first]] = True
-        return read_outcomes(self.spec.potential, self.energy, self.batch)
+        """The map so far, with the integration state for a later `resume`."""
+        return replace(self.frame(), batch=self._batch)
 
     def frame(self) -> EscapeMap:
         """The map so far."""
-        outcomes = self.outcomes()
-        complete = bool(self.started.all() and not np.any(outcomes.fate == Fate.NOT_COMPUTED))
-        arrays = {
-            name: getattr(outcomes, name).reshape(self.shape) for name in ("fate", "escape_time", "crossings", "energy_error")
-        }
-        arrays |= {"certificate": self.batch.certificates().reshape(self.shape)}
-        arrays |= {"outside": self.batch.outside.reshape(self.shape).copy(), "started": self.started.reshape(self.shape).copy()}
-        for array in (*arrays.values(), self.x, self.ordinate):
-            array.flags.writeable = False
+        outcomes = self._outcomes()
+        complete = bool(self._started.all() and not np.any(outcomes.fate == Fate.NOT_COMPUTED))
+        arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
+        arrays |= {"certificate": self._batch.certificates()}
+        arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
+        pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
         return EscapeMap(
-            spec=self.spec, x=self.x, ordinate=self.ordinate, stride=self.stride, horizon=self.horizon,
-            progress=self._progress(), complete=complete, **arrays,
+            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate), stride=self.stride, horizon=self.horizon,
+            progress=self._progress(), complete=complete, **pixel_arrays,
         )  # fmt: skip
 
+    def _outcomes(self) -> Outcomes:
+        """Outcomes of all pixels, (n,) arrays; second mirror images are copied from the first."""
+        seconds = self._mirror.partner
+        firsts = np.flatnonzero(self._started & (seconds > np.arange(seconds.size)))
+        if firsts.size:
+            self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.mirror_channels)
+            self._started[seconds[firsts]] = True
+        return collect_outcomes(self.spec.potential, self._energy, self._batch)
+
     def _progress(self) -> float:
-        fate = self.batch.fate
-        covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self.batch.t / self.spec.t_max, 1.0), 1.0)
+        fate = self._batch.fate
+        covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
         interior = find_interior(fate)
         return float(covered[interior].mean()) if interior.any() else 1.0
 
 
-def carry_through(
-    run: MapRun,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
-    publish: Callable[[bool], None] = lambda stage_over: None,
-) -> None:
-    """Take a run through all its stages; `publish(stage_over)` is called whenever there may be news."""
-    spec = run.spec
-    for pixels, stride, horizon in run.stages():
-        if is_cancelled(cancel):
-            break
-        if spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= run.horizon:
-            run.certify(executor, cancel, lambda: publish(False))
-        curves = run.begin(pixels, stride, horizon)
-        propagate_batch(
-            spec.potential, curves, run.batch, pixels, horizon,
-            final=horizon == spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: publish(False),
-        )  # fmt: skip
-        publish(True)
+def _coarsest_stride(shape: tuple[int, int]) -> int:
+    """The smallest power of 2 with which one pixel per square gives at most `COARSE_PIXELS`."""
+    stride = 1
+    while -(-shape[0] // stride) * -(-shape[1] // stride) > COARSE_PIXELS:
+        stride *= 2
+    return stride

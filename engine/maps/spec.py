@@ -1,4 +1,4 @@
-"""The request for a map: frozen, validated and hashable, so that it is also the key under which the answer is kept."""
+"""The request for an escape map; frozen, validated and hashable, so that it also serves as a cache key."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import numpy as np
 from engine.dynamics.planes import Plane, Window, default_window, start_states
 from engine.potentials.potential import Potential
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
-from engine.validation import LARGEST_NUMBER, read_array, read_number, read_t_max, shown
+from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max, short_repr
 
 LARGEST_SIDE = 4096
-"""Most columns or rows of a map."""
+"""Largest number of columns or rows of a map."""
 
 FINEST_PIXEL = 1e-15
-"""Least distance of neighbouring pixels: some units in the last place of coordinates of order 1."""
+"""Smallest distance of neighbouring pixels, a few units in the last place of coordinates of order 1."""
 
 
 @dataclass(frozen=True)
 class MapSpec:
-    """A map of escapes: which orbits, seen how finely, followed how long.
+    """An escape map: the orbits, the resolution and the integration time.
 
     Parameters
     ----------
@@ -32,32 +32,32 @@ class MapSpec:
     plane
         Plane of initial conditions.
     energy
-        h, finite, dimensionless; on (x, h) a (low, high) pair. At or below the escape energy nothing leaves.
+        h, finite, dimensionless; on (x, h) a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
         (columns, rows), each 1 to 4096.
     window
         `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior. On (x, h) the ordinate
         is the energy.
     t_max
-        How long an orbit is followed, 0 < t_max ≤ 1e8.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless.
     certify
-        Whether an orbit may be called bounded before t_max when there is a certificate that it never leaves.
+        Whether an orbit is called bounded before t_max if it has a certificate that it never escapes.
     backward
-        Whether orbits are followed into the past. Potentials do not depend on velocity, so that this is the way of
-        (x, y, −px, −py) into the future: fates are then channels that orbits came in by, times how long ago, and crossings
-        those that the reversed orbit makes upward.
+        Whether orbits are followed into the past. As the potential does not depend on velocity, this equals following
+        (x, y, −px, −py) into the future. Fates are then the channels through which orbits entered, escape times tell how long
+        ago, and crossings are the upward crossings of the reversed orbit.
 
     Raises
     ------
     ValueError
-        Naming the parameter, its value and what is legal.
+        When a parameter is invalid; the message names it, its value and what is legal.
     """
 
     potential: Potential
     plane: Plane
     energy: float | tuple[float, float]
     resolution: tuple[int, int] = (225, 225)
-    window: Window = None  # type: ignore[assignment]  # None is replaced below
+    window: Window = None  # type: ignore[assignment]  # None is replaced in __post_init__
     t_max: float = 1e5
     certify: bool = True
     backward: bool = False
@@ -67,7 +67,7 @@ class MapSpec:
         energy = _checked_energy(plane, self.energy)
         for name, value in (("plane", plane), ("energy", energy), ("resolution", _checked_resolution(self.resolution))):
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "t_max", read_t_max(self.t_max))
+        object.__setattr__(self, "t_max", checked_t_max(self.t_max))
         for name in ("certify", "backward"):
             object.__setattr__(self, name, bool(getattr(self, name)))
         window: Any = self.window
@@ -80,7 +80,7 @@ class MapSpec:
         return self.window.pixel_centres(*self.resolution)
 
     def start_states(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """(n, 4) states x, y, px, py from which orbits through points (n,), (n,) of the plane go; py NaN where forbidden."""
+        """(n, 4) initial states x, y, px, py of the points (n,), (n,) of the plane; py is NaN where forbidden."""
         energy = 0.0 if isinstance(self.energy, tuple) else self.energy
         states = start_states(self.potential, self.plane, energy, x, ordinate)
         if self.backward:
@@ -88,7 +88,7 @@ class MapSpec:
         return states
 
     def provenance(self) -> dict[str, Any]:
-        """The request in plain values, with the integrator that answers it and its version."""
+        """The request in plain values, with the integrator and the package version."""
         window = self.window
         return {
             "potential": self.potential.name,
@@ -105,7 +105,7 @@ class MapSpec:
         }
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
-        """(row, column) of the pixel that holds a point of the plane; None outside the window."""
+        """(row, column) of the pixel that contains a point of the plane; None outside the window."""
         window, (columns, rows) = self.window, self.resolution
         column = int(np.floor((x - window.x_low) / (window.x_high - window.x_low) * columns))
         row = int(np.floor((ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows))
@@ -114,26 +114,28 @@ class MapSpec:
 
 def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
     if plane is not Plane.X_H:
-        return read_number("energy", energy, f"one finite number on {plane.value}")
-    values = read_array("energy", energy).ravel()
+        return checked_number("energy", energy, f"one finite number on {plane.value}")
+    values = checked_array("energy", energy).ravel()
     if values.size != 2 or not (np.all(np.abs(values) <= LARGEST_NUMBER) and values[0] < values[1]):
-        raise ValueError(f"energy={shown(energy)}: on {plane.value} it must be a pair (low, high) of finite numbers")
+        raise ValueError(
+            f"energy={short_repr(energy)}: on {plane.value} must be a pair (low, high) of finite numbers with low < high"
+        )
     return float(values[0]), float(values[1])
 
 
 def _checked_window(window: Any, resolution: tuple[int, int]) -> Window:
-    checked = window if isinstance(window, Window) else _window_from(window)
+    checked = window if isinstance(window, Window) else _window_from_edges(window)
     for centres in checked.pixel_centres(*resolution):
         if centres.size > 1 and np.min(np.diff(centres)) < FINEST_PIXEL * max(1.0, float(np.max(np.abs(centres)))):
-            raise ValueError(f"window={checked}: double precision ends here; its pixels are less than {FINEST_PIXEL:g} apart")
+            raise ValueError(f"window={checked}: double precision ends here; pixels must be at least {FINEST_PIXEL:g} apart")
     return checked
 
 
-def _window_from(edges: Any) -> Window:
+def _window_from_edges(edges: Any) -> Window:
     try:
         x_low, x_high, ordinate_low, ordinate_high = map(float, edges)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"window={shown(edges)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
+        raise ValueError(f"window={short_repr(edges)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
     return Window(x_low, x_high, ordinate_low, ordinate_high)
 
 
@@ -143,5 +145,5 @@ def _checked_resolution(resolution: Any) -> tuple[int, int]:
     except TypeError:
         sides = ()
     if len(sides) != 2 or not all(1 <= side <= LARGEST_SIDE for side in sides):
-        raise ValueError(f"resolution={shown(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
+        raise ValueError(f"resolution={short_repr(resolution)}: must be (columns, rows), each from 1 to {LARGEST_SIDE}")
     return sides

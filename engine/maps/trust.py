@@ -1,9 +1,9 @@
-"""Which pixels of a map to trust: those that survive a change far smaller than a pixel, and another tolerance."""
+"""Reliability of map pixels: whether an outcome survives a tiny shift of the start and a different step tolerance."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
@@ -13,36 +13,36 @@ import numpy as np
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
-from engine.dynamics.lyapunov_orbits import closed_curves, exit_curves
-from engine.dynamics.planes import Plane, find_mirror_images
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled
-from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
+from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
+from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
-from engine.maps.run import CERTIFIED_FROM
+from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.taylor.source.recurrence import TOLERANCE
 
 SHIFT = 1e-11
-"""How far a start is moved along x and along the ordinate: well above all rounding, well below any pixel of a whole map."""
+"""Shift of a start along x and along the ordinate: far above rounding errors, far below a pixel of a whole map."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
-"""In a deep zoom a start is moved by no more than this share of its pixel."""
+"""Largest shift as a share of the pixel, which limits it in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
-"""Steps a sixth longer, whose errors have nothing in common with those of the map."""
+"""Tolerance of the second rerun: steps are a sixth longer, so that their errors are independent of the map's."""
 
-# The first stretch of time; each one doubles the last, so that an orbit is hardly followed beyond what its pixel asks for, and
-# one of them ends where certificates begin to pay.
+# Horizons are doubled in each stage, so that few orbits are integrated longer than needed; one of them is CERTIFIED_FROM.
 _FIRST_HORIZON = CERTIFIED_FROM / 8.0
-# A row and column on the coarsest lattice of `BoundednessCertifier`.
-# The bounded pixels to test are few and stand around islands: tried
-# all at once they fill the lanes, lattice by lattice they do not.
-_ON_COARSEST_LATTICE = 8
+_HORIZON_FACTOR = 2.0
+# A grid index on the coarsest lattice of `BoundednessCertifier`. The bounded pixels to test are few and lie around islands, so
+# one round with all of them fills the lanes of the kernels better than one round per lattice.
+_COARSEST_LATTICE_INDEX = 8
 
 
 @dataclass(frozen=True, eq=False)
-class TrustMap:
-    """Which pixels of a map to trust, finished or on the way.
+class TrustMap(PixelAnalysis):
+    """Reliability of the pixels of a map, complete or in progress.
 
     Attributes
     ----------
@@ -51,32 +51,26 @@ class TrustMap:
     trust
         (rows, columns) int8 `Trust` codes, read-only.
     complete
-        Whether every pixel that asks for a test has had it.
+        Whether all pixels that need a test have been tested.
     """
 
-    spec: MapSpec
     trust: np.ndarray
     complete: bool
 
     @property
-    def nbytes(self) -> int:
-        """Bytes held by the array."""
-        return self.trust.nbytes
-
-    @property
     def doubtful_share(self) -> float:
-        """Share of doubtful pixels among all that have an answer; NaN when there are none."""
+        """Share of doubtful pixels among the interior ones; NaN if there are none."""
         return self._share(Trust.DOUBTFUL)
 
     @property
     def tested_share(self) -> float:
-        """Share of the pixels tested so far among all that have an answer; NaN when there are none."""
+        """Share of the pixels tested so far among the interior ones; NaN if there are none."""
         return self._share(Trust.CONFIRMED, Trust.DOUBTFUL)
 
     def describe(self) -> str:
-        """The shares in a sentence."""
+        """The shares in one sentence."""
         if np.isnan(self.doubtful_share):
-            return "No pixel has an answer that could be doubted."
+            return "There are no pixels inside to test."
         doubtful, tested, like = (
             f"{100.0 * share:.2f} %" for share in (self.doubtful_share, self.tested_share, self._share(Trust.LIKE_NEIGHBOURS))
         )
@@ -84,8 +78,7 @@ class TrustMap:
         return f"{doubtful} of the pixels inside are doubtful{so_far}: {tested} were tested, {like} agree with their neighbours."
 
     def _share(self, *codes: Trust) -> float:
-        asked = self.trust[self.trust != Trust.NO_QUESTION]
-        return float(np.mean(np.isin(asked, codes))) if asked.size else float("nan")
+        return code_share(self.trust[self.trust != Trust.NOT_APPLICABLE], *codes)
 
 
 def compute_trust(
@@ -94,109 +87,124 @@ def compute_trust(
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
 ) -> TrustMap:
-    """Find the pixels of a finished map whose answer does not survive a change far smaller than a pixel.
+    """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
-    A pixel is tested when one of its eight neighbours has another fate or, both having escaped, other crossings. It is followed
-    twice more: from a start `SHIFT` nearer to 0 in x and in the ordinate (see `shifted_starts`), and from the same start at
-    `SECOND_TOLERANCE`. It is doubtful when its fate, or its crossings before the escape, change in either; crossings of bounded
-    orbits are not compared, as certified ones are not followed to t_max. Of two pixels that are mirror images only the first is
-    tested.
+    A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings. Its orbit is
+    integrated twice more: from a start shifted by `SHIFT` towards 0 in x and in the ordinate (see `shifted_starts`), and from
+    the same start with tolerance `SECOND_TOLERANCE`. The pixel is doubtful if its fate or its crossings before the escape change
+    in either rerun. Crossings of bounded orbits are not compared, as certified ones are not integrated to t_max. Of two pixels
+    that are mirror images only the first is tested.
 
     Parameters
     ----------
     escape_map
         A complete map.
     on_frame
-        Called in this thread with what is known so far.
+        Called in this thread with the result so far.
     cancel
-        When set, pixels whose test is not over stay `Trust.NOT_TESTED`.
+        When set, pixels whose test is not finished stay `Trust.NOT_TESTED`.
     executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
+        Any `concurrent.futures.Executor`; None for the default pool of this process.
 
     Raises
     ------
     ValueError
         When the map is not complete.
     """
-    if not escape_map.complete:
-        raise ValueError("escape_map: is not complete; which pixels to test is known only then")
+    escape_map.check_complete("escape_map")
     spec, reached = escape_map.spec, 0.0
-    trial = _Trial(escape_map, on_frame, cancel, executor)
-    for horizon in _horizons(spec.t_max):
-        if trial.is_over():
+    test = _TrustTest(escape_map, on_frame, cancel, executor)
+    for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
+        if test.is_finished():
             break
-        if spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= reached:
-            trial.certify(reached)
-        trial.follow(horizon)
+        if certifies_before(spec, reached, horizon):
+            test.certify(reached)
+        test.propagate(horizon)
         reached = horizon
-    return trial.result()
+    return test.result()
 
 
 def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarray:
-    """(rows, columns) bool: pixels with an answer, one of whose eight neighbours has another.
+    """Find the interior pixels with an interior neighbour, of eight, whose outcome differs.
 
-    Answers are the fate and, of what escapes, the crossings.
+    Outcomes differ if the fates do or, for escaping orbits, the crossings.
+
+    Parameters
+    ----------
+    fate, crossings
+        (rows, columns) as in `EscapeMap`.
+
+    Returns
+    -------
+    (rows, columns) bool.
     """
-    answer = np.where(fate >= 1, crossings.astype(np.int64) * (int(fate.max(initial=0)) + 1) + fate, 0)
-    asked = fate >= Fate.BOUNDED
+    outcome = np.where(fate >= 1, crossings.astype(np.int64) * (int(fate.max(initial=0)) + 1) + fate, 0)
+    interior = fate >= Fate.BOUNDED
     rows, columns = fate.shape
     unlike = np.zeros(fate.shape, bool)
-    padded, present = np.pad(answer, 1), np.pad(asked, 1)
+    padded_outcome, padded_interior = np.pad(outcome, 1), np.pad(interior, 1)
     for down, right in np.ndindex(3, 3):
         neighbour = np.s_[down : down + rows, right : right + columns]
-        unlike |= present[neighbour] & (padded[neighbour] != answer)
-    return unlike & asked
+        unlike |= padded_interior[neighbour] & (padded_outcome[neighbour] != outcome)
+    return unlike & interior
 
 
 def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n,), (n,) of the plane moved a little towards 0, where they stay inside and mirror images stay images.
+    """Shift points of the plane towards 0, so that they stay inside and mirror images stay mirror images.
 
-    By `SHIFT`, but no more than a hundredth of a pixel and no less than `FINEST_PIXEL`, below which rounding would swallow it.
-    On (x, h) only x is moved: the energy, and the exits with it, stay.
+    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. On
+    (x, h) only x is shifted, so that the energy and its exits do not change.
+
+    Parameters
+    ----------
+    spec
+        The map.
+    x, ordinate
+        (n,) coordinates of the points.
+
+    Returns
+    -------
+    (n,) x and (n,) ordinate of the shifted points.
     """
     window, (columns, rows) = spec.window, spec.resolution
-    moved = _towards_zero(x, (window.x_high - window.x_low) / columns)
+    shifted_x = _shifted_towards_zero(x, (window.x_high - window.x_low) / columns)
     if spec.plane is Plane.X_H:
-        return moved, ordinate
-    return moved, _towards_zero(ordinate, (window.ordinate_high - window.ordinate_low) / rows)
+        return shifted_x, ordinate
+    return shifted_x, _shifted_towards_zero(ordinate, (window.ordinate_high - window.ordinate_low) / rows)
 
 
-def _towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
+def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
     shift = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
-    # A start on y = 0 goes up: just below it would cross once more.
-    moved: np.ndarray = np.where(coordinate > 0.0, coordinate - shift, coordinate + shift)
-    return moved
-
-
-def _horizons(t_max: float) -> Iterator[float]:
-    """Rising to t_max, each twice the last; times between half and all of t_max are not worth a stage."""
-    horizon = _FIRST_HORIZON
-    while horizon <= 0.5 * t_max:
-        yield horizon
-        horizon *= 2.0
-    yield t_max
+    # A start on y = 0 is shifted up: from below it would cross y = 0 once more.
+    shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - shift, coordinate + shift)
+    return shifted
 
 
 @dataclass(frozen=True, eq=False)
 class _Rerun:
-    """The tested pixels' orbits once more, (n,) of them, with what the map says of each."""
+    """The orbits (n,) of the tested pixels, integrated once more, with their fates and crossings on the map."""
 
     batch: OrbitBatch
     tolerance: float
     fate: np.ndarray
     crossings: np.ndarray
 
-    def changed(self) -> np.ndarray:
-        """(n,) bool: the answer has changed, or can no longer be the same as the orbit has crossed too often."""
+    def is_decided(self) -> np.ndarray:
+        """(n,) bool: the orbit has a fate."""
+        decided: np.ndarray = self.batch.fate != Fate.NOT_COMPUTED
+        return decided
+
+    def has_changed(self) -> np.ndarray:
+        """(n,) bool: the outcome differs from the map's, or will, as the orbit already has more crossings."""
         batch, escaped = self.batch, self.fate >= 1
-        other_fate = (batch.fate != Fate.NOT_COMPUTED) & (batch.fate != self.fate)
+        other_fate = self.is_decided() & (batch.fate != self.fate)
         other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
         changed: np.ndarray = other_fate | escaped & (other_crossings | (batch.crossings > self.crossings))
         return changed
 
 
-class _Trial:
-    """The pixels to test, and how far their orbits have come."""
+class _TrustTest:
+    """The pixels to test and the state of their reruns."""
 
     def __init__(
         self,
@@ -205,93 +213,82 @@ class _Trial:
         cancel: threading.Event | None,
         executor: Executor | None,
     ) -> None:
-        spec = self.spec = escape_map.spec
-        self.on_frame = on_frame
-        self.pool: dict[str, Any] = {"cancel": cancel, "executor": executor}
-        unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
-        self.trust = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NO_QUESTION).astype(np.int8)
-        self.trust[unlike] = Trust.NOT_TESTED
-        self.images = find_mirror_images(spec.potential, spec.plane, escape_map.x, escape_map.ordinate)
-        self.pixels = np.flatnonzero(unlike)
-        if self.images is not None:
-            self.pixels = self.pixels[self.pixels <= self.images[self.pixels]]
-        self.open = np.arange(self.pixels.size)
-        self.curves, self.reruns = self._prepare(escape_map)
+        self._spec, self._on_frame, self._cancel = escape_map.spec, on_frame, cancel
+        self._execution: dict[str, Any] = {"cancel": cancel, "executor": executor}
+        codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
+        codes[find_unlike_neighbours(escape_map.fate, escape_map.crossings)] = Trust.NOT_TESTED
+        self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
+        # Positions in the arrays of the reruns whose pixels are undecided.
+        self._undecided = np.arange(self._codes.pixels.size)
+        self._curves, self._reruns = self._prepare_reruns(escape_map)
 
-    def _prepare(self, escape_map: EscapeMap) -> tuple[np.ndarray, list[_Rerun]]:
-        """The exits of each energy, and the orbits at their starts."""
-        spec, potential = self.spec, self.spec.potential
-        row, column = np.divmod(self.pixels, escape_map.x.size)
-        ordinate, x = escape_map.ordinate[row], escape_map.x[column]
-        said = escape_map.fate.ravel()[self.pixels], escape_map.crossings.ravel()[self.pixels]
+    def _prepare_reruns(self, escape_map: EscapeMap) -> tuple[np.ndarray, list[_Rerun]]:
+        """The exit curves of each energy, and the reruns at t = 0: with shifted starts, and with another tolerance."""
+        spec, potential, pixels = self._spec, self._spec.potential, self._codes.pixels
+        x, ordinate = escape_map.coordinates(pixels)
+        on_map = escape_map.fate.ravel()[pixels], escape_map.crossings.ravel()[pixels]
         energies, curve_row = np.unique(
             ordinate if spec.plane is Plane.X_H else np.full(x.size, spec.energy), return_inverse=True
         )
-        curves = np.repeat(closed_curves(potential)[None], energies.size, axis=0)
+        curves = np.repeat(closed_channel_curves(potential)[None], energies.size, axis=0)
         for k, energy in enumerate(energies):
             curves[k] = exit_curves(potential, float(energy))
         closed = np.flatnonzero(energies[curve_row] <= potential.escape_energy)
         reruns = []
         for start, tolerance in ((shifted_starts(spec, x, ordinate), TOLERANCE), ((x, ordinate), SECOND_TOLERANCE)):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
-            batch.mark_outside(self.open, curves)
-            batch.settle(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
-            reruns.append(_Rerun(batch, tolerance, *said))
+            batch.mark_outside(self._undecided, curves)
+            batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
+            reruns.append(_Rerun(batch, tolerance, *on_map))
         return curves, reruns
 
-    def is_over(self) -> bool:
-        """Whether nothing is left to test, or nobody waits any more."""
-        cancel = self.pool["cancel"]
-        return not self.open.size or is_cancelled(cancel)
+    def is_finished(self) -> bool:
+        """Whether all pixels are decided or the test was cancelled."""
+        return not self._undecided.size or is_cancelled(self._cancel)
 
-    def follow(self, horizon: float) -> None:
-        """Carry all orbits of open pixels on, first the shifted ones."""
-        for rerun in self.reruns:
+    def propagate(self, horizon: float) -> None:
+        """Integrate the reruns of all undecided pixels to the horizon, one rerun after the other."""
+        for rerun in self._reruns:
             propagate_batch(
-                self.spec.potential, self.curves, rerun.batch, self.open, horizon,
-                final=horizon == self.spec.t_max, tolerance=rerun.tolerance, **self.pool,
+                self._spec.potential, self._curves, rerun.batch, self._undecided, horizon,
+                final=horizon == self._spec.t_max, tolerance=rerun.tolerance, **self._execution,
             )  # fmt: skip
-            self.judge()
+            self._update_codes()
 
-    def certify(self, horizon: float) -> None:
-        """Settle the orbits that can be shown never to leave, as the map says they do not.
+    def certify(self, reached: float) -> None:
+        """Mark reruns of pixels bounded on the map as bounded if they have a certificate, from their states at t = `reached`.
 
-        Certificates know no tolerance, and what it has done to a regular orbit until now is far below the digits they go by: what
-        the shifted orbit is certified as holds for both.
+        The certificates of the shifted orbits hold for both reruns: the difference that the tolerance has made to a regular
+        orbit is far below the digits that certificates compare.
         """
-        shifted = self.reruns[0]
-        waiting = self.open[(shifted.fate[self.open] == Fate.BOUNDED) & (shifted.batch.fate[self.open] == Fate.NOT_COMPUTED)]
-        if not waiting.size:
+        shifted, undecided = self._reruns[0], self._undecided
+        tested = undecided[(shifted.fate[undecided] == Fate.BOUNDED) & ~shifted.is_decided()[undecided]]
+        if not tested.size:
             return
-        energy = None if isinstance(self.spec.energy, tuple) else self.spec.energy
-        states, place = shifted.batch.state[waiting], np.full((waiting.size, 2), _ON_COARSEST_LATTICE)
-        time_left = self.spec.t_max - horizon
-        certification = BoundednessCertifier(self.spec.potential, energy, states, place, time_left, **self.pool)
+        energy = None if isinstance(self._spec.energy, tuple) else self._spec.energy
+        grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
+        certifier = BoundednessCertifier(
+            self._spec.potential, energy, shifted.batch.state[tested], grid_indices, self._spec.t_max - reached, **self._execution
+        )
 
-        def settle() -> None:
-            for rerun in self.reruns:
-                still_open = rerun.batch.fate[waiting] == Fate.NOT_COMPUTED
-                rerun.batch.settle(waiting[still_open], certification.certificate[still_open])
-            self.judge()
+        def mark_certified() -> None:
+            for rerun in self._reruns:
+                pending = ~rerun.is_decided()[tested]
+                rerun.batch.mark_bounded(tested[pending], certifier.certificate[pending])
+            self._update_codes()
 
-        certification.run(settle)
+        certifier.run(mark_certified)
 
-    def judge(self) -> None:
-        """Note which pixels are decided, leave them behind, and publish."""
-        changed = np.any([rerun.changed() for rerun in self.reruns], axis=0)
-        over = np.all([rerun.batch.fate != Fate.NOT_COMPUTED for rerun in self.reruns], axis=0)
-        trust = self.trust.ravel()
-        trust[self.pixels[over]] = Trust.CONFIRMED
-        trust[self.pixels[changed]] = Trust.DOUBTFUL
-        self.open = np.flatnonzero(~over & ~changed)
-        if self.on_frame is not None:
-            self.on_frame(self.result())
+    def _update_codes(self) -> None:
+        """Record which pixels are decided, and publish."""
+        changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
+        finished = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
+        self._codes.assign(self._codes.pixels[finished], Trust.CONFIRMED)
+        self._codes.assign(self._codes.pixels[changed], Trust.DOUBTFUL)
+        self._undecided = np.flatnonzero(~finished & ~changed)
+        if self._on_frame is not None:
+            self._on_frame(self.result())
 
     def result(self) -> TrustMap:
-        """As far as it is known."""
-        trust = self.trust.copy()
-        if self.images is not None:
-            later = np.flatnonzero(self.images < np.arange(self.images.size))
-            trust.ravel()[later] = trust.ravel()[self.images[later]]
-        trust.flags.writeable = False
-        return TrustMap(self.spec, trust, not np.any(trust == Trust.NOT_TESTED))
+        """The result so far."""
+        return TrustMap(self._spec, *self._codes.snapshot())

@@ -1,4 +1,4 @@
-"""Potentials that come with the engine, each with what it is and where it is from: an entry here and a line in the docs."""
+"""The potentials included in the engine, each with a description and a reference; `docs/potentials.md` lists them too."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from engine.potentials.potential import Potential
 
 @dataclass(frozen=True)
 class PotentialEntry:
-    """A potential and what to say of it.
+    """A potential with its description.
 
     Attributes
     ----------
     name
         Its key in `POTENTIALS`, and the name of the potential.
     title
-        What people call it.
+        Display name.
     formula
-        V as text, which `engine.potentials.formula_parser.parse_formula` reads.
+        V as text, in the notation of `engine.potentials.formula_parser.parse_formula`.
     description
         One sentence.
     reference
-        Where it is from.
+        Source in the literature.
     potential
         The potential itself.
     """
@@ -44,8 +44,8 @@ class PotentialEntry:
 def channel_family(n: int) -> Potential:
     """The C_n family: V = r²/2 − (1/n) rⁿ cos nθ, with n exit channels at θ = 2πk/n, k = 0 … n − 1.
 
-    Its saddles lie at r = 1, its escape energy is 1/2 − 1/n, and it has the n-fold rotation and the mirror symmetry in y of a
-    regular polygon. n = 3 is case II.
+    The saddles lie at r = 1 and the escape energy is 1/2 − 1/n. The potential has the symmetry of a regular polygon with n
+    corners. n = 3 is case II.
 
     Parameters
     ----------
@@ -55,70 +55,72 @@ def channel_family(n: int) -> Potential:
     Raises
     ------
     ValueError
-        When there is no such member.
+        If n is out of range.
     """
     if not 3 <= n <= HIGHEST_DEGREE:
-        raise ValueError(f"n={n}: the C_n family has members for n from 3 to {HIGHEST_DEGREE}")
+        raise ValueError(f"n={n}: must be from 3 to {HIGHEST_DEGREE}")
     # rⁿ cos nθ is the real part of (x + iy)ⁿ.
     perturbation = ((n - j, j, float(Fraction((-1) ** (j // 2 + 1) * comb(n, j), n))) for j in range(0, n + 1, 2))
     return Potential(f"C{n}", ((2, 0, 0.5), (0, 2, 0.5), *perturbation))
 
 
-def _paper(name: str, formula: str, description: str) -> PotentialEntry:
+def _paper_entry(name: str, formula: str, description: str) -> PotentialEntry:
     reference = "E. E. Zotos, Nonlinear Dynamics 78, 1389 (2014)"
     return PotentialEntry(name, f"Case {name}", formula, description, reference, parse_formula(formula, name))
 
 
-def _family(n: int) -> PotentialEntry:
+def _family_entry(n: int) -> PotentialEntry:
     count = {3: "Three", 4: "Four", 5: "Five", 6: "Six", 7: "Seven", 8: "Eight"}[n]
-    equal = ": case II by another name" if n == 3 else ""
+    equal = ": identical to case II" if n == 3 else ""
     return PotentialEntry(
         f"C{n}",
         f"C{n} family",
-        f"r²/2 − ({' '.join(_signed(n, j) for j in range(0, n + 1, 2)).removeprefix('+ ')})/{n}",
+        f"r²/2 − ({' '.join(_signed_term(n, j) for j in range(0, n + 1, 2)).removeprefix('+ ')})/{n}",
         f"{count} equal channels at θ = 2πk/{n}, open above {Fraction(1, 2) - Fraction(1, n)}{equal}.",
-        "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of our own choice",
+        "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project",
         channel_family(n),
     )
 
 
-def _signed(n: int, j: int) -> str:
-    """The term of x^(n − j) y^j in the real part of (x + iy)ⁿ."""
+def _signed_term(n: int, j: int) -> str:
+    """The term with x^(n − j) y^j of the real part of (x + iy)ⁿ, as text."""
     letters = "".join(f"{name}^{power}" if power > 1 else name for name, power in (("x", n - j), ("y", j)) if power)
     return f"{'−' if j % 4 else '+'} {comb(n, j) if comb(n, j) > 1 else ''}{letters}"
 
 
-def _literature(name: str, title: str, formula: str, description: str, reference: str) -> PotentialEntry:
+def _literature_entry(name: str, title: str, formula: str, description: str, reference: str) -> PotentialEntry:
     return PotentialEntry(name, title, formula, description, reference, parse_formula(formula, name))
 
 
 _ENTRIES = (
-    _paper("I", "½(x² + y²) − xy²", "Two channels, mirror images of each other in the x axis."),
-    _paper("II", "½(x² + y²) − x(x²/3 − y²)", "Three channels a third of a turn apart: the Hénon–Heiles potential, turned."),
-    _paper("III", "½(x² + y²) − x²y²", "Four channels along the diagonals."),
-    *(_family(n) for n in range(3, 9)),
-    _literature(
+    _paper_entry("I", "½(x² + y²) − xy²", "Two channels, mirror images of each other in the x axis."),
+    _paper_entry(
+        "II", "½(x² + y²) − x(x²/3 − y²)", "Three channels at angles of 120° to each other: the Hénon–Heiles potential, rotated."
+    ),
+    _paper_entry("III", "½(x² + y²) − x²y²", "Four channels along the diagonals."),
+    *(_family_entry(n) for n in range(3, 9)),
+    _literature_entry(
         "HH",
         "Hénon–Heiles",
         "½(x² + y²) + x²y − y³/3",
-        "Three channels, one of them along the +y axis: the classical orientation, even in x and not in y.",
+        "Three channels, one of them along the +y axis: the original orientation, even in x but not in y.",
         "M. Hénon & C. Heiles, Astronomical Journal 69, 73 (1964)",
     ),
-    _literature(
+    _literature_entry(
         "Barbanis",
         "Barbanis, unequal frequencies",
         "½(x² + 1.1² y²) − 0.11xy²",
         "Two channels far from the origin, as in case I, with frequencies 1 and 1.1 and a weak coupling.",
-        "S. Naik & S. Wiggins, arXiv:1904.10018 (2019), for the potential; the numbers are our choice",
+        "S. Naik & S. Wiggins, arXiv:1904.10018 (2019), for the form of the potential; the coefficients are chosen here",
     ),
-    _literature(
+    _literature_entry(
         "Separable",
         "Integrable Hénon–Heiles, separable",
         "½(x² + y²) + xy² + x³/3",
-        "Two channels and no chaos: it falls apart into one motion along x + y and one along x − y.",
+        "Two channels and no chaos: the motions along x + y and along x − y are independent.",
         "G. Contopoulos, A. C. Tzemos & F. Zanias, arXiv:2501.08437 (2025)",
     ),
-    _literature(
+    _literature_entry(
         "One exit",
         "Integrable Hénon–Heiles, one exit",
         "½(x² + y²) + xy² + 2x³",
@@ -128,4 +130,4 @@ _ENTRIES = (
 )
 
 POTENTIALS: Mapping[str, PotentialEntry] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
-"""All potentials that come with the engine, by name: the three cases of Zotos (2014) first."""
+"""All potentials included in the engine, by name; the three cases of Zotos (2014) come first."""

@@ -1,4 +1,4 @@
-"""The region around the origin in which a potential lies below an energy, on a grid: is it closed, and do the exits bound it?"""
+"""Tests of the Hill region, the region around the origin with V below an energy, on a polar grid: is it closed by the exits?"""
 
 from __future__ import annotations
 
@@ -7,48 +7,49 @@ from scipy import ndimage
 
 from engine.potentials.potential import Potential
 
-# Just below a saddle the ridge there is too thin for a grid: looked at is this share of the energy.
-_BELOW = 0.9
+# The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
+_ENERGY_SHARE = 0.9
 _ANGLES, _RADII = 360, 300
-_NEAREST, _FARTHEST = 1e-2, 50.0
-_AROUND = 1.5
+# Radii of the grid of `is_open_below`, in units of the distance of the outermost critical point.
+_SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
+# Largest radius of the grid of `find_bulging_channel`, in units of the distance of the outermost saddle.
+_RADIUS_AROUND_SADDLES = 1.5
 
 
-def opens_below(potential: Potential, energy: float, furthest: float) -> bool:
-    """Whether the region around the origin with V a little below `energy` reaches far beyond `furthest`, the last saddle."""
-    radius = furthest * np.geomspace(_NEAREST, _FARTHEST, _RADII)
-    x, y = _polar(radius)
+def is_open_below(potential: Potential, energy: float, outermost: float) -> bool:
+    """Whether the region around the origin slightly below `energy` extends far beyond the radius `outermost`."""
+    x, y = _polar_grid(outermost * np.geomspace(_SMALLEST_RADIUS, _LARGEST_RADIUS, _RADII))
     bottom = float(potential.value(0.0, 0.0))
-    return bool(_around_origin(potential.value(x, y) < bottom + _BELOW * (energy - bottom))[-1].any())
+    return bool(_connected_to_origin(potential.value(x, y) < bottom + _ENERGY_SHARE * (energy - bottom))[-1].any())
 
 
 def find_bulging_channel(potential: Potential) -> int:
-    """A channel past whose closed exit, straight across its saddle, the well reaches at an energy below the saddle; 0 if none.
+    """A channel whose straight line across the saddle is crossed by the well at an energy below the saddle; 0 if there is none.
 
-    There the rule that tells inside from outside, by the saddle nearest in direction, would be wrong.
+    There the rule that separates inside from outside, the saddle nearest in direction, would be wrong.
     """
     distance = np.hypot(*potential.saddles.T)
-    x, y = _polar(_AROUND * float(distance.max()) * (np.arange(_RADII) + 0.5) / _RADII)
+    x, y = _polar_grid(_RADIUS_AROUND_SADDLES * float(distance.max()) * (np.arange(_RADII) + 0.5) / _RADII)
     bottom = float(potential.value(0.0, 0.0))
-    value, outside = potential.value(x, y), _beyond_saddles(potential, x, y)
+    value, beyond = potential.value(x, y), _channel_beyond_saddle(potential, x, y)
     for energy in np.unique(potential.saddle_energies):
-        allowed = value < bottom + _BELOW * (energy - bottom)
-        inside = _around_origin(allowed & (outside == 0))
-        reached = allowed & ndimage.binary_dilation(inside) & (outside > 0)
-        for channel in np.unique(outside[reached]):
+        allowed = value < bottom + _ENERGY_SHARE * (energy - bottom)
+        inside = _connected_to_origin(allowed & (beyond == 0))
+        crossed = allowed & ndimage.binary_dilation(inside) & (beyond > 0)
+        for channel in np.unique(beyond[crossed]):
             if potential.saddle_energies[channel - 1] >= energy:
                 return int(channel)
     return 0
 
 
-def _polar(radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """x and y (radii, angles) of a grid that goes round twice, so that no region is cut where it ends."""
+def _polar_grid(radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """x and y (radii, angles); the angles span two turns, so that the edge of the grid does not split a region."""
     angle = np.linspace(0.0, 4.0 * np.pi, 2 * _ANGLES + 1)
     return radius[:, None] * np.cos(angle), radius[:, None] * np.sin(angle)
 
 
-def _around_origin(allowed: np.ndarray) -> np.ndarray:
-    """What of a region on a polar grid is connected with its innermost circle."""
+def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
+    """The part of a region on a polar grid that is connected to the innermost circle."""
     allowed = allowed.copy()
     allowed[0] = True
     labels = ndimage.label(allowed)[0]
@@ -56,14 +57,13 @@ def _around_origin(allowed: np.ndarray) -> np.ndarray:
     return connected
 
 
-def _beyond_saddles(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The channel beyond whose saddle each point lies, 0 inside; the saddle nearest in direction decides."""
+def _channel_beyond_saddle(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """The channel beyond whose saddle each point lies, 0 inside; only the saddle nearest in direction is considered."""
     distance = np.hypot(*potential.saddles.T)
     towards = np.array([(sx * x + sy * y) / r for (sx, sy), r in zip(potential.saddles, distance, strict=True)])
     nearest = np.argmax(towards, axis=0)
     beyond = np.zeros(x.shape, int)
-    for k, saddle in enumerate(potential.saddles):
-        ux, uy = potential.outward_direction(k + 1)
+    for k, (saddle, (ux, uy)) in enumerate(zip(potential.saddles, potential.outward_directions, strict=True)):
         past = ux * (x - saddle[0]) + uy * (y - saddle[1]) > 0.0
         beyond[(nearest == k) & past] = k + 1
     return beyond

@@ -1,7 +1,7 @@
-"""The law by which the starts of a map leave: exponential, power law, or neither; in numbers, curves and words.
+"""Decay laws of the escapes from a map: exponential, power law or neither, as numbers, curves and sentences.
 
-Each law is a truncated exponential in a clock of its own, which runs from 0 at t_low to 1 at t_high: evenly in t for the
-exponential law, evenly in ln t for the power law. So one estimator, one distance and one bootstrap serve both.
+Both laws are truncated exponentials in a unit time u that runs from 0 at t_low to 1 at t_high: linear in t for the exponential
+law, linear in ln t for the power law. One estimator, one distance and one bootstrap therefore serve both.
 """
 
 from __future__ import annotations
@@ -12,17 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from engine.statistics.truncated_exponential import share_left
+from engine.statistics.truncated_exponential import cumulative_share
+from engine.wording import format_count
 
-FEWEST_ESCAPES = 100
-"""Fewest escapes in a window for a fit: the rate is then known to about a fifth. To choose a window takes twice as many."""
+MIN_ESCAPES = 100
+"""Fewest escapes in a window for a fit, which determine the rate to about 20 %. Choosing a window takes twice as many."""
 
-LEAST_P_VALUE = 0.1
-"""A law with a smaller p value is ruled out (Clauset, Shalizi & Newman 2009, section 4.1)."""
+MIN_P_VALUE = 0.1
+"""Laws with a smaller p value are ruled out (Clauset, Shalizi & Newman 2009, section 4.1)."""
 
 
 class DecayLaw(StrEnum):
-    """A law of escape; the value is its name on paper."""
+    """A decay law; the value is its name in text."""
 
     EXPONENTIAL = "exponential"
     POWER_LAW = "power law"
@@ -30,24 +31,25 @@ class DecayLaw(StrEnum):
 
 @dataclass(frozen=True)
 class LawFit:
-    """One law, fitted to the escapes between t_low and t_high.
+    """A decay law fitted to the escapes between t_low and t_high.
 
     Attributes
     ----------
     law
-        Which.
+        The law.
     rate
-        κ of exp(−κ (t − t_low)), in 1/time, or γ of (t / t_low)^(−γ), dimensionless; below 0 where escapes grow more frequent.
+        κ of exp(−κ (t − t_low)) per unit of time, or γ of (t / t_low)^(−γ), dimensionless; negative if escapes become more
+        frequent.
     low, high
-        Its 95 % bootstrap interval, t_low held fixed.
+        95 % bootstrap interval of the rate at fixed t_low.
     distance
-        Kolmogorov–Smirnov: largest difference of the distribution of the escape times from the fitted one, 0 to 1.
+        Kolmogorov–Smirnov distance of the escape times from the fitted law, 0 to 1.
     p_value
-        How often a sample of the fitted law lies as far from its own fit, 0 to 1.
+        Share of samples of the fitted law that are as far from their own fit, 0 to 1.
     t_low, t_high
-        The window.
+        Window of time.
     survival_low, survival_high
-        S(t_low), S(t_high) of the starts.
+        S(t_low) and S(t_high) of the starts.
     """
 
     law: DecayLaw
@@ -63,44 +65,44 @@ class LawFit:
 
     @property
     def plausible(self) -> bool:
-        """Whether the escapes do decay, and do not rule this law out."""
-        return self.p_value >= LEAST_P_VALUE and self.low > 0.0
+        """Whether the escapes decay and do not rule this law out."""
+        return self.p_value >= MIN_P_VALUE and self.low > 0.0
 
     def curve(self, t: Any) -> np.ndarray:
-        """The fitted S(t), to be drawn over the survival: it meets it at both ends of the window; NaN outside the window."""
+        """Fitted S(t), which equals the survival at both ends of the window; NaN outside the window."""
         t_array = np.asarray(t, dtype=float)
         inside = (t_array >= self.t_low) & (t_array <= self.t_high)
-        clock_times = read_clock(self.law, self.t_low, self.t_high, np.where(inside, t_array, self.t_low))
-        left = share_left(self.rate * clock_length(self.law, self.t_low, self.t_high), clock_times)
-        fitted: np.ndarray = self.survival_low - (self.survival_low - self.survival_high) * left
+        u = to_unit_time(self.law, self.t_low, self.t_high, np.where(inside, t_array, self.t_low))
+        escaped = cumulative_share(self.rate * window_length(self.law, self.t_low, self.t_high), u)
+        fitted: np.ndarray = self.survival_low - (self.survival_low - self.survival_high) * escaped
         return np.where(inside, fitted, np.nan)
 
 
 @dataclass(frozen=True, eq=False)
 class DecayLaws:
-    """How the starts of a map, or of a part of it, leave; arrays are read-only.
+    """Decay laws fitted to the escapes of a map or of a part of it; arrays are read-only.
 
     Attributes
     ----------
     times, survival
-        (m,) S(t), as from `compute_survival`.
+        (m,) survival S(t), as from `compute_survival`.
     t_low, t_high
-        The window of the fits; t_low is NaN where none could be chosen.
+        Window of the fits; t_low is NaN if no window could be chosen.
     escapes
-        How many different escape times lie in it (in (0, t_high] where t_low is NaN).
+        Number of different escape times in the window, or in (0, t_high] if t_low is NaN.
     escapes_in_all
-        How many different escape times there are.
+        Number of different escape times.
     undecided
-        How many starts are still under way; with any there is no fit.
+        Number of starts not decided yet; there is no fit unless it is 0.
     settled
-        Whether the window was given, or begins where the rule found a law to hold; without it no law is preferred.
+        Whether the window was given or begins where a law was found to hold; otherwise no law is preferred.
     exponential, power_law
-        The fits; None where there is no fit.
+        The fits; None without a fit.
     preferred
-        The law that describes these escapes: not ruled out itself and, of the two, surely the likelier; else None.
+        The law that describes these escapes: not ruled out and significantly more likely than the other; otherwise None.
     ratio, ratio_low, ratio_high
-        Log-likelihood per escape of the exponential law less that of the power law, and its 95 % bootstrap interval; NaN
-        without fits.
+        Log-likelihood per escape of the exponential law minus that of the power law, and its 95 % bootstrap interval; NaN without
+        fits.
     """
 
     times: np.ndarray = field(repr=False)
@@ -124,37 +126,36 @@ class DecayLaws:
         return self.times.nbytes + self.survival.nbytes
 
     def describe(self) -> str:
-        """One or two sentences: the law with its interval, or why there is none."""
+        """The law with its interval, or why there is none, in one or two sentences."""
         if self.exponential is None or self.power_law is None:
-            return self._describe_absence()
+            return self._describe_missing_fit()
         kappa, gamma = _describe_fit("κ", self.exponential), _describe_fit("γ", self.power_law)
-        where = f"{self.escapes} of {self.escapes_in_all} escapes, t = {self.t_low:.4g} to {self.t_high:.4g}"
+        data = f"{self.escapes} of {format_count(self.escapes_in_all, 'escape')}, t = {self.t_low:.4g} to {self.t_high:.4g}"
         if self.preferred is DecayLaw.EXPONENTIAL:
-            return f"Exponential: {kappa}; {where}. A power law is less likely{_describe_end(self.power_law)}."
+            return f"Exponential: {kappa}; {data}. A power law is less likely{_describe_exclusion(self.power_law)}."
         if self.preferred is DecayLaw.POWER_LAW:
             decades = np.log10(min(self.times[-1], self.t_high) / self.t_low)
             return (
-                f"Power law over {decades:.1f} decades: {gamma}; {where}. "
-                f"An exponential is less likely{_describe_end(self.exponential)}."
+                f"Power law over {decades:.1f} decades: {gamma}; {data}. "
+                f"An exponential is less likely{_describe_exclusion(self.exponential)}."
             )
-        return f"{self._describe_doubt(self.exponential, self.power_law)} ({where}): exponential {kappa}; power law {gamma}."
+        return f"{self._describe_doubt(self.exponential, self.power_law)} ({data}): exponential {kappa}; power law {gamma}."
 
-    def _describe_absence(self) -> str:
+    def _describe_missing_fit(self) -> str:
         if self.undecided:
-            return f"No law is fitted while {self.undecided} orbits are under way: late escapes would be missing."
+            return f"No fit: {format_count(self.undecided, 'orbit is', 'orbits are')} undecided, so late escapes are missing."
         return (
-            f"No law is fitted to {self.escapes} escapes: {FEWEST_ESCAPES} are needed in a window, "
-            f"{2 * FEWEST_ESCAPES} to choose one."
+            f"No fit: {format_count(self.escapes, 'escape')}, but a fit needs {MIN_ESCAPES} in a given window "
+            f"and {2 * MIN_ESCAPES} to choose one."
         )
 
     def _describe_doubt(self, exponential: LawFit, power_law: LawFit) -> str:
         if not self.settled:
-            return "Neither law holds from any time on; they come nearest here"
-        if exponential.plausible and power_law.plausible:
-            return "Neither law is preferred, both may hold"
-        if exponential.plausible or power_law.plausible:
-            return "Neither law is preferred, the one that may hold is not surely the likelier"
-        return "Neither law holds"
+            return "Neither law holds in any window; these are the closest fits"
+        possible = [fit.law for fit in (exponential, power_law) if fit.plausible]
+        if len(possible) == 2:
+            return "The data do not decide between the two laws"
+        return f"Only the {possible[0]} may hold, but it is not significantly more likely" if possible else "Neither law holds"
 
 
 def _describe_fit(symbol: str, fit: LawFit) -> str:
@@ -165,16 +166,16 @@ def _describe_p_value(fit: LawFit) -> str:
     return f"p = {fit.p_value:.2f}" if fit.p_value >= 0.01 else "p < 0.01"
 
 
-def _describe_end(fit: LawFit) -> str:
+def _describe_exclusion(fit: LawFit) -> str:
     return "" if fit.plausible else f" and ruled out ({_describe_p_value(fit)})"
 
 
-def clock_length(law: DecayLaw, t_low: float, t_high: float) -> float:
-    """What a rate is multiplied by to give the steepness in the clock of its law."""
+def window_length(law: DecayLaw, t_low: float, t_high: float) -> float:
+    """Length of the window in t for the exponential law, in ln t for the power law; times the rate, it is the steepness."""
     return t_high - t_low if law is DecayLaw.EXPONENTIAL else float(np.log(t_high / t_low))
 
 
-def read_clock(law: DecayLaw, t_low: float, t_high: float, t: np.ndarray) -> np.ndarray:
-    """The clock of a law at times t, from 0 at t_low to 1 at t_high."""
-    passed: np.ndarray = t - t_low if law is DecayLaw.EXPONENTIAL else np.log(t / t_low)
-    return passed / clock_length(law, t_low, t_high)
+def to_unit_time(law: DecayLaw, t_low: float, t_high: float, t: np.ndarray) -> np.ndarray:
+    """Unit time u of a law at times t, 0 at t_low and 1 at t_high."""
+    elapsed: np.ndarray = t - t_low if law is DecayLaw.EXPONENTIAL else np.log(t / t_low)
+    return elapsed / window_length(law, t_low, t_high)

@@ -1,4 +1,4 @@
-"""What can be counted in a map, or in a rectangle of it: who leaves, where, when, and after how many crossings of y = 0."""
+"""Escape statistics of a map or of a rectangle in it: channels, escape times and upward crossings of y = 0."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Window
 from engine.maps.result import EscapeMap
 
-SURVIVAL_POINTS = 500
-"""Most points of a survival curve."""
+MAX_SURVIVAL_POINTS = 500
+"""Largest number of points of a survival curve."""
 
 _LOWEST_CODE = int(min(Fate))
-# Times this close, relatively, are one time: no bins fit between them.
-_SAME_TIME = 1e-9
-# A histogram of one time reaches from this share of it to its inverse.
-_LOWER_SIDE = 0.5
+# Relative difference below which times are considered equal: no bins fit between them.
+_EQUAL_TIMES = 1e-9
+# A histogram of equal times extends from this factor times the time to the time divided by it.
+_LOWER_EDGE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,15 +28,15 @@ class EscapeStatistics:
     Attributes
     ----------
     channel_counts
-        How many left through channel 1, 2, … .
+        Number of escapes through channel 1, 2, … .
     bounded, undecided, failed
-        How many are `Fate.BOUNDED`, `NOT_COMPUTED` (in a map under way, those not started yet included), `FAILED`.
+        Number of starts with the fate `Fate.BOUNDED`, `NOT_COMPUTED` (including orbits not started yet) and `FAILED`.
     mean_escape_time, median_escape_time
-        Of those that left, dimensionless; NaN when none did.
+        Mean and median over the escapes, dimensionless; NaN without escapes.
     crossing_counts
-        (most crossings + 1,) int64: dN_n = those that left after exactly n upward crossings of y = 0; empty when none did.
+        (most crossings + 1,) int64, dN_n: escapes after exactly n upward crossings of y = 0; empty without escapes.
     escape_times
-        (escaped,) float64, of all that left, row by row.
+        (escaped,) float64, all escape times, row by row, dimensionless.
     """
 
     channel_counts: tuple[int, ...]
@@ -50,93 +50,95 @@ class EscapeStatistics:
 
     @property
     def starts(self) -> int:
-        """N0: all starts that exist and are not outside."""
+        """N0: all starts that are neither forbidden nor outside."""
         return self.decided + self.undecided + self.failed
 
     @property
     def decided(self) -> int:
-        """Those known to have left or to be bounded."""
+        """Number of starts known to escape or to be bounded."""
         return self.escaped + self.bounded
 
     @property
     def escaped(self) -> int:
-        """Ne: those that left."""
+        """Ne: number of escapes."""
         return sum(self.channel_counts)
 
     @property
     def direct(self) -> int:
-        """Nde: those that left without crossing y = 0 upward."""
+        """Nde: number of escapes without an upward crossing of y = 0."""
         return int(self.crossing_counts[:1].sum())
 
     @property
     def direct_share(self) -> float:
-        """Nde / N0; 0 when there are no starts."""
+        """Nde / N0; 0 without starts."""
         return self.direct / self.starts if self.starts else 0.0
 
     @property
     def shares(self) -> dict[int, float]:
-        """Share of N0 for each channel, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 when there are no starts."""
+        """Share of N0 by channel and by `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
 
     @property
     def escape_probabilities(self) -> np.ndarray:
-        """p_n = dN_n / N_n, where N_n have not left before their n-th crossing; shaped like `crossing_counts`.
+        """p_n = dN_n / N_n, where N_n orbits have not escaped before their n-th crossing; shaped like `crossing_counts`.
 
-        N_0 are the decided starts, so that the product of all 1 − p_n is the bounded share of these. It is N0 in a finished
-        map without failures; in one under way those that leave late are still missing, so every p_n may change.
+        N_0 is the number of decided starts, so the product of all 1 − p_n is the bounded share of these. It equals N0 in a
+        finished map without failures. An unfinished map still lacks late escapes, and every p_n can change.
         """
-        left_before = np.cumsum(self.crossing_counts) - self.crossing_counts
-        return read_only(self.crossing_counts / (self.decided - left_before))
+        escaped_before = np.cumsum(self.crossing_counts) - self.crossing_counts
+        return read_only(self.crossing_counts / (self.decided - escaped_before))
 
     def time_histogram(self, bins: int) -> tuple[np.ndarray, np.ndarray]:
-        """How many left when.
+        """Histogram of the escape times.
 
         Parameters
         ----------
         bins
-            How many bins, 1 or more.
+            Number of bins, 1 or more.
 
         Returns
         -------
-        (bins + 1,) edges, evenly spaced on a logarithmic scale from the first escape to the last, and (bins,) int64 counts; the
-        last bin holds its upper edge, the first one also escapes at t = 0. A single time stands between its half and its double;
-        where nothing left, edges go from 0.5 to 2.
+        edges
+            (bins + 1,) times, evenly spaced on a logarithmic scale from the first escape to the last; from half to twice the time
+            if all times are equal, and from 0.5 to 2 without escapes.
+        counts
+            (bins,) int64. The last bin includes its upper edge, and the first one escapes at t = 0.
 
         Raises
         ------
         ValueError
-            When `bins` is below 1.
+            If `bins` is below 1.
         """
         if bins < 1:
             raise ValueError(f"bins={bins}: must be 1 or more")
         positive = self.escape_times[self.escape_times > 0.0]
         low, high = (float(positive.min()), float(positive.max())) if positive.size else (1.0, 1.0)
-        if high <= low * (1.0 + _SAME_TIME):
-            low, high = low * _LOWER_SIDE, high / _LOWER_SIDE
+        if high <= low * (1.0 + _EQUAL_TIMES):
+            low, high = low * _LOWER_EDGE, high / _LOWER_EDGE
         edges = np.geomspace(low, high, bins + 1)
         place = np.clip(np.searchsorted(edges, self.escape_times, side="right") - 1, 0, bins - 1)
         return read_only(edges), read_only(np.bincount(place, minlength=bins))
 
 
 def compute_statistics(frame: EscapeMap, window: Window | None = None) -> EscapeStatistics:
-    """Count what a map, finished or under way, holds; forbidden and outside starts are left out.
+    """Count the fates, crossings and escape times of a map, finished or not; forbidden and outside starts are left out.
 
     Parameters
     ----------
     frame
         The map.
     window
-        Count only pixels whose centre lies in this rectangle, edges included; it may reach beyond the map or miss it. None for
-        all.
+        Only pixels whose centre lies in this rectangle, edges included, count; it can extend beyond the map or miss it. None for
+        all pixels.
     """
     part = _pixels_inside(frame, window)
     fate = frame.fate[part]
-    left = fate >= 1
-    times = frame.escape_time[part][left]
-    highest = frame.spec.potential.channels
-    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=highest + 1 - _LOWEST_CODE).tolist()
+    escaped = fate >= 1
+    times = frame.escape_time[part][escaped]
+    channels = frame.spec.potential.channels
+    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=channels + 1 - _LOWEST_CODE).tolist()
     return EscapeStatistics(
         channel_counts=tuple(counts[1 - _LOWEST_CODE :]),
         bounded=counts[Fate.BOUNDED - _LOWEST_CODE],
@@ -144,38 +146,40 @@ def compute_statistics(frame: EscapeMap, window: Window | None = None) -> Escape
         failed=counts[Fate.FAILED - _LOWEST_CODE],
         mean_escape_time=float(times.mean()) if times.size else float("nan"),
         median_escape_time=float(np.median(times)) if times.size else float("nan"),
-        crossing_counts=read_only(np.bincount(frame.crossings[part][left])),
+        crossing_counts=read_only(np.bincount(frame.crossings[part][escaped])),
         escape_times=read_only(times),
     )
 
 
 def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarray]:
-    """S(t): the share of the decided starts that are still inside just after t.
+    """Compute S(t), the share of the decided starts that are still inside just after t.
 
     Parameters
     ----------
     statistics
-        The escapes. Starts under way count neither as inside nor as gone, so that S is too low at late times while there
-        are many.
+        The escapes. Undecided starts count neither as inside nor as escaped, so in an unfinished map S is too small at late
+        times.
 
     Returns
     -------
-    (m,) rising times of escapes, dimensionless, and (m,) S at these, both read-only: all steps, or some `SURVIVAL_POINTS` of
-    them, even in ln t; the first and the last are always there. S is 1 before the first, and stays at the bounded share
-    after the last. Empty when nothing left.
+    times
+        (m,) increasing escape times, dimensionless; read-only. All of them, or about `MAX_SURVIVAL_POINTS` evenly spaced in ln t
+        that include the first and the last one. Empty without escapes.
+    survival
+        (m,) S at these times; read-only. S is 1 before the first and constant after the last.
     """
     times, counts = np.unique(statistics.escape_times, return_counts=True)
     survival = 1.0 - np.cumsum(counts) / max(statistics.decided, 1)
-    if times.size > SURVIVAL_POINTS:
+    if times.size > MAX_SURVIVAL_POINTS:
         first = times[times > 0.0][0]
-        grid = np.geomspace(first, times[-1], SURVIVAL_POINTS - 1)[:-1]
-        kept = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])
-        times, survival = times[kept], survival[kept]
+        grid = np.geomspace(first, times[-1], MAX_SURVIVAL_POINTS - 1)[:-1]
+        selected = np.unique([0, *(np.searchsorted(times, grid, side="right") - 1), times.size - 1])
+        times, survival = times[selected], survival[selected]
     return read_only(times), read_only(survival)
 
 
 def _pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slice]:
-    """The rows and columns whose centres lie in the window."""
+    """Rows and columns of the pixels whose centres lie in the window."""
     if window is None:
         return slice(None), slice(None)
     rows = np.searchsorted(frame.ordinate, window.ordinate_low), np.searchsorted(frame.ordinate, window.ordinate_high, "right")

@@ -1,4 +1,4 @@
-"""The curves that Zotos (2014) fits to the shares of those that escape, against energy."""
+"""Curves fitted by Zotos (2014) to the share of escapes against energy."""
 
 from __future__ import annotations
 
@@ -9,68 +9,70 @@ from typing import Any
 
 import numpy as np
 
+from engine.wording import format_number
+
 
 @dataclass(frozen=True)
 class HyperbolicTangent:
-    """½[1 + tanh(a h − b)], a share that rises from 0 to 1 about h = b/a; a and b are dimensionless."""
+    """½[1 + tanh(a h − b)], a share that rises from 0 to 1 around h = b/a; a and b are dimensionless."""
 
     a: float
     b: float
 
     def __call__(self, h: Any) -> Any:
-        """The share at energies h of any shape."""
+        """Share at energies h, an array of any shape."""
         return 0.5 * (1.0 + np.tanh(self.a * np.asarray(h, dtype=float) - self.b))
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Its parameters by name."""
+        """Parameters by name."""
         return {"a": self.a, "b": self.b}
 
     @property
     def formula(self) -> str:
-        """The formula, to be read."""
-        return f"½[1 + tanh({written(self.a)} h {_signed(-self.b)})]"
+        """The formula as text."""
+        return f"½[1 + tanh({format_number(self.a)} h {_format_term(-self.b)})]"
 
 
 @dataclass(frozen=True)
 class Polynomial:
-    """c0 + c1 h + c2 h² + …, a share only in the range of the data; coefficients, lowest power first, are dimensionless."""
+    """c0 + c1 h + c2 h² + …, a share only within the range of the data; coefficients, lowest power first, are dimensionless."""
 
     coefficients: tuple[float, ...]
 
     def __call__(self, h: Any) -> Any:
-        """The share at energies h of any shape."""
+        """Share at energies h, an array of any shape."""
         return np.polynomial.polynomial.polyval(np.asarray(h, dtype=float), self.coefficients)
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Its coefficients by name."""
+        """Coefficients by name."""
         return {f"c{power}": c for power, c in enumerate(self.coefficients)}
 
     @property
     def formula(self) -> str:
-        """The formula, to be read."""
+        """The formula as text."""
         powers = ("", " h", *(f" h{str(power).translate(_SUPERSCRIPTS)}" for power in range(2, len(self.coefficients))))
         first, *others = zip(self.coefficients, powers, strict=False)
-        return " ".join([written(first[0]), *(_signed(c) + power for c, power in others)])
+        return " ".join([format_number(first[0]), *(_format_term(c) + power for c, power in others)])
 
 
 ShareCurve = HyperbolicTangent | Polynomial
-"""A share of the starts against energy."""
+"""Share of the starts as a function of energy."""
 
 
 @dataclass(frozen=True)
 class PaperFits:
-    """The fits printed for one case, on (x, px).
+    """Fits published for one case, on (x, px).
 
     Attributes
     ----------
     escaped
-        Ne/N0.
+        Fit of Ne/N0, the share of escapes.
     direct
-        Nde/N0.
+        Fit of Nde/N0, the share of direct escapes.
     lowest_energy, highest_energy
-        The energies that the case is studied at, where the fits are meant: from the escape energy on.
+        Energy range of the fits, which begins at the escape energy; dimensionless.
     """
 
     escaped: HyperbolicTangent
@@ -86,16 +88,11 @@ PAPER_FITS: Mapping[str, PaperFits] = MappingProxyType(
         "III": PaperFits(HyperbolicTangent(15.85, 4.93), Polynomial((-1.496, 7.585, -5.938)), 0.25, 0.6),
     }
 )
-"""By case: the approximate formulas of Zotos (2014), Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9, section 5."""
-
+"""Approximate formulas by case, from Zotos (2014), Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9, section 5."""
 
 _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def written(number: float) -> str:
-    """A number as a formula shows it, to four digits."""
-    return f"{number:.4g}".replace("-", "−").replace("inf", "∞")
-
-
-def _signed(number: float) -> str:
-    return f"{'−' if number < 0.0 else '+'} {written(abs(number))}"
+def _format_term(value: float) -> str:
+    """A number after its sign as an operator, such as "+ 2.5"."""
+    return f"{'−' if value < 0.0 else '+'} {format_number(abs(value))}"

@@ -1,4 +1,4 @@
-"""Our own fits to the shares of those that escape, of the paper's form, with intervals; and how far off a curve is."""
+"""Fits of the forms of Zotos (2014) to shares of escapes against energy, with intervals; deviation of a curve from shares."""
 
 from __future__ import annotations
 
@@ -10,37 +10,39 @@ from typing import Any
 import numpy as np
 from scipy import optimize, stats
 
-from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve, written
-from engine.validation import read_array, read_count, read_integers, shown
+from engine.arrays import read_only
+from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
+from engine.validation import checked_array, checked_count, checked_integers, short_repr
+from engine.wording import format_number
 
-LARGEST_DEGREE = 6
-"""Highest degree of a polynomial: beyond it one fits the scatter."""
+MAX_DEGREE = 6
+"""Highest degree of a polynomial fit; higher degrees fit the scatter."""
 
 _CONFIDENCE = 0.95
-# With fewer energies more than there are parameters, nothing can be said of the intervals.
+# Intervals take at least this many energies more than there are parameters.
 _SPARE_ENERGIES = 2
-# For a first guess shares are held this far from 0 and 1, where the inverse of the curve is infinite.
+# Shares are limited to this distance from 0 and 1 for the initial guess, where the inverse of the curve diverges.
 _SATURATED = 0.01
-# Shares strictly between 0 and 1 that it takes to say how steep a curve is.
-_FEWEST_BETWEEN = 3
-# The least squares are solved to rounding.
-_EXACT = 1e-14
-# An energy with this leverage fixes a parameter alone: there is no residual to judge it by.
-_WHOLE_LEVERAGE = 1.0 - 1e-9
+# Fewest shares strictly between 0 and 1 that determine the slope of the curve.
+_MIN_UNSATURATED = 3
+# Tolerance of the least-squares solver, at the level of rounding.
+_TOLERANCE = 1e-14
+# An energy with a leverage above this determines a parameter alone and leaves no residual.
+_MAX_LEVERAGE = 1.0 - 1e-9
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far a curve is from data.
+    """Deviation of a curve from shares, dimensionless.
 
     Attributes
     ----------
     largest
-        Curve less data where they differ most; 0.01 is one point of percentage.
+        Curve minus data at the energy of the largest difference; 0.01 is one percentage point.
     energy
-        h there.
+        h of the largest difference.
     rms
-        Root of the mean square over all energies.
+        Root mean square of the differences.
     """
 
     largest: float
@@ -48,13 +50,13 @@ class Deviation:
     rms: float
 
     def describe(self) -> str:
-        """In words."""
+        """The deviation as part of a sentence."""
         if np.isnan(self.largest):
-            return "there is no curve to compare with the data"
+            return "at no defined distance from the data"
         side = "above" if self.largest >= 0.0 else "below"
         return (
-            f"at most {100 * abs(self.largest):.1f} points {side} the data, at h = {self.energy:g}; "
-            f"{100 * self.rms:.1f} points root mean square"
+            f"at most {100 * abs(self.largest):.1f} percentage points {side} the data, at h = {self.energy:g}, "
+            f"with a root mean square of {100 * self.rms:.1f}"
         )
 
 
@@ -65,13 +67,13 @@ class ShareFit:
     Attributes
     ----------
     curve
-        The curve; its parameters are NaN where the data do not determine them.
+        The fitted curve; its parameters are NaN if the data do not determine them.
     intervals
-        For each parameter, by name, the lower and upper end of its 95 % interval; infinite where one energy alone decides.
+        Lower and upper end of the 95 % interval of each parameter, by name; infinite if a single energy determines it.
     deviation
-        Of the curve from the data it is fitted to.
+        Deviation of the curve from the data.
     energies, shares
-        (m,) the data.
+        (m,) the data, dimensionless.
     """
 
     curve: ShareCurve
@@ -86,166 +88,176 @@ class ShareFit:
         return all(np.isfinite(value) for value in self.curve.parameters.values())
 
     def describe(self) -> str:
-        """The fit in two sentences, or what stands in its way."""
+        """The fit, or why there is none, in one or two sentences."""
         if not self.determined:
-            return f"No fit: {self.energies.size} energies with shares from {self.shares.min():.3g} to {self.shares.max():.3g}."
+            low, high = self.shares.min(), self.shares.max()
+            return f"No fit: the shares, from {low:.3g} to {high:.3g} at {self.energies.size} energies, determine no curve."
         values = (
-            f"{name} = {written(value)} ({written(self.intervals[name][0])} to {written(self.intervals[name][1])})"
+            f"{name} = {format_number(value)} ({' to '.join(map(format_number, self.intervals[name]))})"
             for name, value in self.curve.parameters.items()
         )
         return f"{self.curve.formula} with {', '.join(values)}. It lies {self.deviation.describe()}."
 
 
 def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
-    """Fit Ne/N0 = ½[1 + tanh(a h − b)], the form of Zotos (2014), by least squares; every energy weighs the same.
+    """Fit Ne/N0 = ½[1 + tanh(a h − b)], the form of Zotos (2014), by least squares with equal weights.
 
-    The intervals are not binomial. Starts stand on a grid, so that their counts scatter less than draws would, and what parts the
-    data from the curve is that the form is only a convention: islands come and go with h. Residuals are therefore systematic, and
-    larger maps would not shrink them. The interval says how much a parameter would change had other energies been drawn at random
-    from the same range with the same density: the sandwich of White (1980, Econometrica 48, 817), with residuals divided by one
-    less their leverage (HC3; MacKinnon & White 1985, J. Econometrics 29, 305) and Student's t. In trials it held the true
-    parameters in 92 % or more where the form was true, and those of the best curve through all energies in 80 to 94 %
-    where it was not and 25 energies were random; evenly spaced ones scatter far less, and it always did. Energies spread
-    otherwise have another best curve, maybe beyond the interval.
+    The intervals are not binomial: counts of starts on a grid scatter less than random draws, and the deviation of the data from
+    the curve is systematic, since the form is only a convention and islands appear and vanish with h. Larger maps would not
+    reduce it. An interval states how much a parameter would change for other energies drawn at random from the same range with
+    the same density: the sandwich covariance of White (1980, Econometrica 48, 817), with residuals divided by one minus their
+    leverage (HC3; MacKinnon & White 1985, J. Econometrics 29, 305), and Student's t. In trials the intervals held the true
+    parameters in 92 % or more of the cases where the form was true, and those of the best curve through all energies in 80 to
+    94 % where it was not and 25 energies were random. They always held for evenly spaced energies, which scatter much less. For
+    a different density of energies the best curve differs and can lie outside the interval.
 
     Parameters
     ----------
     h
         (m,) energies, dimensionless, all different, finite, 4 or more.
     escaped
-        (m,) integers, Ne at each, from 0 to N0.
+        (m,) integers, Ne at each energy, from 0 to N0.
     starts
-        (m,) integers, N0 at each, 1 or more.
+        (m,) integers, N0 at each energy, 1 or more.
 
     Returns
     -------
-    The `ShareFit`; parameters are NaN when fewer than 3 shares lie between 0 and 1, so that any steep curve would do.
+    The `ShareFit`; its parameters are NaN if fewer than 3 shares lie strictly between 0 and 1, which leaves the slope
+    undetermined.
 
     Raises
     ------
     ValueError
-        When a parameter is out of its range.
+        If a parameter is out of range.
     """
     energies, shares = _checked_shares(h, "escaped", escaped, starts, parameters=2)
-    if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _FEWEST_BETWEEN:
-        return _gather(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), energies, shares)
+    if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
+        return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), energies, shares)
     middle, width = energies.mean(), np.ptp(energies)
-    lever = np.column_stack([(energies - middle) / width, np.full(energies.size, -1.0)])
+    design = np.column_stack([(energies - middle) / width, np.full(energies.size, -1.0)])
 
     def residuals(parameters: np.ndarray) -> Any:
-        return 0.5 * (1.0 + np.tanh(lever @ parameters)) - shares
+        return 0.5 * (1.0 + np.tanh(design @ parameters)) - shares
 
-    def slopes(parameters: np.ndarray) -> Any:
-        return 0.5 * (1.0 - np.tanh(lever @ parameters)[:, None] ** 2) * lever
+    def jacobian(parameters: np.ndarray) -> Any:
+        return 0.5 * (1.0 - np.tanh(design @ parameters)[:, None] ** 2) * design
 
-    guess = np.linalg.lstsq(lever, np.arctanh(2.0 * np.clip(shares, _SATURATED, 1.0 - _SATURATED) - 1.0))[0]
-    found = optimize.least_squares(residuals, guess, slopes, method="lm", xtol=_EXACT, ftol=_EXACT, gtol=_EXACT).x
-    # From (h − middle) / width back to h.
-    back = np.array([[1.0 / width, 0.0], [middle / width, 1.0]])
-    half_widths = _find_half_widths(slopes(found), residuals(found), back)
-    return _gather(HyperbolicTangent(*(back @ found).tolist()), half_widths, energies, shares)
+    guess = np.linalg.lstsq(design, np.arctanh(2.0 * np.clip(shares, _SATURATED, 1.0 - _SATURATED) - 1.0))[0]
+    found = optimize.least_squares(residuals, guess, jacobian, method="lm", xtol=_TOLERANCE, ftol=_TOLERANCE, gtol=_TOLERANCE).x
+    # From parameters for (h − middle) / width to those for h.
+    to_energy = np.array([[1.0 / width, 0.0], [middle / width, 1.0]])
+    half_widths = _find_half_widths(jacobian(found), residuals(found), to_energy)
+    return _build_fit(HyperbolicTangent(*(to_energy @ found).tolist()), half_widths, energies, shares)
 
 
 def fit_direct_shares(h: Any, direct: Any, starts: Any, degree: int = 3) -> ShareFit:
     """Fit Nde/N0 = c0 + c1 h + … by least squares, as Zotos (2014) does with degree 3 (I, II) and 2 (III).
 
-    Weights and intervals as of `fit_escape_shares`; nothing holds the polynomial between 0 and 1 outside the data.
+    Weights and intervals are those of `fit_escape_shares`. Outside the data the polynomial can leave the range 0 to 1.
 
     Parameters
     ----------
     h
         (m,) energies, dimensionless, all different, finite, `degree` + 3 or more.
     direct
-        (m,) integers, Nde at each, from 0 to N0.
+        (m,) integers, Nde at each energy, from 0 to N0.
     starts
-        (m,) integers, N0 at each, 1 or more.
+        (m,) integers, N0 at each energy, 1 or more.
     degree
-        Of the polynomial, 1 to 6.
+        Degree of the polynomial, 1 to 6.
 
     Returns
     -------
-    The `ShareFit`, of a `Polynomial`.
+    The `ShareFit` with a `Polynomial`.
 
     Raises
     ------
     ValueError
-        When a parameter is out of its range.
+        If a parameter is out of range.
     """
-    degree = read_count("degree", degree, 1, LARGEST_DEGREE)
+    degree = checked_count("degree", degree, 1, MAX_DEGREE)
     energies, shares = _checked_shares(h, "direct", direct, starts, parameters=degree + 1)
     middle, width = energies.mean(), np.ptp(energies)
     powers = np.vander((energies - middle) / width, degree + 1, increasing=True)
     found = np.linalg.lstsq(powers, shares)[0]
-    back = _shifted_powers(middle, width, degree)
-    half_widths = _find_half_widths(powers, shares - powers @ found, back)
-    return _gather(Polynomial(tuple((back @ found).tolist())), half_widths, energies, shares)
+    to_energy = _shift_matrix(middle, width, degree)
+    half_widths = _find_half_widths(powers, shares - powers @ found, to_energy)
+    return _build_fit(Polynomial(tuple((to_energy @ found).tolist())), half_widths, energies, shares)
 
 
 def measure_deviation(curve: Callable[[Any], Any], h: Any, counts: Any, starts: Any) -> Deviation:
-    """How far a curve, such as one of `PAPER_FITS`, is from counts out of N0 at energies h; all (m,), m of 1 or more.
+    """Measure the deviation of a curve, such as one of `PAPER_FITS`, from observed shares.
+
+    Parameters
+    ----------
+    curve
+        Function from energies (m,) to shares (m,).
+    h
+        (m,) energies, dimensionless, all different, finite, 1 or more.
+    counts
+        (m,) integers, number of starts with the property at each energy, from 0 to N0.
+    starts
+        (m,) integers, N0 at each energy, 1 or more.
 
     Raises
     ------
     ValueError
-        When a parameter is out of the range given at `fit_escape_shares`.
+        If a parameter is out of range.
     """
     energies, shares = _checked_shares(h, "counts", counts, starts, parameters=None)
     return _find_deviation(curve, energies, shares)
 
 
 def _find_deviation(curve: Callable[[Any], Any], energies: np.ndarray, shares: np.ndarray) -> Deviation:
-    apart = np.asarray(curve(energies) - shares, dtype=float)
-    place = int(np.argmax(np.abs(apart)))
-    return Deviation(float(apart[place]), float(energies[place]), float(np.sqrt(np.mean(apart**2))))
+    difference = np.asarray(curve(energies) - shares, dtype=float)
+    largest = int(np.argmax(np.abs(difference)))
+    return Deviation(float(difference[largest]), float(energies[largest]), float(np.sqrt(np.mean(difference**2))))
 
 
-def _find_half_widths(slopes: np.ndarray, residuals: np.ndarray, back: np.ndarray) -> np.ndarray:
-    """(p,) of the intervals of the parameters `back` @ those with slopes J (m, p).
+def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray, transform: np.ndarray) -> np.ndarray:
+    """(p,) half widths of the intervals of `transform` @ the parameters with Jacobian J (m, p).
 
-    The covariance is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
+    The covariance of the latter is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
     """
-    (count, parameters), (q, r) = slopes.shape, np.linalg.qr(slopes)
+    (count, parameters), (q, r) = jacobian.shape, np.linalg.qr(jacobian)
     leverage = np.sum(q * q, axis=1)
-    if leverage.max() > _WHOLE_LEVERAGE or np.linalg.matrix_rank(slopes) < parameters:
+    if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameters:
         return np.full(parameters, np.inf)
-    half = back @ np.linalg.inv(r) @ (q * (residuals / (1.0 - leverage))[:, None]).T
+    root = transform @ np.linalg.inv(r) @ (q * (residuals / (1.0 - leverage))[:, None]).T
     quantile = stats.t.ppf(0.5 * (1.0 + _CONFIDENCE), count - parameters)
-    half_widths: np.ndarray = quantile * np.sqrt(np.sum(half * half, axis=1))
+    half_widths: np.ndarray = quantile * np.sqrt(np.sum(root * root, axis=1))
     return half_widths
 
 
-def _shifted_powers(middle: float, width: float, degree: int) -> np.ndarray:
-    """The matrix that takes coefficients in (h − middle) / width to those in h."""
-    columns = np.zeros((degree + 1, degree + 1))
+def _shift_matrix(middle: float, width: float, degree: int) -> np.ndarray:
+    """Matrix from polynomial coefficients in (h − middle) / width to coefficients in h."""
+    matrix = np.zeros((degree + 1, degree + 1))
     power = np.ones(1)
-    for place in range(degree + 1):
-        columns[: place + 1, place] = power
+    for column in range(degree + 1):
+        matrix[: column + 1, column] = power
         power = np.convolve(power, [-middle / width, 1.0 / width])
-    return columns
+    return matrix
 
 
-def _gather(curve: ShareCurve, half_widths: np.ndarray, energies: np.ndarray, shares: np.ndarray) -> ShareFit:
+def _build_fit(curve: ShareCurve, half_widths: np.ndarray, energies: np.ndarray, shares: np.ndarray) -> ShareFit:
     values = zip(curve.parameters.items(), half_widths.tolist(), strict=True)
     intervals = {name: (value - half, value + half) for (name, value), half in values}
     return ShareFit(curve, MappingProxyType(intervals), _find_deviation(curve, energies, shares), energies, shares)
 
 
 def _checked_shares(h: Any, name: str, counts: Any, starts: Any, *, parameters: int | None) -> tuple[np.ndarray, np.ndarray]:
-    """Energies and shares (m,); enough of them to fit so many parameters, or at least one."""
-    energies = read_array("h", h).copy()
-    fewest = 1 if parameters is None else parameters + _SPARE_ENERGIES
-    usable = energies.ndim == 1 and energies.size >= fewest and np.isfinite(energies).all()
+    """Energies and shares (m,): enough to fit this many parameters, or at least one energy if None."""
+    energies = checked_array("h", h).copy()
+    min_size = 1 if parameters is None else parameters + _SPARE_ENERGIES
+    usable = energies.ndim == 1 and energies.size >= min_size and np.isfinite(energies).all()
     if not usable or np.unique(energies).size < energies.size:
-        raise ValueError(f"h={shown(h)}: must be {fewest} or more different finite numbers in a row")
-    part, whole = read_integers(name, counts), read_integers("starts", starts)
-    for label, array in ((name, part), ("starts", whole)):
+        raise ValueError(f"h={short_repr(h)}: must be a sequence of {min_size} or more different finite numbers")
+    part, total = checked_integers(name, counts), checked_integers("starts", starts)
+    for label, array in ((name, part), ("starts", total)):
         if array.shape != energies.shape:
-            raise ValueError(f"{label}={shown(array)}: must be integers, as many as energies, {energies.size}")
-    if np.any(whole < 1):
-        raise ValueError(f"starts={shown(starts)}: must be 1 or more")
-    if np.any((part < 0) | (part > whole)):
-        raise ValueError(f"{name}={shown(counts)}: must be from 0 to starts={shown(starts)}")
-    shares = part / whole
-    for array in (energies, shares):
-        array.flags.writeable = False
-    return energies, shares
+            raise ValueError(f"{label}={short_repr(array)}: must be one integer per energy, {energies.size}")
+    if np.any(total < 1):
+        raise ValueError(f"starts={short_repr(starts)}: must be 1 or more")
+    if np.any((part < 0) | (part > total)):
+        raise ValueError(f"{name}={short_repr(counts)}: must be from 0 to starts={short_repr(starts)}")
+    return read_only(energies), read_only(part / total)

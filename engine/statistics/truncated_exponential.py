@@ -1,6 +1,6 @@
-"""The exponential distribution cut off at both ends, density ∝ exp(−k u) on 0 ≤ u ≤ 1: its fit, and how well it fits.
+"""Truncated exponential distribution with density ∝ exp(−k u) on 0 ≤ u ≤ 1: maximum-likelihood fit and goodness of fit.
 
-The steepness k may be of either sign; at 0 all times are equally likely.
+The steepness k can have either sign; k = 0 is the uniform distribution. Samples u have increasing values along their last axis.
 """
 
 from __future__ import annotations
@@ -10,20 +10,23 @@ from typing import Any
 import numpy as np
 
 _NEWTON_STEPS = 12
+# Below this steepness the mean is computed from its series, which avoids cancellation.
 _SMALL_STEEPNESS = 1e-2
+# Smallest steepness in the formulas that divide by it; the difference from 0 is below their rounding.
+_MIN_STEEPNESS = 1e-9
 
 
-def fit_truncated_exponential(clock_times: np.ndarray) -> tuple[float, float]:
-    """Steepness of the likeliest truncated exponential, and its Kolmogorov–Smirnov distance from the rising times."""
-    steepness = solve_steepness(clock_times.mean(keepdims=True))
-    return float(steepness[0]), float(find_distance(steepness, clock_times))
+def fit_steepness_and_distance(u: np.ndarray) -> tuple[float, float]:
+    """Maximum-likelihood steepness for a sample u (n,), and the Kolmogorov–Smirnov distance of the fit from the sample."""
+    steepness = solve_steepness(u.mean(keepdims=True))
+    return float(steepness[0]), float(kolmogorov_smirnov_distance(steepness, u))
 
 
 def solve_steepness(means: np.ndarray) -> np.ndarray:
-    """The steepness k at which a truncated exponential, density ∝ exp(−k u) on 0 ≤ u ≤ 1, has these means in (0, 1).
+    """Steepness k of the truncated exponentials with these means in (0, 1); negative for means above 1/2.
 
-    It is the maximum-likelihood estimate, and below 0 for a mean beyond 1/2. Newton's method from below on
-    1/k − 1/(exp k − 1), which is convex and falls from 1/2 for k > 0; means m and 1 − m have opposite k.
+    This is the maximum-likelihood estimate. Newton's method solves 1/k − 1/(exp k − 1) = mean from below; for k > 0 the left side
+    is convex and decreases from 1/2. Means m and 1 − m have opposite k.
     """
     lower = np.minimum(means, 1.0 - means)
     k = 1.0 / lower - 2.0
@@ -39,38 +42,38 @@ def solve_steepness(means: np.ndarray) -> np.ndarray:
     return signed
 
 
-def share_left(steepness: Any, clock_times: np.ndarray) -> np.ndarray:
-    """Distribution function of the truncated exponential; arguments broadcast."""
-    k = np.maximum(np.abs(steepness), 1e-9)
-    rising = steepness < 0.0
-    share = np.expm1(-k * np.where(rising, 1.0 - clock_times, clock_times)) / np.expm1(-k)
-    left: np.ndarray = np.where(rising, 1.0 - share, share)
-    return left
+def cumulative_share(steepness: Any, u: np.ndarray) -> np.ndarray:
+    """Cumulative distribution function at u; arguments broadcast."""
+    k = np.maximum(np.abs(steepness), _MIN_STEEPNESS)
+    mirrored = steepness < 0.0
+    share = np.expm1(-k * np.where(mirrored, 1.0 - u, u)) / np.expm1(-k)
+    cumulative: np.ndarray = np.where(mirrored, 1.0 - share, share)
+    return cumulative
 
 
-def when_left(steepness: float, share: np.ndarray) -> np.ndarray:
-    """Inverse of `share_left`."""
-    k = max(abs(steepness), 1e-9)
-    times: np.ndarray = -np.log1p(share * np.expm1(-k)) / k
-    return 1.0 - times if steepness < 0.0 else times
+def quantile(steepness: float, share: np.ndarray) -> np.ndarray:
+    """Inverse of `cumulative_share`."""
+    k = max(abs(steepness), _MIN_STEEPNESS)
+    u: np.ndarray = -np.log1p(share * np.expm1(-k)) / k
+    return 1.0 - u if steepness < 0.0 else u
 
 
-def find_distance(steepness: np.ndarray, clock_times: np.ndarray) -> np.ndarray:
-    """Kolmogorov–Smirnov distance of rising times, along the last axis, from the truncated exponential."""
-    count = clock_times.shape[-1]
-    above = np.arange(1, count + 1) / count - share_left(steepness, clock_times)
+def kolmogorov_smirnov_distance(steepness: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Kolmogorov–Smirnov distance of increasing samples u, along the last axis, from the truncated exponential."""
+    count = u.shape[-1]
+    above = np.arange(1, count + 1) / count - cumulative_share(steepness, u)
     largest: np.ndarray = np.maximum(above.max(axis=-1), 1.0 / count - above.min(axis=-1))
     return largest
 
 
-def scale_distance(distance: Any, count: int) -> Any:
-    """Distance over what chance leaves of it in a sample of this size."""
+def scaled_distance(distance: Any, count: int) -> Any:
+    """Kolmogorov–Smirnov distance in units of its typical size in a sample of `count` (Stephens 1974)."""
     root = np.sqrt(count)
     return (distance - 0.2 / count) * (root + 0.26 + 0.5 / root)
 
 
-def largest_log_likelihood(means: np.ndarray) -> np.ndarray:
-    """Largest log-likelihood per escape of a truncated exponential."""
-    k = np.maximum(np.abs(solve_steepness(means)), 1e-9)
+def max_log_likelihood(means: np.ndarray) -> np.ndarray:
+    """Largest log-likelihood per sample point of a truncated exponential, for samples with these means."""
+    k = np.maximum(np.abs(solve_steepness(means)), _MIN_STEEPNESS)
     likelihood: np.ndarray = np.log(-k / np.expm1(-k)) - k * np.minimum(means, 1.0 - means)
     return likelihood

@@ -1,10 +1,10 @@
-"""The nearest start that leaves elsewhere: how far apart two orbits may begin and still share an exit."""
+"""The nearest start with a different exit: how precisely a start must be known to predict its exit."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,48 +12,49 @@ import numpy as np
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Plane, start_states
+from engine.execution import raise_if_cancelled
 from engine.potentials.potential import Potential
-from engine.validation import read_number, read_t_max
+from engine.validation import checked_number, checked_t_max
 
-# Some hundred units in the last place of coordinates of order 1.
-_NEAREST = 1e-13
+# A few hundred units in the last place of coordinates of order 1.
+_MIN_DISTANCE = 1e-13
 _DIRECTIONS = 16
 _STARTS_PER_DECADE = 80
-# Looked at together, from the inside out: an orbit that leaves late has its twin on the first rings, and the many neighbours
-# further out, some of which stay far longer, need not be followed.
-_STARTS_AT_ONCE = 128
-# Twice as many sections bring the distance between two rings, at most a factor of 1.6, below a hundredth.
-_ROUNDS = 2
+# Rings are classified in batches of this size, from the inside out. An orbit that escapes late has a divergent start on one of
+# the first rings, so the many neighbours further out, some of them bounded for much longer, need not be integrated.
+_BATCH_SIZE = 128
+# Two refinements into 10 sections reduce the gap between two rings, at most a factor of 1.6, to under 1 %.
+_REFINEMENTS = 2
 _SECTIONS = 10
-# How long neighbours are followed: this many times the escape time of the orbit itself, and no less than the time after it.
-_PATIENCE = 3.0
+# Neighbours are integrated for this multiple of the escape time of the given start, but at least for `_SHORTEST_HORIZON`.
+_HORIZON_FACTOR = 3.0
 _SHORTEST_HORIZON = 1000.0
 
 
 @dataclass(frozen=True)
-class Twin:
-    """A neighbouring start on the same plane whose orbit leaves elsewhere; lengths are dimensionless.
+class DivergentStart:
+    """A neighbouring start on the same plane whose orbit escapes through a different channel; lengths are dimensionless.
 
     Attributes
     ----------
     x, ordinate
-        Where it starts.
+        Position in the plane of initial conditions.
     distance
-        From the start it is the twin of, in the plane.
+        Distance from the given start in that plane.
     fate
-        The channel through which it leaves, k ≥ 1.
-    first_fate
-        Another channel, or the `Fate`, of the orbit it is the twin of.
+        Channel through which this orbit escapes, k ≥ 1.
+    reference_fate
+        Fate of the given start: another channel, or a `Fate`.
     """
 
     x: float
     ordinate: float
     distance: float
     fate: int
-    first_fate: int
+    reference_fate: int
 
 
-def find_twin(
+def find_divergent_start(
     potential: Potential,
     plane: Plane,
     energy: float | tuple[float, float],
@@ -64,13 +65,13 @@ def find_twin(
     furthest: float = 1.0,
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
-) -> Twin | None:
-    """The nearest neighbour of a start that leaves through another channel, or that leaves at all if the start is bounded.
+) -> DivergentStart | None:
+    """Find the nearest neighbour of a start that escapes through another channel, or at all if the start is bounded.
 
-    Neighbours stand on rings around the start, in 16 directions on rings that grow by a factor of 1.6; on (x, h) in the two
-    directions that keep the energy, by a factor of 1.06. Between the first ring with a twin and the one before, the distance is
-    narrowed down to a hundredth along the directions of that ring. A basin so thin that it lies between rings or directions is
-    missed.
+    Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, on (x, h), the two
+    directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and the
+    previous ring the distance is refined to 1 % along the directions found. Basins narrower than the gaps between rings or
+    directions can be missed.
 
     Parameters
     ----------
@@ -79,57 +80,62 @@ def find_twin(
     plane
         Plane of initial conditions.
     energy
-        h, finite, dimensionless; for (x, h) ignored: there the ordinate is the energy.
+        h, finite, dimensionless; ignored on (x, h), where the ordinate is the energy.
     x, ordinate
-        The start, interior to the plane.
+        The start, dimensionless; neither forbidden nor outside.
     t_max
-        How long its orbit is followed, 0 < t_max ≤ 1e8. Neighbours are followed for 1000 or, if it escapes, for three times its
-        escape time, whichever is longer, but not beyond t_max; one still inside by then is no twin.
+        Integration time of the given start, 0 < t_max ≤ 1e8, dimensionless. Neighbours are integrated for 1000 or, if the start
+        escapes, for three times its escape time, whichever is longer, and never beyond t_max. Neighbours bounded until then are
+        not divergent.
     furthest
-        Largest distance to look at, above 1e-13, finite.
+        Largest distance to search, finite, above 1e-13, dimensionless.
     executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
+        Any `concurrent.futures.Executor`; None for the shared pool of this process.
     cancel
-        When set, the work stops within about 0.1 s.
+        When set, the search stops within about 0.1 s.
 
     Returns
     -------
-    The twin; None when no neighbour within `furthest` leaves elsewhere. At a distance of 1e-13 it may be nearer still.
+    The `DivergentStart`, or None if no neighbour within `furthest` is divergent. A distance of 1e-13 is an upper bound: the
+    search does not look any closer.
 
     Raises
     ------
     concurrent.futures.CancelledError
-        When cancelled.
+        If cancelled.
     ValueError
-        When a parameter is out of its range, or the start is forbidden or outside.
+        If a parameter is out of range, or the start is forbidden or outside.
     """
-    t_max = read_t_max(t_max)
-    if not read_number("furthest", furthest, f"a finite number above {_NEAREST:g}") > _NEAREST:
-        raise ValueError(f"furthest={furthest}: must be a finite number above {_NEAREST:g}")
+    t_max = checked_t_max(t_max)
+    if not checked_number("furthest", furthest, f"a finite number above {_MIN_DISTANCE:g}") > _MIN_DISTANCE:
+        raise ValueError(f"furthest={furthest}: must be a finite number above {_MIN_DISTANCE:g}")
     plane = Plane(plane)
     h = _checked_energy(plane, energy, x, ordinate)
     search = _Search(potential, plane, h, np.array([x, ordinate], dtype=float), executor, cancel)
-    search.follow_the_first(t_max)
-    if search.first in (Fate.FORBIDDEN, Fate.OUTSIDE):
+    search.classify_centre(t_max)
+    if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
         raise ValueError(
-            f"x={x}, {plane.ordinate}={ordinate}: {Fate(search.first).name.lower()} on {plane.value} at h={h}; "
+            f"x={x}, {plane.ordinate}={ordinate}: {Fate(search.centre_fate).name.lower()} on {plane.value} at h={h}; "
             f"must have V + px²/2 ≤ h and lie inside every Lyapunov orbit"
         )
     return search.find_nearest(furthest)
 
 
 def _checked_energy(plane: Plane, energy: float | tuple[float, float], x: float, ordinate: float) -> float:
-    """h of the start."""
+    """Energy h of the start; ValueError unless it and the coordinates are finite numbers."""
     for name, value in (("x", x), (plane.ordinate, ordinate)):
-        read_number(name, value)
+        checked_number(name, value)
     if plane is Plane.X_H:
         return float(ordinate)
-    return read_number("energy", energy, f"one finite number on {plane.value}")
+    return checked_number("energy", energy, f"one finite number on {plane.value}")
 
 
 @dataclass(frozen=True, eq=False)
 class _Bracket:
-    """Radii between which twins begin along some directions (m, 2): none at `low`, at `high` through these channels (m,)."""
+    """Bounds of the distance to the nearest divergent start along some directions (m, 2).
+
+    There is none at radius `low`. At radius `high` the start in each direction escapes through its entry of `channels` (m,).
+    """
 
     low: float
     high: float
@@ -138,7 +144,7 @@ class _Bracket:
 
 
 class _Search:
-    """The starts of energy `h` around `centre` (2,), and what became of the first of all."""
+    """Search around the start `centre` (2,) = x, ordinate, at energy `h`."""
 
     def __init__(
         self,
@@ -152,35 +158,36 @@ class _Search:
         self.potential, self.plane, self.h, self.centre = potential, plane, h, centre
         self.executor, self.cancel = executor, cancel
 
-    def follow_the_first(self, t_max: float) -> None:
-        """Find its fate, and from that how long to follow its neighbours."""
+    def classify_centre(self, t_max: float) -> None:
+        """Set the fate of the centre and the integration time of its neighbours."""
         fate, escape_time = self.classify(self.centre[None], t_max)
-        self.first = int(fate[0])
-        patience = _PATIENCE * escape_time[0] if self.first >= 1 else 0.0
-        self.horizon = min(t_max, max(_SHORTEST_HORIZON, patience))
+        self.centre_fate = int(fate[0])
+        scaled_time = _HORIZON_FACTOR * escape_time[0] if self.centre_fate >= 1 else 0.0
+        self.horizon = min(t_max, max(_SHORTEST_HORIZON, scaled_time))
 
-    def find_nearest(self, furthest: float) -> Twin | None:
-        """The nearest start that leaves elsewhere, from the inside out."""
+    def find_nearest(self, furthest: float) -> DivergentStart | None:
+        """The nearest divergent start, from the inside out."""
         directions = _directions(self.plane)
-        brackets = (self.look(radii, directions) for radii in _rings(furthest, len(directions)))
+        brackets = (self.find_bracket(radii, directions) for radii in _ring_radii(furthest, len(directions)))
         bracket = next(filter(None, brackets), None)
         if bracket is None:
             return None
-        for _ in range(_ROUNDS if bracket.high > _NEAREST else 0):
-            bracket = self.look(np.linspace(bracket.low, bracket.high, _SECTIONS + 1), bracket.directions) or bracket
+        for _ in range(_REFINEMENTS if bracket.high > _MIN_DISTANCE else 0):
+            radii = np.linspace(bracket.low, bracket.high, _SECTIONS + 1)
+            bracket = self.find_bracket(radii, bracket.directions) or bracket
         x, ordinate = (self.centre + bracket.high * bracket.directions[0]).tolist()
         distance = float(np.hypot(*(self.centre - [x, ordinate])))
-        return Twin(x, ordinate, distance, int(bracket.channels[0]), self.first)
+        return DivergentStart(x, ordinate, distance, int(bracket.channels[0]), self.centre_fate)
 
-    def look(self, radii: np.ndarray, directions: np.ndarray) -> _Bracket | None:
-        """The smallest of the rising radii with a twin, the first of which is known to have none."""
+    def find_bracket(self, radii: np.ndarray, directions: np.ndarray) -> _Bracket | None:
+        """The smallest of the increasing radii with a divergent start, if any; the first radius is known to have none."""
         fate = self.classify(self.centre + radii[1:, None, None] * directions, self.horizon)[0]
-        elsewhere = (fate >= 1) & (fate != self.first)
-        if not elsewhere.any():
+        divergent = (fate >= 1) & (fate != self.centre_fate)
+        if not divergent.any():
             return None
-        ring = int(np.argmax(elsewhere.any(axis=1)))
-        which = elsewhere[ring]
-        return _Bracket(float(radii[ring]), float(radii[ring + 1]), directions[which], fate[ring, which])
+        ring = int(np.argmax(divergent.any(axis=1)))
+        found = divergent[ring]
+        return _Bracket(float(radii[ring]), float(radii[ring + 1]), directions[found], fate[ring, found])
 
     def classify(self, points: np.ndarray, t_max: float) -> tuple[np.ndarray, np.ndarray]:
         """Fates and escape times (…) of points (…, 2)."""
@@ -188,25 +195,24 @@ class _Search:
         states = start_states(self.potential, self.plane, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
         outcomes = classify_orbits(self.potential, self.h, states[exists], t_max, executor=self.executor, cancel=self.cancel)
-        if self.cancel is not None and self.cancel.is_set():
-            raise CancelledError
+        raise_if_cancelled(self.cancel)
         fate, escape_time = np.full(x.size, Fate.FORBIDDEN, np.int8), np.full(x.size, np.nan)
         fate[exists], escape_time[exists] = outcomes.fate, outcomes.escape_time
         return fate.reshape(points.shape[:-1]), escape_time.reshape(points.shape[:-1])
 
 
 def _directions(plane: Plane) -> np.ndarray:
-    """(m, 2) unit vectors; on (x, h) all neighbours keep the energy of the start."""
+    """(m, 2) unit vectors; on (x, h) the two directions of constant energy."""
     if plane is Plane.X_H:
         return np.array([[1.0, 0.0], [-1.0, 0.0]])
     angle = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    # Rounded, so that the neighbours of mirror images are mirror images.
+    # Rounded, so that the neighbours of mirror images are exact mirror images.
     return np.round(np.column_stack([np.cos(angle), np.sin(angle)]), 12)
 
 
-def _rings(furthest: float, directions: int) -> Iterator[np.ndarray]:
-    """Radii, rising evenly on a logarithmic scale, some at a time; each time the last one of before comes first."""
-    count = int(np.ceil(_STARTS_PER_DECADE / directions * np.log10(furthest / _NEAREST))) + 1
-    radii = np.concatenate([[0.0], np.geomspace(_NEAREST, furthest, count)])
-    together = _STARTS_AT_ONCE // directions
-    yield from (radii[begin : begin + together + 1] for begin in range(0, count, together))
+def _ring_radii(furthest: float, directions: int) -> Iterator[np.ndarray]:
+    """Batches of logarithmically spaced, increasing radii; each batch begins with the last radius of the previous one."""
+    count = int(np.ceil(_STARTS_PER_DECADE / directions * np.log10(furthest / _MIN_DISTANCE))) + 1
+    radii = np.concatenate([[0.0], np.geomspace(_MIN_DISTANCE, furthest, count)])
+    rings = _BATCH_SIZE // directions
+    yield from (radii[begin : begin + rings + 1] for begin in range(0, count, rings))

@@ -1,4 +1,4 @@
-"""The potentials that the contract is tested on: all that come with the engine, and a few that nobody chose."""
+"""The potentials of the contract tests: the catalogue, and some random ones."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from engine.potentials.formula_parser import write_formula
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import review_potential
 
-# Kernels are compiled for each potential: these are in every run, the others, the paper's cases among them, which the other tests
-# are about, where time does not matter.
+# Compiling kernels for all potentials takes long, so normal runs only compile these, and exhaustive runs compile all of them. The
+# three cases of the paper are covered by other tests.
 ALWAYS = ("C5", "C8")
 
 
 def _random(seed: int) -> Potential:
-    """A well with random terms of third and fourth degree, the first of its seed that the review accepts."""
+    """A well with random terms of degree 3 and 4: the first one for this seed that the review accepts."""
     rng = np.random.default_rng(seed)
     while True:
         powers = [(i, n - i) for n in (3, 4) for i in range(n + 1)]

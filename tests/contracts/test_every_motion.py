@@ -1,4 +1,4 @@
-"""What every potential keeps to in motion."""
+"""Properties of the orbits of every potential."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.peers import taylor_heyoka
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
 
-ABOVE = 1.15
+ENERGY_FACTOR = 1.15
 
 
 def energy_of(potential: Potential, factor: float) -> float:
@@ -23,7 +23,7 @@ def energy_of(potential: Potential, factor: float) -> float:
 
 
 def starts(potential: Potential, energy: float, count: int, seed: int = 0) -> np.ndarray:
-    """(count, 4) states of one energy near the bottom of the well, in random directions."""
+    """(count, 4) states of one energy near the minimum of the well, with random directions."""
     rng = np.random.default_rng(seed)
     place = 0.3 * potential.length * rng.uniform(-1.0, 1.0, (20 * count, 2))
     place = place[potential.value(*place.T) < energy][:count]
@@ -33,7 +33,7 @@ def starts(potential: Potential, energy: float, count: int, seed: int = 0) -> np
 
 
 @each_compiled
-def test_energy_is_conserved_over_a_hundred_units_of_time(potential: Potential) -> None:
+def test_energy_is_conserved(potential: Potential) -> None:
     energy = energy_of(potential, 0.9)
     outcome = classify_orbits(potential, energy, starts(potential, energy, 8), t_max=100.0)
     assert np.all(outcome.fate == 0)
@@ -41,8 +41,8 @@ def test_energy_is_conserved_over_a_hundred_units_of_time(potential: Potential) 
 
 
 @each_compiled
-def test_lyapunov_orbits_close_and_are_unstable(potential: Potential) -> None:
-    energy = energy_of(potential, ABOVE)
+def test_lyapunov_orbits_are_periodic_and_unstable(potential: Potential) -> None:
+    energy = energy_of(potential, ENERGY_FACTOR)
     orbits = find_lyapunov_orbits(potential, energy)
     assert [orbit.channel for orbit in orbits] == list(potential.open_channels(energy))
     for orbit in orbits[:3]:
@@ -54,7 +54,7 @@ def test_lyapunov_orbits_close_and_are_unstable(potential: Potential) -> None:
 
 
 def trace_of_monodromy(potential: Potential, start: np.ndarray, period: float) -> float:
-    """4 for a stable or an integrable orbit's Jordan block at most; beyond, neighbours move away exponentially."""
+    """The trace of the monodromy matrix without its two unit eigenvalues; the orbit is unstable if its magnitude is above 2."""
     trace = 0.0
     for pair in (np.eye(4)[:2], np.eye(4)[2:]):
         flow = solve_ivp(
@@ -67,26 +67,26 @@ def trace_of_monodromy(potential: Potential, start: np.ndarray, period: float) -
 
 
 @each_compiled
-def test_turned_starts_leave_by_turned_channels(potential: Potential) -> None:
-    turns = count_rotations(potential)
-    if turns < 2:
+def test_rotated_starts_escape_through_rotated_channels(potential: Potential) -> None:
+    rotations = count_rotations(potential)
+    if rotations < 2:
         pytest.skip("no rotation")
-    energy, angle = energy_of(potential, ABOVE), 2.0 * np.pi / turns
+    energy, angle = energy_of(potential, ENERGY_FACTOR), 2.0 * np.pi / rotations
     states = starts(potential, energy, 200)
     cos, sin = np.cos(angle), np.sin(angle)
     rotation = np.array([[cos, -sin], [sin, cos]])
-    turned = np.column_stack([states[:, :2] @ rotation.T, states[:, 2:] @ rotation.T])
-    here, there = (classify_orbits(potential, energy, s, t_max=15.0) for s in (states, turned))
-    # Rounding grows too little in so short a time to change any but an orbit on the very boundary.
-    step = potential.channels // turns
-    expected = np.where(here.fate > 0, (here.fate - 1 + step) % potential.channels + 1, here.fate)
-    assert np.mean(there.fate != expected) < 0.02
-    assert np.mean(here.fate > 0) > 0.05
+    rotated = np.column_stack([states[:, :2] @ rotation.T, states[:, 2:] @ rotation.T])
+    original, image = (classify_orbits(potential, energy, s, t_max=15.0) for s in (states, rotated))
+    # In so short a time rounding errors only change orbits at a basin boundary.
+    step = potential.channels // rotations
+    expected = np.where(original.fate > 0, (original.fate - 1 + step) % potential.channels + 1, original.fate)
+    assert np.mean(image.fate != expected) < 0.02
+    assert np.mean(original.fate > 0) > 0.05
 
 
 @each_compiled
-def test_heyoka_says_the_same_of_random_starts(potential: Potential) -> None:
-    energy = energy_of(potential, ABOVE)
+def test_outcomes_agree_with_heyoka(potential: Potential) -> None:
+    energy = energy_of(potential, ENERGY_FACTOR)
     states = starts(potential, energy, 12, seed=5)
     ours = classify_orbits(potential, energy, states, t_max=12.0)
     theirs = taylor_heyoka.classify(potential, exit_lines(potential, energy), states, 12.0, 1e-15)

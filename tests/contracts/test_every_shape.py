@@ -1,4 +1,4 @@
-"""What every potential keeps to before anything is compiled for it."""
+"""Properties of every potential that need no compiled kernels."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def expression_of(potential: Potential) -> sympy.Expr:
 
 
 @each_potential
-def test_derivatives_are_those_of_sympy(potential: Potential) -> None:
+def test_derivatives_agree_with_sympy(potential: Potential) -> None:
     value = expression_of(potential)
     found = [*potential.gradient(*PLACES), *potential.hessian(*PLACES)]
     for variables, ours in zip(((X,), (Y,), (X, X), (X, Y), (Y, Y)), found, strict=True):
@@ -29,7 +29,7 @@ def test_derivatives_are_those_of_sympy(potential: Potential) -> None:
 
 
 @each_potential
-def test_the_force_vanishes_at_every_critical_point(potential: Potential) -> None:
+def test_force_vanishes_at_critical_points(potential: Potential) -> None:
     points = potential.critical_points
     slopes = np.array(potential.gradient(*points.T))
     stiffness = np.abs(potential.hessian(*points.T)).max() * potential.length
@@ -37,19 +37,19 @@ def test_the_force_vanishes_at_every_critical_point(potential: Potential) -> Non
 
 
 @each_potential
-def test_every_channel_leads_over_a_saddle(potential: Potential) -> None:
+def test_channels_lead_over_saddles(potential: Potential) -> None:
     vxx, vxy, vyy = potential.hessian(*potential.saddles.T)
     assert np.all(vxx * vyy - vxy**2 < 0.0)
 
 
 @each_potential
-def test_downhill_from_a_saddle_one_side_leads_to_the_origin_and_the_other_does_not(potential: Potential) -> None:
-    # A plain descent by small strides of a fixed length, which shares nothing with the engine's.
+def test_descent_from_a_saddle_reaches_the_origin_on_one_side_only(potential: Potential) -> None:
+    # Gradient descent with a fixed step length, independent of the implementation in the engine.
     stride = 0.01 * potential.length
     for channel, saddle in enumerate(potential.saddles, start=1):
         ends = []
         for side in (-3.0, 3.0):
-            place = saddle + side * stride * potential.outward_direction(channel)
+            place = saddle + side * stride * potential.outward_directions[channel - 1]
             for _ in range(400):
                 slope = np.array(potential.gradient(*place))
                 place = place - stride * slope / np.hypot(*slope)
@@ -58,12 +58,12 @@ def test_downhill_from_a_saddle_one_side_leads_to_the_origin_and_the_other_does_
 
 
 @each_potential
-def test_the_formula_reads_back_to_the_potential(potential: Potential) -> None:
+def test_formula_parses_to_the_same_potential(potential: Potential) -> None:
     assert sorted(parse_formula(write_formula(potential)).terms) == sorted(potential.terms)
 
 
 @each_potential
-def test_the_review_tells_one_well_and_all_channels(potential: Potential) -> None:
+def test_review_has_the_well_and_all_channels(potential: Potential) -> None:
     review = review_potential(potential)
     nearest = review.critical_points[0]
     assert (nearest.x, nearest.y, nearest.kind) == (0.0, 0.0, PointKind.MINIMUM)
@@ -71,7 +71,7 @@ def test_the_review_tells_one_well_and_all_channels(potential: Potential) -> Non
 
 
 @each_potential
-def test_declared_symmetries_hold(potential: Potential) -> None:
+def test_reported_symmetries_hold(potential: Potential) -> None:
     review = review_potential(potential)
     x, y = PLACES
     value = potential.value(x, y)
@@ -79,16 +79,14 @@ def test_declared_symmetries_hold(potential: Potential) -> None:
         np.testing.assert_array_equal(potential.value(-x, y), value)
     if review.mirror_in_y:
         np.testing.assert_array_equal(potential.value(x, -y), value)
-    turn = 2.0 * np.pi / review.rotations
-    turned = np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y
-    np.testing.assert_allclose(potential.value(*turned), value, rtol=1e-12, atol=1e-12)
+    angle = 2.0 * np.pi / review.rotations
+    rotated = np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
+    np.testing.assert_allclose(potential.value(*rotated), value, rtol=1e-12, atol=1e-12)
 
 
 @each_potential
 @pytest.mark.parametrize("parameters", [(1.2, 1.0, 0.8), (1.0, 1.1, 20.0), (0.9, 1.0, 0.05)])
-def test_other_parameters_leave_the_well_and_the_lowest_exit(
-    potential: Potential, parameters: tuple[float, float, float]
-) -> None:
+def test_escape_energy_stays_finite_for_other_parameters(potential: Potential, parameters: tuple[float, float, float]) -> None:
     changed = potential.with_parameters(*parameters)
     assert np.isfinite(changed.escape_energy)
     assert changed.escape_energy > changed.value(0.0, 0.0)

@@ -1,6 +1,6 @@
-"""Escapes by SciPy's DOP853 and dense sampling: shares nothing with the engine but the terms of the potential.
+"""Escapes by SciPy's DOP853 with dense sampling; from the engine only the terms of the potential and the exits are used.
 
-All orbits of a list are integrated as one large system, a short stretch at a time; those that left are dropped after it.
+All orbits are integrated as one large system for short intervals; escaped orbits are removed after each interval.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from scipy.integrate import solve_ivp
 from engine import Potential
 from tests.peers.exit_lines import ExitLine
 
-STRETCH = 0.5
+INTERVAL = 0.5
 _SAMPLES = 65
 _BISECTIONS = 45
 
 
 @dataclass(frozen=True)
-class Answers:
-    """Channel or 0, escape time or NaN, and upward crossings of y = 0 of n orbits."""
+class PeerOutcomes:
+    """Channel (0 if bounded), escape time (NaN if bounded) and number of upward crossings of y = 0 of n orbits."""
 
     fate: np.ndarray
     escape_time: np.ndarray
@@ -42,7 +42,7 @@ def equations(potential: Potential):
 
 
 def variational_equations(potential: Potential):
-    """Orbit and two deviation vectors: (12,) x, y, px, py and twice δx, δy, δpx, δpy."""
+    """Equations of an orbit and two deviation vectors: (12,) x, y, px, py and twice δx, δy, δpx, δpy."""
 
     def derivative(_t: float, flat: np.ndarray) -> np.ndarray:
         x, y, px, py = flat[:4]
@@ -55,34 +55,34 @@ def variational_equations(potential: Potential):
     return derivative
 
 
-def classify(potential: Potential, lines: list[ExitLine], states: np.ndarray, t_max: float, rtol: float = 1e-13) -> Answers:
+def classify(potential: Potential, lines: list[ExitLine], states: np.ndarray, t_max: float, rtol: float = 1e-13) -> PeerOutcomes:
     n = len(states)
-    answers = Answers(np.zeros(n, int), np.full(n, np.nan), np.zeros(n, int))
-    inside, now = np.arange(n), states.T.copy()
-    for begin in np.arange(0.0, t_max, STRETCH):
+    outcomes = PeerOutcomes(np.zeros(n, int), np.full(n, np.nan), np.zeros(n, int))
+    inside, current = np.arange(n), states.T.copy()
+    for begin in np.arange(0.0, t_max, INTERVAL):
         if not inside.size:
             break
-        end = min(begin + STRETCH, t_max)
+        end = min(begin + INTERVAL, t_max)
         solution = solve_ivp(
-            equations(potential), (begin, end), now.ravel(), method="DOP853", dense_output=True, rtol=rtol, atol=rtol
+            equations(potential), (begin, end), current.ravel(), method="DOP853", dense_output=True, rtol=rtol, atol=rtol
         )
         times = np.linspace(begin, end, _SAMPLES)
         x, y = solution.sol(times).reshape(4, -1, _SAMPLES)[:2]
-        left = _exits(lines, solution.sol, times, x, y)
+        escaped = _first_crossings(lines, solution.sol, times, x, y)
         for k, orbit in enumerate(inside):
-            until = left[k][1] if k in left else np.inf
+            until = escaped[k][1] if k in escaped else np.inf
             upward = np.flatnonzero((y[k, :-1] < 0) & (y[k, 1:] >= 0) & (times[1:] <= until))
-            answers.crossings[orbit] += upward.size
-            if k in left:
-                answers.fate[orbit], answers.escape_time[orbit] = left[k]
-        stay = np.setdiff1d(np.arange(inside.size), list(left))
-        inside, now = inside[stay], solution.y[:, -1].reshape(4, -1)[:, stay]
-    return answers
+            outcomes.crossings[orbit] += upward.size
+            if k in escaped:
+                outcomes.fate[orbit], outcomes.escape_time[orbit] = escaped[k]
+        stay = np.setdiff1d(np.arange(inside.size), list(escaped))
+        inside, current = inside[stay], solution.y[:, -1].reshape(4, -1)[:, stay]
+    return outcomes
 
 
-def _exits(lines: list[ExitLine], sol, times: np.ndarray, x: np.ndarray, y: np.ndarray) -> dict[int, tuple[int, float]]:
-    """{orbit: (channel, time)} of the first outward crossing within a stretch."""
-    left: dict[int, tuple[int, float]] = {}
+def _first_crossings(lines: list[ExitLine], sol, times: np.ndarray, x: np.ndarray, y: np.ndarray) -> dict[int, tuple[int, float]]:
+    """{orbit: (channel, time)} of the first outward crossing within an interval."""
+    crossings: dict[int, tuple[int, float]] = {}
     for line in lines:
         past = line.past(x, y)
         for k in np.flatnonzero((past > 0).any(axis=1)):
@@ -92,6 +92,6 @@ def _exits(lines: list[ExitLine], sol, times: np.ndarray, x: np.ndarray, y: np.n
                 middle = 0.5 * (low + high)
                 x_middle, y_middle = sol(middle).reshape(4, -1)[:2, k]
                 low, high = (low, middle) if line.past(x_middle, y_middle) > 0 else (middle, high)
-            if k not in left or high < left[k][1]:
-                left[k] = (line.channel, high)
-    return left
+            if k not in crossings or high < crossings[k][1]:
+                crossings[k] = (line.channel, high)
+    return crossings

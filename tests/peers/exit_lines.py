@@ -1,7 +1,7 @@
-"""Exits from nothing but the sampled path of each Lyapunov orbit: a second opinion on what lies outside.
+"""An independent description of the exits, from the sampled paths of the Lyapunov orbits.
 
-A Lyapunov orbit comes to rest at both walls, so its path is even in time about either end, and a cosine series through its
-evenly spaced samples is accurate to rounding. In axes along and across the chord from wall to wall the path is a graph.
+A Lyapunov orbit is at rest at both ends, so its path is an even function of time about each end, and a cosine series through its
+evenly spaced samples is accurate to rounding errors. In axes along and across the chord between the ends the path is a graph.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _POINTS = 20001
 
 @dataclass(frozen=True)
 class ExitLine:
-    """One exit: its channel, the middle of the chord, unit vectors along (outward) and across, and the graph u(q)."""
+    """One exit: its channel, the middle of the chord, the outward unit normal of the chord, and the graph u(q)."""
 
     channel: int
     middle: np.ndarray
@@ -31,12 +31,12 @@ class ExitLine:
         return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
 
     def beyond(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Distance beyond the exit along the chord's normal; −1 for points beside it, which it says nothing about."""
+        """Distance beyond the exit along the normal of the chord; −1 for points beside the exit."""
         u, q = self.in_chord_axes(x, y)
         return np.where(np.abs(q) <= self.q[-1], u - np.interp(q, self.q, self.u), -1.0)
 
     def past(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Distance past the exit and its straight extension, which no interior of the paper's cases reaches across."""
+        """Distance beyond the exit and its straight extension, which the interior does not cross in the cases of the paper."""
         u, q = self.in_chord_axes(x, y)
         return u - np.interp(q, self.q, self.u)
 
@@ -51,7 +51,7 @@ def exit_line(orbit: LyapunovOrbit) -> ExitLine:
     across = np.array([x[-1] - x[0], y[-1] - y[0]])
     across /= np.hypot(*across)
     outward = np.array([across[1], -across[0]])
-    # The well is around the origin, so outward is away from it.
+    # Outward is away from the origin, where the well is.
     outward = outward if outward @ middle > 0 else -outward
     line = ExitLine(orbit.channel, middle, outward, np.empty(0), np.empty(0))
     u, q = line.in_chord_axes(x, y)

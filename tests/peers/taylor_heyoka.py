@@ -1,4 +1,4 @@
-"""Escapes by heyoka: Taylor series too, but another author's recurrence, step control and event detection."""
+"""Escapes by heyoka, a Taylor integrator with an independent implementation of recurrences, step control and event detection."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import heyoka as hy
 import numpy as np
 
 from engine import Potential
-from tests.peers.dop853 import Answers
+from tests.peers.dop853 import PeerOutcomes
 from tests.peers.exit_lines import ExitLine
 
 _DEGREE = 12
-# A start on y = 0 is not a crossing.
-_JUST_STARTED = 1e-9
+# Crossings up to this time are the start itself and are not counted.
+_START_TIME = 1e-9
 
 
 def coordinates():
@@ -35,7 +35,7 @@ def taylor_coefficients(potential: Potential, state: np.ndarray) -> np.ndarray:
 
 
 class Classifier:
-    """Classifies orbits of one potential; the exits of an energy are parameters, so that one compilation serves all."""
+    """Classifies orbits of one potential. The exits are parameters of the compiled integrator, so it is compiled only once."""
 
     def __init__(self, potential: Potential, channels: int, tolerance: float) -> None:
         x, y, *_ = coordinates()
@@ -67,7 +67,7 @@ class Classifier:
     def _left(self, k: int):
         def callback(integrator, _sign: int) -> bool:
             line = self.lines[k]
-            # The polynomial means nothing beside the chord.
+            # The polynomial is not valid beside the chord.
             if abs(line.in_chord_axes(*integrator.state[:2])[1]) > 1.001 * line.q[-1]:
                 return True
             self.channel = line.channel
@@ -76,10 +76,10 @@ class Classifier:
         return callback
 
     def _upward(self, _integrator, time: float, _sign: int) -> None:
-        self.crossings += time > _JUST_STARTED
+        self.crossings += time > _START_TIME
 
-    def aim(self, lines: list[ExitLine]) -> None:
-        """Set the exits of an energy."""
+    def set_exits(self, lines: list[ExitLine]) -> None:
+        """Set the exits for an energy."""
         self.lines = lines
         for k, line in enumerate(lines):
             s = line.q / line.q[-1]
@@ -89,21 +89,21 @@ class Classifier:
             self.integrator.pars[18 * k : 18 * k + len(numbers)] = numbers
 
     def __deepcopy__(self, _memo: object) -> Classifier:
-        # heyoka copies its callbacks; they must go on counting here.
+        # heyoka copies its callbacks; all copies must update the counters of this object.
         return self
 
-    def classify(self, states: np.ndarray, t_max: float) -> Answers:
-        answers = Answers(np.zeros(len(states), int), np.full(len(states), np.nan), np.zeros(len(states), int))
+    def classify(self, states: np.ndarray, t_max: float) -> PeerOutcomes:
+        outcomes = PeerOutcomes(np.zeros(len(states), int), np.full(len(states), np.nan), np.zeros(len(states), int))
         for n, state in enumerate(states):
             self.crossings, self.channel = 0, 0
             self.integrator.reset_cooldowns()
             self.integrator.time = 0.0
             self.integrator.state[:] = state
             self.integrator.propagate_until(t_max)
-            answers.fate[n], answers.crossings[n] = self.channel, self.crossings
+            outcomes.fate[n], outcomes.crossings[n] = self.channel, self.crossings
             if self.channel:
-                answers.escape_time[n] = self.integrator.time
-        return answers
+                outcomes.escape_time[n] = self.integrator.time
+        return outcomes
 
 
 @cache
@@ -111,10 +111,12 @@ def classifier(potential: Potential, channels: int, tolerance: float) -> Classif
     return Classifier(potential, channels, tolerance)
 
 
-def classify(potential: Potential, lines: list[ExitLine], states: np.ndarray, t_max: float, tolerance: float = 1e-18) -> Answers:
-    ready = classifier(potential, len(lines), tolerance)
-    ready.aim(lines)
-    return ready.classify(states, t_max)
+def classify(
+    potential: Potential, lines: list[ExitLine], states: np.ndarray, t_max: float, tolerance: float = 1e-18
+) -> PeerOutcomes:
+    cached = classifier(potential, len(lines), tolerance)
+    cached.set_exits(lines)
+    return cached.classify(states, t_max)
 
 
 @cache
@@ -123,7 +125,7 @@ def _plain(potential: Potential):
 
 
 def propagated(potential: Potential, states: np.ndarray, duration: float) -> np.ndarray:
-    """(n, 4) states a time later, or earlier."""
+    """(n, 4) states after a duration, which may be negative."""
     integrator = _plain(potential)
     out = np.empty_like(states)
     for n, state in enumerate(states):

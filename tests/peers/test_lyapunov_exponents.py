@@ -1,4 +1,4 @@
-"""SALI's verdict against the largest Lyapunov exponent, measured with heyoka and two orbits kept close (Benettin)."""
+"""SALI compared with the largest Lyapunov exponent, computed with heyoka from two neighbouring orbits (Benettin's method)."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ import pytest
 from engine import CASES, Plane, Regularity, integrate_orbit, start_states
 from tests.peers import taylor_heyoka
 
-T_MAX, STRETCH, APART = 3000.0, 10.0, 1e-8
+T_MAX, INTERVAL, DISTANCE = 3000.0, 10.0, 1e-8
 
 
 def largest_exponents(name: str, starts: np.ndarray) -> np.ndarray:
     n = len(starts)
-    both = np.concatenate([starts, starts + APART * np.array([1.0, 2.0, 3.0, 4.0]) / np.sqrt(30)])
+    both = np.concatenate([starts, starts + DISTANCE * np.array([1.0, 2.0, 3.0, 4.0]) / np.sqrt(30)])
     growth = np.zeros(n)
-    for _ in range(int(T_MAX / STRETCH)):
-        both = taylor_heyoka.propagated(CASES[name], both, STRETCH)
+    for _ in range(int(T_MAX / INTERVAL)):
+        both = taylor_heyoka.propagated(CASES[name], both, INTERVAL)
         deviation = both[n:] - both[:n]
         distance = np.linalg.norm(deviation, axis=1)
-        growth += np.log(distance / APART)
-        both[n:] = both[:n] + deviation * (APART / distance)[:, None]
+        growth += np.log(distance / DISTANCE)
+        both[n:] = both[:n] + deviation * (DISTANCE / distance)[:, None]
     return growth / T_MAX
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
-def test_chaotic_by_sali_is_chaotic_by_lyapunov_exponent(name: str, energy: float) -> None:
+def test_sali_agrees_with_the_lyapunov_exponent(name: str, energy: float) -> None:
     x, px = np.random.default_rng(4).uniform(-0.25, 0.25, (2, 16))
     starts = start_states(CASES[name], Plane.X_PX, energy, x, px)
     exponents = largest_exponents(name, starts)
     chaotic = np.array([integrate_orbit(CASES[name], start, T_MAX).regularity is Regularity.CHAOTIC for start in starts])
-    # A regular orbit's deviations grow linearly, which looks like ln(T)/T = 0.0027; chaos here is 0.01 or more.
+    # Deviations of regular orbits grow linearly, which gives ln(T)/T = 0.0027; exponents of chaotic orbits are 0.01 or more.
     clear = (exponents < 0.004) | (exponents > 0.008)
     assert clear.sum() >= 12
     np.testing.assert_array_equal(chaotic[clear], exponents[clear] > 0.008)
 
 
-def test_the_chaotic_sea_of_henon_and_heiles_has_the_exponent_of_the_literature() -> None:
-    """At E = 1/8 galpy's test of its own exponents quotes 0.04 to 0.08 (github.com/jobovy/galpy/pull/945, orbit with 0.0519).
+def test_exponent_of_henon_heiles_agrees_with_the_literature() -> None:
+    """At E = 1/8 a test of galpy expects 0.04 to 0.08 (github.com/jobovy/galpy/pull/945, an orbit with 0.0519).
 
-    The median of five: an orbit that sticks to an island for long stays below.
+    The median of five orbits is used, because an orbit that sticks to an island for a long time has a smaller exponent.
     """
-    potential = CASES["II"]  # Hénon and Heiles' potential with x and y exchanged
+    potential = CASES["II"]  # the Hénon–Heiles potential with x and y exchanged
     x, px = np.array([[-0.25, 0.0], [-0.2, 0.1], [-0.25, 0.05], [-0.22, 0.02], [-0.24, -0.04]]).T
     orbits = [integrate_orbit(potential, start, 1e5) for start in start_states(potential, Plane.X_PX, 0.125, x, px)]
     assert {orbit.regularity for orbit in orbits} == {Regularity.CHAOTIC}

@@ -1,8 +1,8 @@
-"""Fates, times and crossings of random orbits by three integrators.
+"""Fates, escape times and crossings of random orbits compared with two independent integrators.
 
-An orbit counts as robust when the second opinion itself does not change its mind: same channel and crossings after a shift
-of the start by 1e-11 and at a coarser tolerance; and as steady when its time moves by less than 1e-7, too. Chaos lets nobody
-be right about the others.
+An orbit is robust if the channel and the crossings computed by the other integrator do not change after a shift of the start by
+1e-11 and with a coarser tolerance. It is steady if its escape time also changes by less than 1e-7. Other orbits are too chaotic
+to be compared.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import pytest
 
 from engine import CASES, Fate, Outcomes, Plane, classify_orbits, default_window, start_states
 from tests.peers import dop853, taylor_heyoka
-from tests.peers.dop853 import Answers
+from tests.peers.dop853 import PeerOutcomes
 from tests.peers.exit_lines import exit_lines
 
 T_MAX = 100.0
@@ -29,17 +29,17 @@ COARSER = {dop853: 1e-11, taylor_heyoka: 1e-12}
 
 @dataclass(frozen=True)
 class Comparison:
-    """What the engine and a second opinion say about the same starts, and which of them are robust and steady."""
+    """Outcomes by the engine and by another integrator for the same starts, and which of them are robust and steady."""
 
     engine: Outcomes
-    peer: Answers
+    peer: PeerOutcomes
     robust: np.ndarray
     steady: np.ndarray
 
 
 @cache
 def starts_of(name: str, energy: float, plane: Plane) -> np.ndarray:
-    """Random interior starts; the second opinion decides what is interior."""
+    """Random interior starts, selected with the independent description of the exits in `exit_lines`."""
     potential, rng = CASES[name], np.random.default_rng(int(1000 * energy))
     window = default_window(potential, plane, energy)
     x = rng.uniform(window.x_low, window.x_high, 400)
@@ -53,15 +53,15 @@ def starts_of(name: str, energy: float, plane: Plane) -> np.ndarray:
 @cache
 def comparison(peer: ModuleType, name: str, energy: float, plane: Plane) -> Comparison:
     potential, states, lines = CASES[name], starts_of(name, energy, plane), exit_lines(CASES[name], energy)
-    said = peer.classify(potential, lines, states, T_MAX)
-    robust, still = np.ones((2, len(states)), bool)
+    reference = peer.classify(potential, lines, states, T_MAX)
+    robust, steady_time = np.ones((2, len(states)), bool)
     shifted = peer.classify(potential, lines, states + SHIFT, T_MAX)
     coarser = peer.classify(potential, lines, states, T_MAX, COARSER[peer])
     for other in (shifted, coarser):
-        moved = np.abs(other.escape_time - said.escape_time)
-        robust &= (other.fate == said.fate) & (other.crossings == said.crossings)
-        still &= (said.fate == 0) | (moved < 1e-7)
-    return Comparison(classify_orbits(potential, energy, states, T_MAX), said, robust, robust & still)
+        moved = np.abs(other.escape_time - reference.escape_time)
+        robust &= (other.fate == reference.fate) & (other.crossings == reference.crossings)
+        steady_time &= (reference.fate == 0) | (moved < 1e-7)
+    return Comparison(classify_orbits(potential, energy, states, T_MAX), reference, robust, robust & steady_time)
 
 
 each_set = pytest.mark.parametrize(("name", "energy", "plane"), SETS)
@@ -90,7 +90,7 @@ def test_escape_times_agree(peer: ModuleType, name: str, energy: float, plane: P
     np.testing.assert_allclose(c.engine.escape_time[left], c.peer.escape_time[left], rtol=0, atol=1e-6)
 
 
-# Without these the tests above could hold for want of orbits.
+# The following tests check that the comparisons above include enough orbits.
 
 
 @each_peer
@@ -105,21 +105,21 @@ def test_most_orbits_are_steady(peer: ModuleType) -> None:
 
 
 @each_peer
-def test_hundreds_of_robust_orbits_escape_and_dozens_stay(peer: ModuleType) -> None:
-    all_of_them = [comparison(peer, *one) for one in SETS]
-    assert sum(int(np.sum(c.robust & (c.peer.fate > 0))) for c in all_of_them) > 350
-    assert sum(int(np.sum(c.robust & (c.peer.fate == 0))) for c in all_of_them) > 150
+def test_many_robust_orbits_escape_and_many_are_bounded(peer: ModuleType) -> None:
+    comparisons = [comparison(peer, *one) for one in SETS]
+    assert sum(int(np.sum(c.robust & (c.peer.fate > 0))) for c in comparisons) > 350
+    assert sum(int(np.sum(c.robust & (c.peer.fate == 0))) for c in comparisons) > 150
 
 
 @each_peer
 @pytest.mark.parametrize("name", CASES)
-def test_robust_orbits_leave_by_every_channel(peer: ModuleType, name: str) -> None:
+def test_robust_orbits_use_every_channel(peer: ModuleType, name: str) -> None:
     used = {int(k) for one in SETS if one[0] == name for c in [comparison(peer, *one)] for k in c.peer.fate[c.robust]}
     assert used == set(range(CASES[name].channels + 1))
 
 
 @each_set
-def test_outside_is_what_lies_beyond_the_path_of_a_lyapunov_orbit(name: str, energy: float, plane: Plane) -> None:
+def test_outside_starts_lie_beyond_a_lyapunov_orbit(name: str, energy: float, plane: Plane) -> None:
     potential, window = CASES[name], default_window(CASES[name], plane, energy)
     x, ordinate = (
         np.random.default_rng(6).uniform([window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high], (1000, 2)).T
@@ -127,7 +127,7 @@ def test_outside_is_what_lies_beyond_the_path_of_a_lyapunov_orbit(name: str, ene
     states = start_states(potential, plane, energy, x, ordinate)
     states = states[np.isfinite(states).all(axis=1)]
     past = np.array([line.past(states[:, 0], states[:, 1]) for line in exit_lines(potential, energy)])
-    # Within 1e-6 of the curve the two descriptions of it may differ.
+    # Within 1e-6 of the curve the two descriptions may differ.
     clear = np.abs(past).min(axis=0) > 1e-6
     fate = classify_orbits(potential, energy, states, 1e-9).fate
     np.testing.assert_array_equal((fate == Fate.OUTSIDE)[clear], (past > 0).any(axis=0)[clear])

@@ -25,7 +25,7 @@ def random_labels(side: int, labels: int, seed: int = 0) -> np.ndarray:
 
 
 def box_by_box(labels: np.ndarray, valid: np.ndarray, box: int) -> list[float]:
-    """The entropies of the boxes that count, as one would write them down first."""
+    """Entropies of the boxes that count, by a simple loop."""
     rows, columns = labels.shape
     entropies = []
     for row, column in product(range(0, rows - box + 1, box), range(0, columns - box + 1, box)):
@@ -37,10 +37,10 @@ def box_by_box(labels: np.ndarray, valid: np.ndarray, box: int) -> list[float]:
 
 
 def multinomial_entropy(labels: int, starts: int) -> float:
-    """Expected entropy of the shares of labels drawn with equal chances."""
-    chance = 1.0 / labels
+    """Expected entropy of the shares of labels drawn with equal probability."""
+    p = 1.0 / labels
     return labels * math.fsum(
-        math.comb(starts, k) * chance**k * (1 - chance) ** (starts - k) * entropy_of(k / starts) for k in range(1, starts + 1)
+        math.comb(starts, k) * p**k * (1 - p) ** (starts - k) * entropy_of(k / starts) for k in range(1, starts + 1)
     )
 
 
@@ -54,11 +54,11 @@ def grebogi_basins(side: int) -> np.ndarray:
     return basins
 
 
-# Numbers.
+# Values.
 
 
 @pytest.mark.parametrize("columns", [1, 2, 3, 4])
-def test_a_straight_boundary_has_the_entropy_of_the_two_parts_of_its_boxes(columns: int) -> None:
+def test_a_straight_boundary_has_the_entropy_of_two_shares(columns: int) -> None:
     labels = np.zeros((20, 25), int)
     labels[:, 10 + columns :] = 7
     result = compute_basin_entropy(labels)
@@ -67,14 +67,14 @@ def test_a_straight_boundary_has_the_entropy_of_the_two_parts_of_its_boxes(colum
     assert (result.boxes, result.boundary_boxes, result.labels) == (20, 4, 2)
 
 
-def test_one_box_written_down_by_hand() -> None:
+def test_a_single_box() -> None:
     labels = np.array([[1, 1, 1, 1, 1], [1, 1, 1, 1, 1], [2, 2, 2, 2, 2], [3, 3, 3, 3, 3], [3, 3, 3, 4, 4]])
     result = compute_basin_entropy(labels)
     assert result.s_b == pytest.approx(entropy_of(10 / 25, 5 / 25, 8 / 25, 2 / 25), rel=1e-14)
     assert math.isnan(result.s_b_error)
 
 
-def test_one_label_has_no_entropy_at_all() -> None:
+def test_one_label_has_zero_entropy() -> None:
     result = compute_basin_entropy(np.full((20, 20), 3))
     assert result.s_b == 0.0
     assert result.boundary_boxes == 0
@@ -83,7 +83,7 @@ def test_one_label_has_no_entropy_at_all() -> None:
 
 @pytest.mark.parametrize("box", [2, 3, 5, 8])
 @pytest.mark.parametrize("seed", range(3))
-def test_any_picture_agrees_with_counting_box_by_box(box: int, seed: int) -> None:
+def test_random_images_agree_with_a_loop_over_boxes(box: int, seed: int) -> None:
     labels = random_labels(41, 4, seed)[:, :37] - 2
     labels[:20] = np.minimum(labels[:20], -1)
     valid = np.random.default_rng(seed).random(labels.shape) > 0.02
@@ -101,13 +101,13 @@ def test_random_labels_have_the_entropy_of_a_multinomial(labels: int) -> None:
     assert result.s_b_error < 1e-3
 
 
-def test_the_standard_error_is_that_of_independent_boxes() -> None:
+def test_the_standard_error_is_correct_for_independent_boxes() -> None:
     results = [compute_basin_entropy(random_labels(50, 3, seed)) for seed in range(200)]
     stated = np.sqrt(np.mean([result.s_b_error**2 for result in results]))
     assert np.std([result.s_b for result in results]) == pytest.approx(stated, rel=0.2)
 
 
-def test_a_circle_has_the_entropy_of_straight_lines_in_all_directions() -> None:
+def test_a_circle_has_the_mean_entropy_of_straight_lines() -> None:
     place = np.arange(1500.0)
     inside = np.hypot(*np.meshgrid(place - 749.3, place - 749.7)) < 600.0
     rng = np.random.default_rng(0)
@@ -120,8 +120,8 @@ def test_a_circle_has_the_entropy_of_straight_lines_in_all_directions() -> None:
     assert not result.beyond_ln2
 
 
-def test_grebogis_map_has_the_entropies_that_attractors_jl_expects() -> None:
-    """test/basins/uncertainty_tests.jl there: 300 × 300 starts, boxes of 6 × 6."""
+def test_grebogis_map_has_the_entropies_of_attractors_jl() -> None:
+    """See test/basins/uncertainty_tests.jl in Attractors.jl: 300 × 300 starts, boxes of 6 × 6."""
     result = compute_basin_entropy(grebogi_basins(300), box=6)
     assert 0.40 <= result.s_b <= 0.42
     assert 0.60 <= result.s_bb <= 0.61
@@ -130,7 +130,7 @@ def test_grebogis_map_has_the_entropies_that_attractors_jl_expects() -> None:
 # The ln 2 criterion.
 
 
-def test_three_basins_at_random_are_beyond_ln2() -> None:
+def test_three_random_basins_are_beyond_ln2() -> None:
     labels = random_labels(100, 3)
     labels[:, :50] = 0
     result = compute_basin_entropy(labels)
@@ -145,7 +145,7 @@ def test_two_basins_in_equal_parts_are_not_beyond_ln2() -> None:
     assert not result.beyond_ln2
 
 
-def test_thin_stripes_are_beyond_ln2_until_the_picture_resolves_them() -> None:
+def test_thin_stripes_are_beyond_ln2_until_the_image_resolves_them() -> None:
     stripes = np.arange(60) % 3 * np.ones((60, 1), int)
     assert compute_basin_entropy(stripes).beyond_ln2
     assert not compute_basin_entropy(stripes.repeat(10, axis=0).repeat(10, axis=1), box=6).beyond_ln2
@@ -159,19 +159,19 @@ def test_sectors_that_meet_in_a_point_are_not_beyond_ln2() -> None:
     assert not result.beyond_ln2
 
 
-# What cannot matter, and what does not count.
+# Invariance, and pixels that do not count.
 
 
-@pytest.mark.parametrize("turned", [np.fliplr, np.flipud, np.transpose, np.rot90, lambda labels: 5 - 3 * labels])
-def test_turned_mirrored_and_relabelled_pictures_have_the_same_entropies(turned: Callable[[np.ndarray], np.ndarray]) -> None:
+@pytest.mark.parametrize("transform", [np.fliplr, np.flipud, np.transpose, np.rot90, lambda labels: 5 - 3 * labels])
+def test_rotation_reflection_and_relabelling_do_not_matter(transform: Callable[[np.ndarray], np.ndarray]) -> None:
     labels = random_labels(60, 3)
     labels[:, :30] = 1
-    one, other = compute_basin_entropy(labels), compute_basin_entropy(turned(labels))
+    one, other = compute_basin_entropy(labels), compute_basin_entropy(transform(labels))
     for name in ("s_b", "s_bb", "s_b_error", "s_bb_error"):
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-12)
 
 
-def test_labels_that_do_not_count_change_nothing() -> None:
+def test_invalid_labels_do_not_matter() -> None:
     labels = random_labels(60, 3)
     valid = np.ones(labels.shape, bool)
     valid[:, 7] = False
@@ -179,7 +179,7 @@ def test_labels_that_do_not_count_change_nothing() -> None:
     assert compute_basin_entropy(changed, valid) == compute_basin_entropy(labels, valid)
 
 
-def test_where_nothing_counts_there_is_no_entropy() -> None:
+def test_without_valid_pixels_there_is_no_entropy() -> None:
     result = compute_basin_entropy(random_labels(20, 3), np.zeros((20, 20), bool))
     assert result.boxes == 0
     assert math.isnan(result.s_b)
@@ -198,28 +198,28 @@ def test_where_nothing_counts_there_is_no_entropy() -> None:
         ("box", np.zeros((9, 9), int), None, 2.5),
     ],
 )
-def test_what_is_not_legal_is_named(parameter: str, labels: Any, valid: Any, box: Any) -> None:
+def test_invalid_parameters_are_named(parameter: str, labels: Any, valid: Any, box: Any) -> None:
     with pytest.raises(ValueError, match=f"^{parameter}"):
         compute_basin_entropy(labels, valid, box)
 
 
-# Words, and a map.
+# Descriptions and a map.
 
 
 @pytest.mark.parametrize(
     ("labels", "words"),
     [
         (np.zeros((10, 10), int), "no box holds more than one label"),
-        (random_labels(10, 2), "no question"),
+        (random_labels(10, 2), "criterion does not apply"),
         (random_labels(100, 3), "S_bb > ln 2"),
-        (np.arange(21).repeat(7) // 7 * np.ones((147, 1), int), "leaves open"),
+        (np.arange(21).repeat(7) // 7 * np.ones((147, 1), int), "can be smooth or fractal"),
     ],
 )
-def test_the_sentence_says_what_follows(labels: np.ndarray, words: str) -> None:
+def test_the_description_states_the_conclusion(labels: np.ndarray, words: str) -> None:
     assert words in compute_basin_entropy(labels).describe()
 
 
-def test_the_sentence_without_boxes_says_so() -> None:
+def test_the_description_without_boxes() -> None:
     assert compute_basin_entropy(np.zeros((9, 9), int), np.zeros((9, 9), bool)).describe().startswith("No basin entropy")
 
 
@@ -230,11 +230,11 @@ def henon_heiles() -> BasinEntropy:
 
 
 def test_the_boundaries_of_henon_heiles_are_beyond_ln2(henon_heiles: BasinEntropy) -> None:
-    """They are fractal: Aguirre, Vallejo & Sanjuán 2001, Phys. Rev. E 64, 066208."""
+    """The boundaries are fractal: Aguirre, Vallejo & Sanjuán 2001, Phys. Rev. E 64, 066208."""
     assert henon_heiles.beyond_ln2
 
 
-def test_with_two_exits_alone_a_map_cannot_be_beyond_ln2() -> None:
+def test_a_map_with_two_exits_is_not_beyond_ln2() -> None:
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (100, 100), t_max=1e3))
     result = compute_basin_entropy(*exit_labels(frame.fate, bounded=False))
     assert result.labels == 2

@@ -24,13 +24,13 @@ def with_fate(frame: EscapeMap, fate: Fate) -> EscapeMap:
     return replace(frame, fate=codes)
 
 
-def test_interior_starts_count_with_bounded_ones(whole: EscapeMap) -> None:
+def test_all_interior_starts_count_with_bounded_ones(whole: EscapeMap) -> None:
     labels, valid = exit_labels(whole.fate, bounded=True)
     assert np.array_equal(valid, whole.interior)
     assert np.array_equal(labels[valid], whole.fate[whole.interior])
 
 
-def test_starts_that_escape_count_without_bounded_ones(whole: EscapeMap) -> None:
+def test_only_escaping_starts_count_without_bounded_ones(whole: EscapeMap) -> None:
     labels, valid = exit_labels(whole.fate, bounded=False)
     assert np.array_equal(valid, whole.fate >= 1)
     assert set(labels[valid]) == {1, 2, 3, 4}
@@ -38,7 +38,7 @@ def test_starts_that_escape_count_without_bounded_ones(whole: EscapeMap) -> None
 
 @pytest.mark.parametrize("bounded", [True, False])
 @pytest.mark.parametrize("fate", [Fate.NOT_COMPUTED, Fate.FAILED])
-def test_starts_without_an_answer_do_not_count(whole: EscapeMap, fate: Fate, bounded: bool) -> None:
+def test_undecided_and_failed_starts_do_not_count(whole: EscapeMap, fate: Fate, bounded: bool) -> None:
     before = exit_labels(whole.fate, bounded=bounded)[1]
     after = exit_labels(with_fate(whole, fate).fate, bounded=bounded)[1]
     assert np.count_nonzero(before) - np.count_nonzero(after) == 1
@@ -48,7 +48,7 @@ def test_both_arrays_are_read_only(whole: EscapeMap) -> None:
     assert not any(array.flags.writeable for array in exit_labels(whole.fate, bounded=True))
 
 
-def test_the_map_stays_as_writable_as_it_was(whole: EscapeMap) -> None:
+def test_the_map_itself_stays_writable(whole: EscapeMap) -> None:
     frame = with_fate(whole, Fate.FAILED)
     exit_labels(frame.fate, bounded=True)
     assert frame.fate.flags.writeable

@@ -5,20 +5,20 @@ import pytest
 from engine import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
 
 
-def test_no_fate_can_be_taken_for_a_channel() -> None:
+def test_fates_are_not_channel_numbers() -> None:
     assert all(fate <= 0 for fate in Fate)
 
 
-def test_codes_differ() -> None:
+def test_codes_are_unique() -> None:
     assert len({int(fate) for fate in Fate}) == len(list(Fate)) == 5
 
 
 @pytest.mark.parametrize("fate", list(Fate))
-def test_every_fate_has_its_own_sentence(fate: Fate) -> None:
+def test_descriptions_are_unique(fate: Fate) -> None:
     assert [describe_fate(other) for other in Fate].count(describe_fate(fate)) == 1
 
 
-def test_an_escape_is_told_by_its_channel() -> None:
+def test_description_of_an_escape_has_the_channel() -> None:
     assert describe_fate(3) == "Escaped through channel 3."
 
 
@@ -32,5 +32,5 @@ def test_sali_at_or_below_the_threshold_is_chaotic(sali: float, expected: str) -
     assert judge_regularity(sali) is Regularity[expected.upper()]
 
 
-def test_threshold_is_the_papers() -> None:
+def test_chaos_threshold_matches_the_paper() -> None:
     assert CHAOS_THRESHOLD == 1e-7

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.dynamics.lyapunov_orbits import closed_curves, exit_curves, exit_gates, find_outside_exits
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves, exit_gates, find_outside_channels
 from engine.potentials.catalogue import POTENTIALS
 from engine.taylor.kernels.events import find_outside
 from tests.peers.dop853 import equations
@@ -16,55 +16,55 @@ ENERGIES = [
     *(("III", h) for h in (0.2501, 0.26, 0.6, 1.0)),
 ]
 ESCAPE_ENERGY = {"I": 1 / 8, "II": 1 / 6, "III": 1 / 4}
-# Across the channel the saddle is a well: ω_q² is the positive eigenvalue of its Hessian.
+# ω_q² is the positive eigenvalue of the saddle's Hessian: the frequency of oscillations across the channel.
 OMEGA = {"I": np.sqrt(2), "II": np.sqrt(3), "III": np.sqrt(2)}
 each_energy = pytest.mark.parametrize(("name", "energy"), ENERGIES)
 each_case = pytest.mark.parametrize("name", CASES)
 
 
-def carried(name: str, orbit: LyapunovOrbit, duration: float) -> np.ndarray:
-    """The state at `duration` of SciPy's orbit from rest at the orbit's first point."""
+def propagated(name: str, orbit: LyapunovOrbit, duration: float) -> np.ndarray:
+    """SciPy's state at time `duration` of an orbit that starts at rest at the first point of the Lyapunov orbit."""
     start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
     return solve_ivp(equations(CASES[name]), (0.0, duration), start, method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
 
 
 def assert_same_path(x: np.ndarray, y: np.ndarray, orbit: LyapunovOrbit, atol: float) -> None:
-    """Equal up to the direction it is run through."""
+    """Equal up to the direction of motion."""
     half = orbit.x.size // 2 + 1
-    there, expected = np.array([x, y])[:, :half], np.array([orbit.x, orbit.y])[:, :half]
-    off = min(np.abs(there - expected).max(), np.abs(there[:, ::-1] - expected).max())
-    assert off < atol
+    path, expected = np.array([x, y])[:, :half], np.array([orbit.x, orbit.y])[:, :half]
+    error = min(np.abs(path - expected).max(), np.abs(path[:, ::-1] - expected).max())
+    assert error < atol
 
 
 @each_energy
-def test_there_is_one_orbit_for_each_channel_in_order(name: str, energy: float) -> None:
+def test_one_orbit_per_channel_in_order(name: str, energy: float) -> None:
     assert [o.channel for o in find_lyapunov_orbits(CASES[name], energy)] == list(range(1, CASES[name].channels + 1))
 
 
 @each_energy
-def test_both_ends_lie_on_the_zero_velocity_curve(name: str, energy: float) -> None:
+def test_ends_lie_on_the_zero_velocity_curve(name: str, energy: float) -> None:
     for orbit in find_lyapunov_orbits(CASES[name], energy):
         ends = CASES[name].value(orbit.x[[0, 100, 200]], orbit.y[[0, 100, 200]])
         np.testing.assert_allclose(ends, energy, rtol=0, atol=1e-12)
 
 
 @each_energy
-def test_half_a_period_from_rest_leads_to_rest_at_the_other_wall(name: str, energy: float) -> None:
+def test_half_a_period_leads_to_rest_at_the_other_end(name: str, energy: float) -> None:
     for orbit in find_lyapunov_orbits(CASES[name], energy):
         np.testing.assert_allclose(
-            carried(name, orbit, 0.5 * orbit.period), [orbit.x[100], orbit.y[100], 0, 0], rtol=0, atol=1e-11
+            propagated(name, orbit, 0.5 * orbit.period), [orbit.x[100], orbit.y[100], 0, 0], rtol=0, atol=1e-11
         )
 
 
 @each_energy
-def test_a_whole_period_leads_back_to_the_start(name: str, energy: float) -> None:
-    # Over a period errors grow by the unstable multiplier, 40 to 90 at these energies: 1e-13 of SciPy becomes 1e-11.
+def test_orbit_is_periodic(name: str, energy: float) -> None:
+    # Over one period errors grow by the unstable multiplier, 40 to 90 at these energies: from 1e-13 to 1e-11.
     for orbit in find_lyapunov_orbits(CASES[name], energy):
-        np.testing.assert_allclose(carried(name, orbit, orbit.period), [orbit.x[0], orbit.y[0], 0, 0], rtol=0, atol=1e-10)
+        np.testing.assert_allclose(propagated(name, orbit, orbit.period), [orbit.x[0], orbit.y[0], 0, 0], rtol=0, atol=1e-10)
 
 
 @each_energy
-def test_path_is_that_of_scipy_at_the_same_times(name: str, energy: float) -> None:
+def test_path_agrees_with_scipy(name: str, energy: float) -> None:
     orbit = find_lyapunov_orbits(CASES[name], energy)[0]
     times = np.linspace(0, orbit.period, 201)
     start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
@@ -73,21 +73,21 @@ def test_path_is_that_of_scipy_at_the_same_times(name: str, energy: float) -> No
 
 
 @each_case
-def test_period_tends_to_that_of_the_saddle(name: str) -> None:
-    # The period departs from 2π/ω_q in proportion to h − escape energy.
+def test_period_converges_to_that_of_the_linearized_saddle(name: str) -> None:
+    # The difference between the period and 2π/ω_q is proportional to h − escape energy.
     for above, tolerance in ((1e-3, 1e-2), (1e-5, 1e-4), (1e-7, 1e-6)):
         periods = [o.period for o in find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] + above)]
         np.testing.assert_allclose(periods, 2 * np.pi / OMEGA[name], atol=tolerance)
 
 
 @each_case
-def test_orbit_shrinks_onto_the_saddle(name: str) -> None:
+def test_orbit_shrinks_to_the_saddle_at_the_escape_energy(name: str) -> None:
     above = 1e-8
     for orbit in find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] + above):
         distance = np.hypot(
             orbit.x - CASES[name].saddles[orbit.channel - 1, 0], orbit.y - CASES[name].saddles[orbit.channel - 1, 1]
         )
-        # At rest ω_q² q²/2 equals the energy above the saddle.
+        # At rest ω_q² q²/2 is the energy above the saddle.
         assert distance.max() == pytest.approx(np.sqrt(2 * above) / OMEGA[name], rel=1e-3)
 
 
@@ -96,17 +96,17 @@ def rotated(x: np.ndarray, y: np.ndarray, angle: float) -> tuple[np.ndarray, np.
 
 
 @pytest.mark.parametrize("energy", [0.1251, 0.25, 0.5])
-def test_case_1_orbits_mirror_each_other_in_the_x_axis(energy: float) -> None:
+def test_case_1_orbits_are_mirror_images(energy: float) -> None:
     upper, lower = find_lyapunov_orbits(CASES["I"], energy)
     assert_same_path(lower.x, -lower.y, upper, 1e-11)
 
 
 @pytest.mark.parametrize("energy", [0.1667, 0.3, 0.5])
 @pytest.mark.parametrize("channel", [2, 3])
-def test_case_2_orbits_are_turned_by_a_third(energy: float, channel: int) -> None:
+def test_case_2_orbits_are_rotated_by_120_degrees(energy: float, channel: int) -> None:
     orbits = find_lyapunov_orbits(CASES["II"], energy)
-    turned = rotated(orbits[0].x, orbits[0].y, (channel - 1) * 2 * np.pi / 3)
-    assert_same_path(*turned, orbits[channel - 1], 1e-11)
+    path = rotated(orbits[0].x, orbits[0].y, (channel - 1) * 2 * np.pi / 3)
+    assert_same_path(*path, orbits[channel - 1], 1e-11)
 
 
 @pytest.mark.parametrize("energy", [0.2501, 0.6, 1.0])
@@ -116,26 +116,26 @@ def test_case_3_orbits_are_mirror_images(energy: float, channel: int, x_sign: in
     assert_same_path(x_sign * orbits[0].x, y_sign * orbits[0].y, orbits[channel - 1], 1e-11)
 
 
-def test_case_3_spans_these_distances_at_026() -> None:
-    # The paper says R² = 1.26 here; the orbits say 1.004 to 1.016.
+def test_case_3_radii_at_026() -> None:
+    # The paper states R² = 1.26; the computed orbits have 1.004 to 1.016.
     r2 = np.concatenate([o.x**2 + o.y**2 for o in find_lyapunov_orbits(CASES["III"], 0.26)])
     assert (r2.min(), r2.max()) == pytest.approx((1.004, 1.016), abs=5e-4)
 
 
 @each_case
 @pytest.mark.parametrize("below", [0.0, 1e-6, 0.1, 5.0])
-def test_none_at_or_below_the_escape_energy(name: str, below: float) -> None:
+def test_no_orbits_at_or_below_the_escape_energy(name: str, below: float) -> None:
     assert find_lyapunov_orbits(CASES[name], ESCAPE_ENERGY[name] - below) == ()
 
 
 @pytest.mark.parametrize("energy", [np.nan, np.inf, -np.inf])
-def test_energy_that_is_not_finite_is_refused(energy: float) -> None:
+def test_non_finite_energy_is_refused(energy: float) -> None:
     with pytest.raises(ValueError, match=f"energy={energy}"):
         find_lyapunov_orbits(CASES["I"], energy)
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 50.0), ("III", 10.0)])
-def test_energy_far_too_high_is_refused(name: str, energy: float) -> None:
+def test_too_high_energy_is_refused(name: str, energy: float) -> None:
     with pytest.raises(ValueError, match=f"energy={energy}"):
         find_lyapunov_orbits(CASES[name], energy)
 
@@ -156,16 +156,16 @@ def test_gates_lie_inside_every_exit(name: str, energy: float) -> None:
 
 
 @each_case
-def test_a_closed_channel_ends_at_its_saddle(name: str) -> None:
-    curves = closed_curves(CASES[name])[None]
+def test_closed_channel_ends_at_its_saddle(name: str) -> None:
+    curves = closed_channel_curves(CASES[name])[None]
     for channel, saddle in enumerate(CASES[name].saddles, start=1):
         x, y = np.outer(saddle, [0.999, 1.001])
         np.testing.assert_array_equal(find_outside(x, y, curves, np.zeros(2, np.int64)), [0, channel])
 
 
 @pytest.mark.parametrize("epsilon", [1 / 64, 32.0])
-def test_orbits_of_large_and_small_wells_are_those_of_case_2_enlarged(epsilon: float) -> None:
-    # V(x, y) of ε V1, of degree 3, is ε⁻² times that of V1 at (εx, εy); powers of 2 change no digit.
+def test_orbits_scale_with_the_well(epsilon: float) -> None:
+    # For a cubic V1, V with strength ε at (x, y) is ε⁻² times V with strength 1 at (εx, εy); scaling by powers of 2 is exact.
     large = find_lyapunov_orbits(CASES["II"].with_parameters(epsilon=epsilon), 0.2 / epsilon**2)
     for orbit, usual in zip(large, find_lyapunov_orbits(CASES["II"], 0.2), strict=True):
         np.testing.assert_allclose(epsilon * orbit.x, usual.x, atol=1e-13)
@@ -173,27 +173,27 @@ def test_orbits_of_large_and_small_wells_are_those_of_case_2_enlarged(epsilon: f
         assert orbit.period == pytest.approx(usual.period, rel=1e-12)
 
 
-def test_exits_of_a_large_well_are_those_of_case_2_enlarged() -> None:
+def test_outside_regions_scale_with_the_well() -> None:
     large, energy = CASES["II"].with_parameters(epsilon=1 / 64), 0.2 * 64**2
     x, y = np.random.default_rng(1).uniform(-1.5, 1.5, (2, 300))
-    expected = find_outside_exits(CASES["II"], 0.2, x, y)
-    np.testing.assert_array_equal(find_outside_exits(large, energy, 64 * x, 64 * y), expected)
+    expected = find_outside_channels(CASES["II"], 0.2, x, y)
+    np.testing.assert_array_equal(find_outside_channels(large, energy, 64 * x, 64 * y), expected)
 
 
-def test_no_orbit_is_found_where_the_channels_have_joined() -> None:
-    # ½r² + xy² + x³/3 has a maximum of energy 1/6 between its two exits.
+def test_merged_channels_are_refused() -> None:
+    # ½r² + xy² + x³/3 has a maximum with energy 1/6 between its two exits.
     separable = POTENTIALS["Separable"].potential
     assert len(find_lyapunov_orbits(separable, 0.99 / 6)) == 2
     with pytest.raises(ValueError, match="Separable"):
         find_lyapunov_orbits(separable, 1.01 / 6)
 
 
-def test_the_exits_of_a_separable_well_are_straight() -> None:
-    # Along x + y = −1 the motion is that of x − y alone, there and back between its turning points.
+def test_exits_of_a_separable_well_are_straight() -> None:
+    # On x + y = −1 only x − y changes; it oscillates between its turning points.
     orbit = next(o for o in find_lyapunov_orbits(POTENTIALS["Separable"].potential, 0.12) if o.y.mean() < 0)
     np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
 
 
-def test_without_channels_there_are_no_gates() -> None:
+def test_no_gates_without_channels() -> None:
     harmonic = Potential("harmonic", ((2, 0, 0.5), (0, 2, 0.5)))
     assert exit_gates(exit_curves(harmonic, 1.0)[None]).shape == (0, 3)

@@ -18,7 +18,7 @@ def box(plane: Plane, energy: float, count: int = 500) -> tuple[np.ndarray, np.n
 
 @each_case
 @pytest.mark.parametrize("plane", list(Plane))
-def test_every_start_that_exists_has_its_energy(name: str, plane: Plane) -> None:
+def test_starts_have_the_right_energy(name: str, plane: Plane) -> None:
     x, ordinate = box(plane, 0.4)
     states = start_states(CASES[name], plane, 0.4, x, ordinate)
     exists = np.isfinite(states).all(axis=1)
@@ -29,7 +29,7 @@ def test_every_start_that_exists_has_its_energy(name: str, plane: Plane) -> None
 
 @each_case
 @pytest.mark.parametrize("plane", list(Plane))
-def test_a_start_is_forbidden_exactly_where_its_kinetic_energy_would_be_negative(name: str, plane: Plane) -> None:
+def test_start_is_forbidden_exactly_if_its_kinetic_energy_is_negative(name: str, plane: Plane) -> None:
     x, ordinate = box(plane, 0.4)
     states = start_states(CASES[name], plane, 0.4, x, ordinate)
     energy = ordinate if plane is Plane.X_H else 0.4
@@ -45,23 +45,23 @@ def test_coordinates_off_the_plane_are_zero(plane: Plane, held: list[int]) -> No
 
 @each_case
 @pytest.mark.parametrize("plane", list(Plane))
-def test_starts_move_towards_positive_y(name: str, plane: Plane) -> None:
+def test_py_of_starts_is_not_negative(name: str, plane: Plane) -> None:
     py = start_states(CASES[name], plane, 0.3, *box(plane, 0.3))[:, 3]
     assert np.all(py[np.isfinite(py)] >= 0)
 
 
 @each_case
 @pytest.mark.parametrize("plane", PLANES_OF_ONE_ENERGY)
-def test_zero_velocity_curve_parts_what_exists_from_what_does_not(name: str, plane: Plane) -> None:
+def test_zero_velocity_curve_has_the_required_energy(name: str, plane: Plane) -> None:
     window = default_window(CASES[name], plane, 0.4)
     lines = trace_zero_velocity_curve(CASES[name], plane, 0.4, window)
     x, ordinate = np.concatenate(lines).T
     energy = CASES[name].value(x, ordinate) if plane is Plane.X_Y else 0.5 * ordinate**2 + CASES[name].value(x, 0 * x)
-    # Straight pieces between grid lines a 400th of the window apart.
+    # The curve is piecewise linear between the grid lines.
     np.testing.assert_allclose(energy, 0.4, atol=1e-4)
 
 
-def test_zero_velocity_curve_of_x_h_is_the_potential_on_the_axis() -> None:
+def test_zero_velocity_curve_of_x_h_is_the_potential_on_the_x_axis() -> None:
     (line,) = trace_zero_velocity_curve(CASES["III"], Plane.X_H, 0.0, Window(-1.0, 1.0, 0.05, 0.4))[:1]
     np.testing.assert_allclose(line[:, 1], 0.5 * line[:, 0] ** 2, atol=1e-4)
 
@@ -74,7 +74,7 @@ def test_pixel_centres_of_a_symmetric_window_are_exactly_symmetric(count: int) -
 
 
 def interior_by_path(name: str, plane: Plane, energy: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points of the interior on a generous grid, by walking from the origin without crossing a Lyapunov orbit."""
+    """Points of the interior on a large grid: those connected to the origin without crossing a Lyapunov orbit."""
     side = np.linspace(-2.2, 2.2, 1101)
     x, ordinate = np.meshgrid(side, side)
     y = ordinate if plane is Plane.X_Y else np.zeros_like(x)
@@ -87,7 +87,7 @@ def interior_by_path(name: str, plane: Plane, energy: float) -> tuple[np.ndarray
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.2), ("I", 0.5), ("II", 0.2), ("II", 0.5), ("III", 0.3), ("III", 1.0)])
 @pytest.mark.parametrize("plane", PLANES_OF_ONE_ENERGY)
-def test_default_window_shows_the_whole_interior_and_little_more(name: str, energy: float, plane: Plane) -> None:
+def test_default_window_encloses_the_interior_closely(name: str, energy: float, plane: Plane) -> None:
     x, ordinate = interior_by_path(name, plane, energy)
     w = default_window(CASES[name], plane, energy)
     assert w.x_low < x.min() < x.max() < w.x_high
@@ -123,22 +123,22 @@ GEOMETRIES = [
 
 @pytest.fixture(scope="module", params=GEOMETRIES, ids=str)
 def geometry(request: pytest.FixtureRequest) -> dict[str, np.ndarray]:
-    """Verdicts of a map on a wide window, and the truth by walking from the origin with the Lyapunov orbits as barriers."""
+    """Outcomes of a map on a wide window, and connectivity to the origin with the Lyapunov orbits as barriers."""
     name, energy = request.param
     side = 901
-    # So short a time that nothing moves from where it starts.
+    # The time is so short that every orbit stays at its start.
     spec = MapSpec(CASES[name], Plane.X_Y, energy, (side, side), window=(-2.0, 2.0, -2.0, 2.0), t_max=1e-9)
-    verdict = compute_map(spec)
-    x, y = np.meshgrid(verdict.x, verdict.ordinate)
+    result = compute_map(spec)
+    x, y = np.meshgrid(result.x, result.ordinate)
     lines = exit_lines(CASES[name], energy)
     beyond = np.array([line.beyond(x, y) for line in lines])
-    # Pixels within a pixel's diagonal of a curve belong to neither side for certain.
+    # Pixels within a pixel diagonal of a curve may be on either side.
     near = np.any([np.abs(b) < 1.5 * 4.0 / side for b in beyond], axis=0)
-    allowed = verdict.fate != Fate.FORBIDDEN
+    allowed = result.fate != Fate.FORBIDDEN
     labels = ndimage.label(allowed & ~np.any([(np.abs(b) < 1.5 * 4.0 / side) & (b != -1.0) for b in beyond], axis=0))[0]
     return {
-        "fate": verdict.fate,
-        "outside": verdict.outside,
+        "fate": result.fate,
+        "outside": result.outside,
         "allowed": allowed,
         "near": near,
         "reached": labels == labels[side // 2, side // 2],
@@ -146,23 +146,23 @@ def geometry(request: pytest.FixtureRequest) -> dict[str, np.ndarray]:
     }
 
 
-def test_what_is_neither_forbidden_nor_outside_is_one_piece_around_the_origin(geometry: dict[str, np.ndarray]) -> None:
+def test_interior_is_connected(geometry: dict[str, np.ndarray]) -> None:
     labels, pieces = ndimage.label((geometry["fate"] != Fate.FORBIDDEN) & (geometry["fate"] != Fate.OUTSIDE))
     assert (pieces, labels[labels.shape[0] // 2, labels.shape[1] // 2]) == (1, 1)
 
 
-def test_nothing_reached_from_the_origin_without_crossing_an_exit_is_outside(geometry: dict[str, np.ndarray]) -> None:
+def test_points_reached_without_crossing_an_exit_are_not_outside(geometry: dict[str, np.ndarray]) -> None:
     assert not np.any(geometry["reached"] & (geometry["outside"] > 0))
 
 
-def test_everything_behind_an_exit_is_outside(geometry: dict[str, np.ndarray]) -> None:
+def test_points_beyond_an_exit_are_outside(geometry: dict[str, np.ndarray]) -> None:
     behind = geometry["allowed"] & ~geometry["reached"] & ~geometry["near"]
     assert behind.sum() > 1000
     assert np.all(geometry["outside"][behind] > 0)
 
 
-def test_outside_names_the_channel_that_leads_there(geometry: dict[str, np.ndarray]) -> None:
-    # Every piece behind the exits touches the one curve that it is behind.
+def test_outside_has_the_channel_number(geometry: dict[str, np.ndarray]) -> None:
+    # Each connected region beyond an exit touches only the curve of that exit.
     labels, pieces = ndimage.label(geometry["allowed"] & (geometry["outside"] > 0))
     for piece in range(1, pieces + 1):
         here = labels == piece

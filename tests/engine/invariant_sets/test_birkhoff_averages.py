@@ -6,17 +6,17 @@ import pytest
 from engine import CASES, Plane, Potential, start_states
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, count_agreeing_digits, window_weights
 
-# Two oscillators that do not know of each other, one of them not harmonic: every orbit runs on a torus.
+# Two uncoupled oscillators, one of them anharmonic: every orbit lies on a torus.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (4, 0, 0.3), (0, 2, 0.8)))
 
 
-def test_every_orbit_of_a_separable_potential_is_on_a_torus() -> None:
+def test_all_orbits_of_a_separable_potential_are_quasi_periodic() -> None:
     states = np.random.default_rng(1).uniform(-0.6, 0.6, (60, 4))
     assert np.all(count_agreeing_digits(SEPARABLE, states, 1000.0) >= CERTIFIED_DIGITS)
 
 
 def test_chaotic_orbits_agree_to_few_digits() -> None:
-    # Case II is the potential of Hénon and Heiles; just below the escape energy nearly all of its orbits are chaotic.
+    # Case II is the Hénon-Heiles potential; just below the escape energy nearly all of its orbits are chaotic.
     x, px = np.random.default_rng(2).uniform(-0.15, 0.15, (2, 40))
     states = start_states(CASES["II"], Plane.X_PX, 0.1666, x, px)
     digits = count_agreeing_digits(CASES["II"], states, 4000.0)
@@ -24,7 +24,7 @@ def test_chaotic_orbits_agree_to_few_digits() -> None:
     assert np.mean(digits >= CERTIFIED_DIGITS) < 0.2
 
 
-def test_digits_grow_with_the_window_on_a_torus_only() -> None:
+def test_longer_windows_give_more_digits_on_tori() -> None:
     x, px = np.random.default_rng(4).uniform(-0.4, 0.4, (2, 60))
     states = start_states(CASES["I"], Plane.X_PX, 0.08, x, px)
     states = states[np.isfinite(states).all(axis=1)]
@@ -32,19 +32,19 @@ def test_digits_grow_with_the_window_on_a_torus_only() -> None:
     assert long > short + 3.0
 
 
-def test_an_orbit_that_leaves_has_no_digits() -> None:
-    out = np.array([[0.0, 0.0, 1.0, 1.0], [0.01, 0.0, 0.0, 0.1]])
-    digits = count_agreeing_digits(CASES["III"], out, 100.0)
+def test_escaping_orbit_has_zero_digits() -> None:
+    states = np.array([[0.0, 0.0, 1.0, 1.0], [0.01, 0.0, 0.0, 0.1]])
+    digits = count_agreeing_digits(CASES["III"], states, 100.0)
     assert digits[0] == 0.0
     assert digits[1] > 0.0
 
 
-def test_no_orbits_have_no_digits() -> None:
+def test_empty_input_gives_empty_result() -> None:
     assert count_agreeing_digits(CASES["I"], np.empty((0, 4)), 100.0).shape == (0,)
 
 
 @pytest.mark.parametrize("window", [10.0, 1000.0])
-def test_weights_are_an_average_that_fades_at_both_ends(window: float) -> None:
+def test_window_weights_are_normalised_symmetric_and_small_at_the_ends(window: float) -> None:
     weights = window_weights(window, 1.0 / 3.0)
     assert weights.sum() == pytest.approx(1.0, abs=1e-14)
     np.testing.assert_allclose(weights, weights[::-1], rtol=1e-12)

@@ -1,4 +1,4 @@
-"""No orbit that escapes in full integration is ever certified."""
+"""Certified maps against maps with full integration: no orbit that escapes may be certified."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map, describe_certificate
 
 EARLY = (Certificate.CLOSED, Certificate.QUASI_PERIODIC, Certificate.ENCLOSED, Certificate.MIRRORED)
-# Mostly regular; sticky, with slow escapes; islands only; on the other plane, where starts are not on the section.
+# Mostly regular; sticky, with slow escapes; on a plane where starts are not on the section; islands only; many energies.
 MAPS = [
     ("III", 0.26, Plane.X_PX),
     ("I", 0.13, Plane.X_PX),
@@ -22,8 +22,8 @@ MAPS = [
 
 
 @cache
-def both(name: str, energy: float, plane: Plane) -> tuple[EscapeMap, EscapeMap]:
-    """With certificates and without."""
+def map_pair(name: str, energy: float, plane: Plane) -> tuple[EscapeMap, EscapeMap]:
+    """The map with certificates, and the same map with full integration."""
     spec = MapSpec(CASES[name], plane, energy, (31, 31), t_max=3e4)
     return compute_map(spec), compute_map(replace(spec, certify=False))
 
@@ -31,53 +31,53 @@ def both(name: str, energy: float, plane: Plane) -> tuple[EscapeMap, EscapeMap]:
 @pytest.mark.slow
 @pytest.mark.parametrize("where", MAPS, ids=str)
 class TestCertificates:
-    def test_nothing_certified_escapes(self, where: tuple) -> None:
-        certified, whole = both(*where)
+    def test_certified_orbits_do_not_escape(self, where: tuple) -> None:
+        certified, full = map_pair(*where)
         early = np.isin(certified.certificate, EARLY)
-        assert np.all(whole.fate[early] == Fate.BOUNDED)
+        assert np.all(full.fate[early] == Fate.BOUNDED)
 
-    def test_everything_else_is_equal_to_the_bit(self, where: tuple) -> None:
-        certified, whole = both(*where)
-        np.testing.assert_array_equal(certified.fate, whole.fate)
-        np.testing.assert_array_equal(certified.escape_time, whole.escape_time)
-        escaped = whole.fate >= 1
-        np.testing.assert_array_equal(certified.crossings[escaped], whole.crossings[escaped])
+    def test_outcomes_are_bit_identical_to_full_integration(self, where: tuple) -> None:
+        certified, full = map_pair(*where)
+        np.testing.assert_array_equal(certified.fate, full.fate)
+        np.testing.assert_array_equal(certified.escape_time, full.escape_time)
+        escaped = full.fate >= 1
+        np.testing.assert_array_equal(certified.crossings[escaped], full.crossings[escaped])
 
-    def test_bounded_pixels_and_no_others_say_why(self, where: tuple) -> None:
-        for result in both(*where):
+    def test_exactly_the_bounded_pixels_have_a_certificate(self, where: tuple) -> None:
+        for result in map_pair(*where):
             np.testing.assert_array_equal(result.certificate != Certificate.NONE, result.fate == Fate.BOUNDED)
 
-    def test_without_certificates_all_are_followed(self, where: tuple) -> None:
-        _, whole = both(*where)
-        assert set(np.unique(whole.certificate)) <= {Certificate.NONE, Certificate.INTEGRATED, Certificate.MIRRORED}
+    def test_without_certify_all_bounded_orbits_are_integrated(self, where: tuple) -> None:
+        _, full = map_pair(*where)
+        assert set(np.unique(full.certificate)) <= {Certificate.NONE, Certificate.INTEGRATED, Certificate.MIRRORED}
 
 
 @pytest.mark.slow
-def test_nearly_all_of_a_mostly_regular_map_is_certified() -> None:
-    certified, _ = both(*MAPS[0])
+def test_most_bounded_orbits_of_a_mostly_regular_map_are_certified() -> None:
+    certified, _ = map_pair(*MAPS[0])
     bounded = certified.fate == Fate.BOUNDED
     assert bounded.sum() > 400
     assert np.mean(np.isin(certified.certificate[bounded], EARLY)) > 0.9
 
 
-def test_below_the_escape_energy_nothing_needs_to_be_followed() -> None:
+def test_below_the_escape_energy_all_bounded_orbits_are_certified_as_closed() -> None:
     result = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.16, (40, 40), t_max=1e8))
     bounded = result.fate == Fate.BOUNDED
     assert set(result.certificate[bounded]) == {Certificate.CLOSED}
     assert not np.any(result.fate >= 1)
 
 
-def test_short_maps_are_followed_in_full() -> None:
+def test_short_maps_are_integrated_in_full() -> None:
     result = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.26, (20, 20), t_max=2000.0))
     assert set(np.unique(result.certificate)) <= {Certificate.NONE, Certificate.INTEGRATED, Certificate.MIRRORED}
 
 
-def test_a_certified_map_goes_on_to_a_later_t_max() -> None:
+def test_certified_map_can_be_resumed_to_a_larger_t_max() -> None:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.28, (21, 21), t_max=1e4)
-    later = replace(spec, t_max=4e4)
-    resumed, straight = compute_map(later, resume=compute_map(spec)), compute_map(later)
-    np.testing.assert_array_equal(resumed.fate, straight.fate)
-    np.testing.assert_array_equal(resumed.escape_time, straight.escape_time)
+    longer = replace(spec, t_max=4e4)
+    resumed, direct = compute_map(longer, resume=compute_map(spec)), compute_map(longer)
+    np.testing.assert_array_equal(resumed.fate, direct.fate)
+    np.testing.assert_array_equal(resumed.escape_time, direct.escape_time)
 
 
 def test_certificates_are_written_to_the_dataset() -> None:
@@ -86,5 +86,5 @@ def test_certificates_are_written_to_the_dataset() -> None:
     assert dataset.attrs["certify"] == 1
 
 
-def test_every_certificate_has_words_of_its_own() -> None:
+def test_each_certificate_has_its_own_description() -> None:
     assert len({describe_certificate(code) for code in Certificate}) == len(Certificate)

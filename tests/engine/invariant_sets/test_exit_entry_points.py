@@ -10,8 +10,8 @@ ENERGIES = [("I", 0.13), ("I", 0.4), ("II", 0.17), ("II", 0.4), ("III", 0.26), (
 
 
 @pytest.mark.parametrize(("name", "energy"), ENERGIES)
-def test_orbits_through_entry_points_came_in_through_their_exit(name: str, energy: float) -> None:
-    """The potentials are even in the velocities: backward in time is forward with the opposite ones."""
+def test_orbits_through_entry_points_entered_through_their_exit(name: str, energy: float) -> None:
+    """H is even in the momenta: backward in time equals forward with reversed momenta."""
     for channel, points in enumerate(find_entry_points(CASES[name], energy), start=1):
         states = start_states(CASES[name], Plane.X_PX, energy, *points.T)
         states = states[np.isfinite(states).all(axis=1)]
@@ -20,5 +20,5 @@ def test_orbits_through_entry_points_came_in_through_their_exit(name: str, energ
         assert set(outcome.fate.tolist()) == {channel}
 
 
-def test_closed_exits_let_nothing_in() -> None:
+def test_there_are_no_entry_points_below_the_escape_energy() -> None:
     assert find_entry_points(CASES["I"], 0.1) == ()

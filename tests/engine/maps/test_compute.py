@@ -1,4 +1,4 @@
-"""Maps too large to hold all their orbits at once."""
+"""Maps computed in blocks of rows, and maps with their reliability."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SPECS = [
 
 
 @pytest.fixture
-def small_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
 
 
@@ -27,22 +27,22 @@ def whole(request: pytest.FixtureRequest) -> EscapeMap:
     return compute_map(request.param)
 
 
-def test_bands_make_the_same_map(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_map_computed_in_blocks_is_bit_identical(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
-    banded = compute_map(whole.spec)
-    assert banded.complete
+    in_blocks = compute_map(whole.spec)
+    assert in_blocks.complete
     for name in ("fate", "escape_time", "crossings", "energy_error", "outside", "certificate"):
-        np.testing.assert_array_equal(getattr(banded, name), getattr(whole, name))
-        assert not getattr(banded, name).flags.writeable
+        np.testing.assert_array_equal(getattr(in_blocks, name), getattr(whole, name))
+        assert not getattr(in_blocks, name).flags.writeable
 
 
-@pytest.mark.usefixtures("small_runs")
-def test_bands_keep_results_only() -> None:
+@pytest.mark.usefixtures("small_blocks")
+def test_map_computed_in_blocks_has_no_integration_state() -> None:
     assert compute_map(SPECS[0]).batch is None
 
 
-@pytest.mark.usefixtures("small_runs")
-def test_frames_come_band_by_band() -> None:
+@pytest.mark.usefixtures("small_blocks")
+def test_each_block_gives_a_frame() -> None:
     seen: list[float] = []
     compute_map(SPECS[2], lambda frame: seen.append(frame.progress))
     assert len(seen) > 5
@@ -50,8 +50,8 @@ def test_frames_come_band_by_band() -> None:
     assert seen[-1] == 1.0
 
 
-@pytest.mark.usefixtures("small_runs")
-def test_a_cancelled_map_holds_the_bands_so_far() -> None:
+@pytest.mark.usefixtures("small_blocks")
+def test_cancelled_map_holds_the_blocks_computed_so_far() -> None:
     cancel = threading.Event()
     result = compute_map(SPECS[2], lambda _frame: cancel.set(), cancel)
     assert not result.complete
@@ -59,7 +59,7 @@ def test_a_cancelled_map_holds_the_bands_so_far() -> None:
     assert np.any(result.fate == Fate.NOT_COMPUTED)
 
 
-def test_a_map_can_be_asked_for_with_its_trust_mask() -> None:
+def test_map_with_trust() -> None:
     spec = MapSpec(CASES["II"], Plane.X_PX, 0.2, (40, 40), t_max=500.0)
     whole = compute_map(spec, with_trust=True)
     np.testing.assert_array_equal(whole.trust, compute_trust(compute_map(spec)).trust)
@@ -68,7 +68,7 @@ def test_a_map_can_be_asked_for_with_its_trust_mask() -> None:
     assert "3: doubtful" in dataset["trust"].attrs["codes"]
 
 
-def test_a_map_has_no_trust_mask_unless_it_is_asked_for() -> None:
+def test_map_has_no_trust_by_default() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (8, 8), t_max=50.0))
     assert whole.trust is None
     assert "trust" not in whole.to_xarray()

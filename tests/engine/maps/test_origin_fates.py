@@ -1,4 +1,4 @@
-"""Origin and fate: the past of an orbit is the future of the reversed one."""
+"""Origins and fates; the past of an orbit is the future of the reversed orbit."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def mirrored_in_y(name: str, fate: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.17), ("II", 0.2), ("III", 0.35)])
-def test_the_origin_is_the_fate_of_the_reversed_start(name: str, energy: float) -> None:
+def test_origin_is_the_fate_of_the_reversed_start(name: str, energy: float) -> None:
     whole = origin_fates(name, Plane.X_PX, energy)
     rows, columns = np.nonzero(whole.origin >= 0)
     rows, columns = rows[::11], columns[::11]
@@ -50,17 +50,17 @@ def test_the_origin_is_the_fate_of_the_reversed_start(name: str, energy: float) 
     ("I", Plane.X_PX, 0.17), ("II", Plane.X_PX, 0.2), ("III", Plane.X_PX, 0.35),
     ("I", Plane.X_Y, 0.17), ("II", Plane.X_Y, 0.2), ("III", Plane.X_Y, 0.35),
 ])  # fmt: skip
-def test_in_a_potential_even_in_y_origins_are_the_mirrored_fates(name: str, plane: Plane, energy: float) -> None:
-    # Reversal and y → −y together carry (x, px) into (x, −px), and (x, y) into (x, −y): the picture upside down.
+def test_origins_are_mirrored_fates_for_potentials_even_in_y(name: str, plane: Plane, energy: float) -> None:
+    # Reversal and y → −y together map (x, px) to (x, −px), and (x, y) to (x, −y): rows are reversed.
     whole = origin_fates(name, plane, energy)
     expected = mirrored_in_y(name, whole.fate[::-1])
     differing = whole.origin != expected
-    # Chaos amplifies the rounding of a mirrored orbit that stays long.
+    # Chaos amplifies the rounding errors of mirrored orbits that escape late.
     assert np.mean(differing[whole.fate >= 0]) < 0.02
 
 
-def test_an_orbit_captured_for_ever_is_a_rarity() -> None:
-    # Liouville's theorem: what comes in and never leaves has measure zero, so its share falls as t_max grows.
+def test_share_of_captured_orbits_decreases_with_t_max() -> None:
+    # By Liouville's theorem, orbits that enter and never leave have measure zero.
     shares = []
     for t_max in (100.0, 10_000.0):
         spec = MapSpec(CASES["III"], Plane.X_PX, 0.35, (SIDE, SIDE), t_max=t_max)
@@ -69,7 +69,7 @@ def test_an_orbit_captured_for_ever_is_a_rarity() -> None:
     assert shares[1] < 0.2 * shares[0]
 
 
-def test_passages_count_every_start_once() -> None:
+def test_passages_count_each_interior_start_once() -> None:
     whole = origin_fates("II", Plane.X_PX, 0.2)
     counts = whole.count_passages()
     assert counts.shape == (4, 4)
@@ -77,48 +77,54 @@ def test_passages_count_every_start_once() -> None:
     assert counts[1, 2] == np.sum((whole.origin == 1) & (whole.fate == 2))
 
 
-def test_passages_are_as_frequent_as_their_reversals() -> None:
-    # The section is carried onto itself by reversal and mirror: through 1 from 2 as often as through 2' from 1'.
+def test_passages_are_as_frequent_as_their_mirrored_reversals() -> None:
+    # Reversal and mirroring map the section onto itself: passages 2 → 1 are as frequent as passages 1' → 2'.
     channels = MIRRORED_IN_Y["III"]
     counts = origin_fates("III", Plane.X_PX, 0.45).count_passages()
     reversed_counts = counts.T[np.ix_(channels, channels)]
     np.testing.assert_allclose(counts, reversed_counts, atol=0.01 * counts.sum())
 
 
-def test_on_x_h_every_energy_has_its_origins() -> None:
+def test_x_h_plane_has_origins_for_each_energy() -> None:
     whole = origin_fates("I", Plane.X_H, (0.13, 0.4))
     np.testing.assert_array_equal(whole.origin[-1] > 0, whole.fate[-1] > 0)
     assert np.any(whole.origin[-1] > 0)
 
 
-def test_starts_that_do_not_exist_have_no_origin() -> None:
+def test_forbidden_and_outside_starts_have_no_origin() -> None:
     whole = origin_fates("I", Plane.X_PX, 0.17)
     np.testing.assert_array_equal(whole.origin == Fate.FORBIDDEN, whole.fate == Fate.FORBIDDEN)
     np.testing.assert_array_equal(whole.origin == Fate.OUTSIDE, whole.fate == Fate.OUTSIDE)
 
 
-def test_a_dataset_tells_both() -> None:
+def test_dataset_has_dimensions_codes_and_provenance() -> None:
     dataset = origin_fates("I", Plane.X_PX, 0.17).to_xarray()
     assert dataset["origin"].dims == ("px", "x")
     assert "forbidden" in dataset["origin"].attrs["codes"]
     assert dataset.attrs["energy"] == 0.17
 
 
-def test_maps_that_do_not_belong_together_are_refused() -> None:
+def test_joining_maps_of_different_requests_raises() -> None:
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=50.0)
     forward, other = compute_map(spec), compute_map(replace(spec, energy=0.31, backward=True))
-    with pytest.raises(ValueError, match="backward"):
+    with pytest.raises(ValueError, match="backward: is a map of"):
         join_origin_fates(forward, other)
 
 
-def test_a_map_that_is_not_complete_is_refused() -> None:
+def test_joining_a_backward_map_as_forward_raises() -> None:
+    backward = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=50.0, backward=True))
+    with pytest.raises(ValueError, match="forward: has backward=True"):
+        join_origin_fates(backward, backward)
+
+
+def test_joining_an_incomplete_map_raises() -> None:
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=50.0)
     forward, backward = compute_map(spec), compute_map(replace(spec, backward=True))
-    with pytest.raises(ValueError, match="not complete"):
+    with pytest.raises(ValueError, match="forward: the map is not complete"):
         join_origin_fates(replace(forward, complete=False), backward)
 
 
-def test_cancelling_stops_it() -> None:
+def test_cancelling_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):

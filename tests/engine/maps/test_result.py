@@ -21,15 +21,15 @@ from engine import (
     compute_map,
     find_lyapunov_orbits,
     integrate_orbit,
-    orbit_batches,
     start_states,
 )
+from engine.dynamics import batch as orbit_batch
 from engine.maps.compute import frame_pause
 from engine.maps.run import COARSE_PIXELS
 
 ARRAYS = ("fate", "escape_time", "crossings", "energy_error", "outside", "started")
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
-# Bounded, escaping, forbidden and outside pixels, more of them than the first frame holds.
+# Has bounded, escaping, forbidden and outside pixels, and more pixels than the first frame.
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.35, (70, 66), t_max=300.0)
 SPECS = {
     "I on (x, y)": MapSpec(CASES["I"], Plane.X_Y, 0.14, (50, 40), t_max=300.0),
@@ -39,7 +39,7 @@ SPECS = {
 each_spec = pytest.mark.parametrize("spec", [SPEC, *SPECS.values()], ids=["III on (x, px)", *SPECS])
 
 
-def assert_same_bits(one: EscapeMap | Outcomes, other: EscapeMap | Outcomes, names: tuple[str, ...] = ARRAYS) -> None:
+def assert_bit_identical(one: EscapeMap | Outcomes, other: EscapeMap | Outcomes, names: tuple[str, ...] = ARRAYS) -> None:
     for name in names:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
 
@@ -50,37 +50,37 @@ def whole() -> EscapeMap:
 
 
 class CancelAfter:
-    """An `on_frame` that cancels at the n-th frame."""
+    """An `on_frame` callback that cancels at the n-th frame."""
 
     def __init__(self, frames: int) -> None:
-        self.left, self.event, self.seen = frames, threading.Event(), list[EscapeMap]()
+        self.remaining, self.event, self.seen = frames, threading.Event(), list[EscapeMap]()
 
     def __call__(self, frame: EscapeMap) -> None:
         self.seen.append(frame)
-        self.left -= 1
-        if self.left == 0:
+        self.remaining -= 1
+        if self.remaining == 0:
             self.event.set()
 
 
-# What a map says.
+# Contents of a map.
 
 
-def test_a_finished_map_has_decided_everything(whole: EscapeMap) -> None:
+def test_complete_map_has_no_undecided_pixels(whole: EscapeMap) -> None:
     assert whole.complete
     assert (whole.undecided, whole.progress, whole.stride, whole.horizon) == (0.0, 1.0, 1, 300.0)
 
 
-def test_times_are_given_exactly_for_escapes(whole: EscapeMap) -> None:
+def test_exactly_the_escaping_pixels_have_an_escape_time(whole: EscapeMap) -> None:
     np.testing.assert_array_equal(np.isfinite(whole.escape_time), whole.fate >= 1)
 
 
-def test_times_lie_within_t_max(whole: EscapeMap) -> None:
+def test_escape_times_lie_within_t_max(whole: EscapeMap) -> None:
     times = whole.escape_time[whole.fate >= 1]
     assert 0 < times.min() < times.max() <= 300.0
 
 
 @each_spec
-def test_rows_and_columns_are_the_starts_of_their_pixel_centres(spec: MapSpec) -> None:
+def test_pixels_have_the_outcomes_of_orbits_from_their_centres(spec: MapSpec) -> None:
     result = compute_map(spec)
     assert result.fate.shape == (spec.resolution[1], spec.resolution[0]) == (result.ordinate.size, result.x.size)
     for row, column in [(3, 25), (20, 20), (30, 12)]:
@@ -94,7 +94,7 @@ def test_rows_and_columns_are_the_starts_of_their_pixel_centres(spec: MapSpec) -
 
 
 @each_spec
-def test_forbidden_is_where_no_start_exists(spec: MapSpec) -> None:
+def test_exactly_the_starts_without_real_momentum_are_forbidden(spec: MapSpec) -> None:
     result = compute_map(spec)
     x, ordinate = (grid.ravel() for grid in np.meshgrid(result.x, result.ordinate))
     h = 0.0 if spec.plane is Plane.X_H else spec.energy
@@ -105,9 +105,9 @@ def test_forbidden_is_where_no_start_exists(spec: MapSpec) -> None:
 @pytest.mark.parametrize(("name", "escape_energy"), [("I", 1 / 8), ("II", 1 / 6), ("III", 1 / 4)])
 @pytest.mark.parametrize("below", [0.0, 0.01])
 @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
-def test_nothing_leaves_at_or_below_the_escape_energy(name: str, escape_energy: float, below: float, plane: Plane) -> None:
+def test_nothing_escapes_at_or_below_the_escape_energy(name: str, escape_energy: float, below: float, plane: Plane) -> None:
     fate = compute_map(MapSpec(CASES[name], plane, escape_energy - below, (24, 24), t_max=200.0)).fate
-    # At the escape energy itself a pixel of the default window may touch a saddle from behind.
+    # At the escape energy a pixel of the default window may lie just beyond a saddle.
     assert {Fate.BOUNDED, Fate.FORBIDDEN} <= set(np.unique(fate)) <= {Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE}
 
 
@@ -117,7 +117,7 @@ def test_starts_beyond_the_closed_saddles_are_outside(name: str, escape_energy: 
     spec = MapSpec(CASES[name], Plane.X_Y, escape_energy - below, (40, 40), window=(-2.0, 2.0, -2.0, 2.0), t_max=50.0)
     result = compute_map(spec)
     x, y = np.meshgrid(result.x, result.ordinate)
-    # The well of no case reaches further than 1 from the origin.
+    # The wells of all cases lie within a distance 1 of the origin.
     beyond = (np.hypot(x, y) > 1.01) & (result.fate != Fate.FORBIDDEN)
     assert beyond.sum() > 100
     assert set(result.fate[beyond]) == {Fate.OUTSIDE}
@@ -141,13 +141,13 @@ def test_arrays_are_read_only(whole: EscapeMap) -> None:
 
 
 @pytest.mark.parametrize("resolution", [(1, 1), (1, 7), (7, 1), (3, 200)])
-def test_any_resolution_will_do(resolution: tuple[int, int]) -> None:
+def test_unusual_resolutions(resolution: tuple[int, int]) -> None:
     result = compute_map(MapSpec(CASES["I"], Plane.X_Y, 0.2, resolution, t_max=20.0))
     assert result.complete
     assert result.fate.shape == resolution[::-1]
 
 
-def test_a_window_without_any_start_is_all_forbidden() -> None:
+def test_window_without_allowed_starts_is_all_forbidden() -> None:
     result = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (8, 8), window=(0.0, 1.0, 5.0, 6.0)))
     assert set(np.unique(result.fate)) == {Fate.FORBIDDEN}
     assert (result.complete, result.progress, result.undecided) == (True, 1.0, 0.0)
@@ -157,7 +157,7 @@ def test_a_window_without_any_start_is_all_forbidden() -> None:
 # Fractions.
 
 
-def test_fractions_are_shares_of_the_interior(whole: EscapeMap) -> None:
+def test_fractions_are_shares_of_the_interior_starts(whole: EscapeMap) -> None:
     counts = {code: int((whole.fate == code).sum()) for code in (1, 2, 3, 4, 0)}
     expected = {code: count / sum(counts.values()) for code, count in counts.items()} | {Fate.NOT_COMPUTED: 0.0, Fate.FAILED: 0.0}
     assert whole.fractions() == pytest.approx(expected)
@@ -165,7 +165,7 @@ def test_fractions_are_shares_of_the_interior(whole: EscapeMap) -> None:
 
 def test_outside_starts_can_be_counted_as_escaped() -> None:
     result = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.4, (40, 40), window=(-1.0, 2.5, -2.0, 2.0), t_max=100.0))
-    # Only channel 1 meets y = 0.
+    # Only channel 1 intersects y = 0.
     outside = int((result.fate == Fate.OUTSIDE).sum())
     first, interior = int((result.fate == 1).sum()), int((result.fate >= 0).sum())
     assert outside > 100
@@ -174,12 +174,12 @@ def test_outside_starts_can_be_counted_as_escaped() -> None:
 
 
 @pytest.mark.parametrize("count_outside", [False, True])
-def test_fractions_add_up_to_one(count_outside: bool) -> None:
+def test_fractions_sum_to_one(count_outside: bool) -> None:
     result = compute_map(MapSpec(CASES["I"], Plane.X_Y, 0.3, (40, 40), window=(-2.0, 2.0, -2.0, 2.0), t_max=10.0))
     assert sum(result.fractions(count_outside=count_outside).values()) == pytest.approx(1.0)
 
 
-# Frames and previews.
+# Frames.
 
 
 @pytest.fixture(scope="module")
@@ -194,26 +194,26 @@ def test_the_first_frame_is_coarse(frames: list[EscapeMap]) -> None:
     assert frames[0].stride > 1
 
 
-def test_frames_only_ever_gain(frames: list[EscapeMap]) -> None:
+def test_later_frames_keep_the_decided_pixels(frames: list[EscapeMap]) -> None:
     for earlier, later in itertools.pairwise(frames):
         assert np.all(later.started >= earlier.started)
-        settled = earlier.fate != Fate.NOT_COMPUTED
-        np.testing.assert_array_equal(later.fate[settled], earlier.fate[settled])
-        np.testing.assert_array_equal(later.escape_time[settled], earlier.escape_time[settled])
+        decided = earlier.fate != Fate.NOT_COMPUTED
+        np.testing.assert_array_equal(later.fate[decided], earlier.fate[decided])
+        np.testing.assert_array_equal(later.escape_time[decided], earlier.escape_time[decided])
         assert later.progress >= earlier.progress
         assert later.stride <= earlier.stride
 
 
-def test_the_last_frame_is_the_map(frames: list[EscapeMap]) -> None:
-    assert_same_bits(frames[-1], compute_map(frames[-1].spec))
+def test_last_frame_equals_the_map(frames: list[EscapeMap]) -> None:
+    assert_bit_identical(frames[-1], compute_map(frames[-1].spec))
 
 
-def test_frames_keep_nothing_to_go_on_from(frames: list[EscapeMap]) -> None:
+def test_resuming_a_frame_raises(frames: list[EscapeMap]) -> None:
     with pytest.raises(ValueError, match="resume"):
         compute_map(frames[0].spec, resume=frames[0])
 
 
-def test_every_square_of_a_frame_holds_a_started_pixel(frames: list[EscapeMap]) -> None:
+def test_each_square_of_a_frame_has_a_started_pixel(frames: list[EscapeMap]) -> None:
     for frame in frames:
         rows, columns = (-(-size // frame.stride) for size in frame.fate.shape)
         padded = np.zeros((rows * frame.stride, columns * frame.stride), bool)
@@ -222,7 +222,7 @@ def test_every_square_of_a_frame_holds_a_started_pixel(frames: list[EscapeMap]) 
 
 
 @pytest.mark.parametrize("name", ["fate", "escape_time", "crossings"])
-def test_a_thinned_frame_shows_a_started_pixel_of_each_square(frames: list[EscapeMap], name: str) -> None:
+def test_thinned_frame_has_a_started_pixel_of_each_square(frames: list[EscapeMap], name: str) -> None:
     frame = frames[0]
     thinned, stride = frame.thinned()[0][name], frame.stride
     for row, column in np.ndindex(thinned.shape):
@@ -231,7 +231,7 @@ def test_a_thinned_frame_shows_a_started_pixel_of_each_square(frames: list[Escap
         assert np.any(np.isclose(thinned[row, column], candidates, equal_nan=True))
 
 
-def test_a_thinned_frame_knows_the_window_of_its_squares(frames: list[EscapeMap]) -> None:
+def test_thinned_frame_has_the_window_of_its_squares(frames: list[EscapeMap]) -> None:
     frame = frames[0]
     images, window = frame.thinned()
     x, ordinate = window.pixel_centres(*images["fate"].shape[::-1])
@@ -240,68 +240,68 @@ def test_a_thinned_frame_knows_the_window_of_its_squares(frames: list[EscapeMap]
         np.testing.assert_allclose(centres, fine[0] + pixel * (frame.stride * np.arange(centres.size) + (frame.stride - 1) / 2))
 
 
-def test_a_finished_map_is_thinned_to_itself(whole: EscapeMap) -> None:
+def test_thinning_a_complete_map_changes_nothing(whole: EscapeMap) -> None:
     images, window = whole.thinned()
     assert images["fate"] is whole.fate
     assert window is whole.spec.window
 
 
 @pytest.mark.parametrize(("elapsed", "pause"), [(0.0, 0.1), (1.0, 0.3), (60.0, 1.0)])
-def test_frames_come_seldomer_the_longer_it_takes(elapsed: float, pause: float) -> None:
+def test_pause_between_frames_grows_with_elapsed_time(elapsed: float, pause: float) -> None:
     assert frame_pause(elapsed) == pytest.approx(pause)
 
 
-# Bit for bit.
+# Bit-identical results.
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3])
 @each_spec
-def test_threads_make_no_difference(spec: MapSpec, workers: int) -> None:
+def test_result_does_not_depend_on_the_number_of_threads(spec: MapSpec, workers: int) -> None:
     with ThreadPoolExecutor(workers) as pool:
-        assert_same_bits(compute_map(spec, executor=pool), compute_map(spec))
+        assert_bit_identical(compute_map(spec, executor=pool), compute_map(spec))
 
 
 @pytest.mark.parametrize("lanes", [16, 48, 256])
-def test_lanes_make_no_difference(whole: EscapeMap, lanes: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orbit_batches, "LANES", lanes)
-    assert_same_bits(compute_map(SPEC), whole)
+def test_result_does_not_depend_on_the_number_of_lanes(whole: EscapeMap, lanes: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(orbit_batch, "LANES", lanes)
+    assert_bit_identical(compute_map(SPEC), whole)
 
 
 @pytest.mark.parametrize("budget", [2_000, 50_001])
-def test_budget_makes_no_difference(whole: EscapeMap, budget: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orbit_batches, "BUDGET", budget)
-    assert_same_bits(compute_map(SPEC), whole)
+def test_result_does_not_depend_on_the_step_budget(whole: EscapeMap, budget: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(orbit_batch, "STEP_BUDGET", budget)
+    assert_bit_identical(compute_map(SPEC), whole)
 
 
-def test_tiles_make_no_difference(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orbit_batches, "LARGEST_TILE", 64)
-    assert_same_bits(compute_map(SPEC), whole)
+def test_result_does_not_depend_on_the_tile_size(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(orbit_batch, "LARGEST_TILE", 64)
+    assert_bit_identical(compute_map(SPEC), whole)
 
 
 @pytest.mark.parametrize("frame", [1, 2, 3, 4])
-def test_a_cancelled_map_goes_on_to_the_same_result(whole: EscapeMap, frame: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    # A small budget, so that cancelling comes in the middle of orbits; no pause, so that every tile is a frame.
-    monkeypatch.setattr(orbit_batches, "BUDGET", 3_000)
+def test_cancelled_map_can_be_resumed_to_the_same_result(whole: EscapeMap, frame: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A small step budget, so that cancelling interrupts orbits; no pause, so that each tile gives a frame.
+    monkeypatch.setattr(orbit_batch, "STEP_BUDGET", 3_000)
     monkeypatch.setattr("engine.maps.compute.frame_pause", lambda elapsed: 0.0)
     cancel = CancelAfter(frame)
-    half_done = compute_map(SPEC, cancel, cancel.event)
-    assert not half_done.complete
-    assert_same_bits(compute_map(SPEC, resume=half_done), whole)
+    cancelled = compute_map(SPEC, cancel, cancel.event)
+    assert not cancelled.complete
+    assert_bit_identical(compute_map(SPEC, resume=cancelled), whole)
 
 
-def test_cancelling_again_and_again_makes_no_difference(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orbit_batches, "BUDGET", 3_000)
+def test_map_can_be_cancelled_and_resumed_repeatedly(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(orbit_batch, "STEP_BUDGET", 3_000)
     monkeypatch.setattr("engine.maps.compute.frame_pause", lambda elapsed: 0.0)
     result, rounds = None, 0
     while result is None or not result.complete:
-        # Each round goes through finished stages again, frame by frame, so later rounds need more of them.
+        # Each round repeats the frames of finished stages, so later rounds need more frames.
         cancel = CancelAfter(3 * (rounds + 1))
         result, rounds = compute_map(SPEC, cancel, cancel.event, resume=result), rounds + 1
     assert rounds > 3
-    assert_same_bits(result, whole)
+    assert_bit_identical(result, whole)
 
 
-def test_a_map_cancelled_before_it_begins_is_empty() -> None:
+def test_map_cancelled_before_the_start_is_empty() -> None:
     cancel = threading.Event()
     cancel.set()
     result = compute_map(SPEC, cancel=cancel)
@@ -309,7 +309,7 @@ def test_a_map_cancelled_before_it_begins_is_empty() -> None:
     assert set(np.unique(result.fate)) == {Fate.NOT_COMPUTED, Fate.FORBIDDEN}
 
 
-def test_a_cancelled_map_has_the_stride_it_reached() -> None:
+def test_cancelled_map_has_the_stride_of_its_last_stage() -> None:
     cancel = CancelAfter(1)
     result = compute_map(SPEC, cancel, cancel.event)
     assert result.stride == cancel.seen[0].stride > 1
@@ -317,12 +317,12 @@ def test_a_cancelled_map_has_the_stride_it_reached() -> None:
 
 @pytest.mark.parametrize("first", [20.0, 99.0, 100.0, 150.0, 299.0])
 @each_spec
-def test_raising_t_max_gives_what_one_run_does(spec: MapSpec, first: float) -> None:
+def test_resuming_with_larger_t_max_equals_a_single_run(spec: MapSpec, first: float) -> None:
     short = compute_map(MapSpec(spec.potential, spec.plane, spec.energy, spec.resolution, spec.window, first))
-    assert_same_bits(compute_map(spec, resume=short), compute_map(spec))
+    assert_bit_identical(compute_map(spec, resume=short), compute_map(spec))
 
 
-def test_resuming_leaves_the_earlier_map_alone() -> None:
+def test_resuming_does_not_change_the_earlier_map() -> None:
     short = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.35, (20, 20), t_max=30.0))
     before = short.fate.copy(), short.batch.t.copy() if short.batch else None
     compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.35, (20, 20), t_max=100.0), resume=short)
@@ -343,14 +343,14 @@ def shorter(s: MapSpec) -> MapSpec:
 
 
 @pytest.mark.parametrize("change", [changed_resolution, changed_energy, shorter])
-def test_another_map_cannot_be_resumed(whole: EscapeMap, change: Callable[[MapSpec], MapSpec]) -> None:
+def test_resuming_another_map_raises(whole: EscapeMap, change: Callable[[MapSpec], MapSpec]) -> None:
     with pytest.raises(ValueError, match="resume"):
         compute_map(change(SPEC), resume=whole)
 
 
 @pytest.fixture(scope="module")
 def starts(whole: EscapeMap) -> np.ndarray:
-    """Interior starts of the map, in the order of its pixels."""
+    """Interior starts of the map, in pixel order."""
     x, px = (grid.ravel() for grid in np.meshgrid(whole.x, whole.ordinate))
     inside = (whole.fate.ravel() != Fate.FORBIDDEN) & (whole.fate.ravel() != Fate.OUTSIDE)
     return start_states(SPEC.potential, SPEC.plane, 0.35, x[inside], px[inside])
@@ -361,14 +361,14 @@ def outcomes(starts: np.ndarray) -> Outcomes:
     return classify_orbits(SPEC.potential, 0.35, starts, 300.0)
 
 
-def test_a_list_of_orbits_fares_as_on_the_map(whole: EscapeMap, outcomes: Outcomes) -> None:
+def test_classified_orbits_have_the_outcomes_of_the_map(whole: EscapeMap, outcomes: Outcomes) -> None:
     inside = (whole.fate != Fate.FORBIDDEN) & (whole.fate != Fate.OUTSIDE)
     for name in OUTCOMES:
         np.testing.assert_array_equal(getattr(outcomes, name), getattr(whole, name)[inside], err_msg=name)
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_order_makes_no_difference(starts: np.ndarray, outcomes: Outcomes, seed: int) -> None:
+def test_outcomes_do_not_depend_on_the_order_of_orbits(starts: np.ndarray, outcomes: Outcomes, seed: int) -> None:
     order = np.random.default_rng(seed).permutation(len(starts))
     shuffled = classify_orbits(SPEC.potential, 0.35, starts[order], 300.0)
     for name in OUTCOMES:
@@ -376,23 +376,23 @@ def test_order_makes_no_difference(starts: np.ndarray, outcomes: Outcomes, seed:
 
 
 @pytest.mark.parametrize("kind", [0, 1, 2, 3, 4])
-def test_one_orbit_fares_as_on_the_map(starts: np.ndarray, outcomes: Outcomes, kind: int) -> None:
+def test_single_orbits_have_the_outcomes_of_the_map(starts: np.ndarray, outcomes: Outcomes, kind: int) -> None:
     for n in np.flatnonzero(outcomes.fate == kind)[::97][:6]:
         orbit = integrate_orbit(SPEC.potential, starts[n], 300.0)
-        # Its energy is that of its start, which rounding may move by 1e-16: the exits then differ in the last digits.
+        # The energy computed from the start may differ by 1e-16, and then the exits differ in the last digits.
         assert (orbit.fate, orbit.crossings) == (outcomes.fate[n], outcomes.crossings[n])
         assert orbit.escape_time == pytest.approx(outcomes.escape_time[n], rel=1e-9, nan_ok=True)
 
 
-def test_dtypes_are_as_promised(outcomes: Outcomes) -> None:
+def test_dtypes_of_outcomes(outcomes: Outcomes) -> None:
     assert [getattr(outcomes, name).dtype for name in OUTCOMES] == [np.int8, np.float64, np.int32, np.float64]
 
 
-def test_no_orbits_is_no_outcome() -> None:
+def test_no_orbits_give_no_outcomes() -> None:
     assert classify_orbits(CASES["I"], 0.2, np.empty((0, 4))).fate.size == 0
 
 
-def test_a_start_beyond_a_lyapunov_orbit_is_outside() -> None:
+def test_start_beyond_a_lyapunov_orbit_is_outside() -> None:
     energy = 0.3
     for orbit in find_lyapunov_orbits(CASES["II"], energy):
         x, y = 1.1 * orbit.x[[50]], 1.1 * orbit.y[[50]]
@@ -408,7 +408,7 @@ def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
     assert Fate.NOT_COMPUTED in fate
 
 
-# Bad input.
+# Invalid arguments.
 
 
 @pytest.mark.parametrize(
@@ -428,13 +428,13 @@ def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
         ({"t_max": np.inf}, "t_max=inf"),
     ],
 )
-def test_bad_input_is_named(changed: dict, named: str) -> None:
+def test_error_names_the_invalid_argument(changed: dict, named: str) -> None:
     arguments = {"energy": 0.2, "states": [[0.0, 0.0, 0.0, np.sqrt(0.4)]], "t_max": 10.0} | changed
     with pytest.raises(ValueError, match=named):
         classify_orbits(CASES["I"], **arguments)
 
 
-def test_states_may_be_off_their_energy_by_rounding() -> None:
+def test_states_may_differ_from_the_energy_by_rounding() -> None:
     assert classify_orbits(CASES["I"], 0.2, [[0.0, 0.0, 0.0, np.sqrt(0.4 + 1e-9)]], 5.0).fate[0] == Fate.BOUNDED
 
 
@@ -442,7 +442,7 @@ def test_states_may_be_off_their_energy_by_rounding() -> None:
 
 
 @each_spec
-def test_netcdf_keeps_values_and_coordinates(spec: MapSpec, tmp_path: Path) -> None:
+def test_netcdf_round_trip_preserves_values_and_coordinates(spec: MapSpec, tmp_path: Path) -> None:
     exported = compute_map(spec).to_xarray()
     exported.to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as loaded:
@@ -450,14 +450,14 @@ def test_netcdf_keeps_values_and_coordinates(spec: MapSpec, tmp_path: Path) -> N
         assert {name: loaded[name].dtype for name in exported} == {name: exported[name].dtype for name in exported}
 
 
-def test_netcdf_keeps_provenance(whole: EscapeMap, tmp_path: Path) -> None:
+def test_netcdf_round_trip_preserves_provenance(whole: EscapeMap, tmp_path: Path) -> None:
     whole.to_xarray().to_netcdf(tmp_path / "map.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as loaded:
         for name, value in whole.provenance().items():
             np.testing.assert_array_equal(loaded.attrs[name], value, err_msg=name)
 
 
-def test_provenance_says_what_made_the_map(whole: EscapeMap) -> None:
+def test_provenance_contains_the_request(whole: EscapeMap) -> None:
     provenance = whole.provenance()
     assert (provenance["potential"], provenance["energy"], provenance["plane"], provenance["t_max"]) == (
         "III",
@@ -471,12 +471,12 @@ def test_provenance_says_what_made_the_map(whole: EscapeMap) -> None:
     assert provenance["worst_energy_error"] == whole.worst_energy_error
 
 
-def test_provenance_counts_every_pixel(whole: EscapeMap) -> None:
+def test_provenance_counts_all_pixels(whole: EscapeMap) -> None:
     counts = dict(entry.split(": ") for entry in whole.provenance()["counts"].split("; "))
     assert {int(code): int(count) for code, count in counts.items()} == {
         int(code): int((whole.fate == code).sum()) for code in np.unique(whole.fate)
     }
 
 
-def test_an_unfinished_map_exports_as_unfinished(frames: list[EscapeMap]) -> None:
+def test_incomplete_map_is_exported_as_incomplete(frames: list[EscapeMap]) -> None:
     assert frames[0].to_xarray().attrs["complete"] == 0

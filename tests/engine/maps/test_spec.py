@@ -7,7 +7,7 @@ import pytest
 
 from engine import CASES, LARGEST_SIDE, LONGEST_TIME, MapSpec, Plane, Window
 
-I = CASES["I"]  # noqa: E741 — the case's name
+I = CASES["I"]  # noqa: E741  # named like the case
 WINDOW = (-1.0, 1.0, -1.0, 1.0)
 
 
@@ -16,14 +16,14 @@ def spec_with(**changed: Any) -> MapSpec:
 
 
 @pytest.mark.parametrize("energy", [np.nan, np.inf, -np.inf, (0.1, 0.2), None])
-def test_one_finite_energy_is_needed(energy: Any) -> None:
+def test_energy_must_be_one_finite_number(energy: Any) -> None:
     with pytest.raises(ValueError, match="energy=") as error:
         spec_with(energy=energy)
     assert repr(energy) in str(error.value)
 
 
 @pytest.mark.parametrize("energy", [0.2, (0.3, 0.2), (0.2, 0.2), (0.1, 0.2, 0.3), (0.1, np.nan), (0.1, np.inf)])
-def test_a_rising_pair_of_energies_is_needed_on_x_h(energy: Any) -> None:
+def test_energy_on_x_h_must_be_an_increasing_pair(energy: Any) -> None:
     with pytest.raises(ValueError, match="energy=") as error:
         spec_with(plane=Plane.X_H, energy=energy)
     assert repr(energy) in str(error.value)
@@ -32,26 +32,26 @@ def test_a_rising_pair_of_energies_is_needed_on_x_h(energy: Any) -> None:
 @pytest.mark.parametrize(
     "resolution", [(0, 10), (10, 0), (-1, 10), (LARGEST_SIDE + 1, 10), (10, LARGEST_SIDE + 1), (10,), (1, 2, 3)]
 )
-def test_resolution_has_limits(resolution: Any) -> None:
+def test_resolution_out_of_range_raises(resolution: Any) -> None:
     with pytest.raises(ValueError, match="resolution=") as error:
         spec_with(resolution=resolution)
     assert str(resolution) in str(error.value)
 
 
 @pytest.mark.parametrize("resolution", [5, (10.7, 10), (np.nan, 10), "ab", None])
-def test_resolution_is_two_whole_numbers(resolution: Any) -> None:
+def test_resolution_must_be_two_integers(resolution: Any) -> None:
     with pytest.raises(ValueError, match="resolution=") as error:
         spec_with(resolution=resolution)
     assert repr(resolution) in str(error.value)
 
 
 @pytest.mark.parametrize("side", [1, LARGEST_SIDE])
-def test_resolution_may_be_anything_up_to_its_limits(side: int) -> None:
+def test_resolution_at_the_limits_is_accepted(side: int) -> None:
     assert spec_with(resolution=(side, np.int64(3))).resolution == (side, 3)
 
 
 @pytest.mark.parametrize("t_max", [0.0, -1.0, np.nan, np.inf, 2 * LONGEST_TIME])
-def test_t_max_has_limits(t_max: float) -> None:
+def test_t_max_out_of_range_raises(t_max: float) -> None:
     with pytest.raises(ValueError, match=f"t_max={t_max}"):
         spec_with(t_max=t_max)
 
@@ -68,7 +68,7 @@ def test_t_max_has_limits(t_max: float) -> None:
         ((-1.0, 1.0, 0.0, np.inf), "ordinate edge=inf: must be a finite number"),
     ],
 )
-def test_window_edges_are_finite_and_in_order(edges: tuple[float, ...], named: str) -> None:
+def test_window_edges_must_be_finite_and_increasing(edges: tuple[float, ...], named: str) -> None:
     with pytest.raises(ValueError, match=named):
         Window(*edges)
     with pytest.raises(ValueError, match=named):
@@ -81,38 +81,38 @@ def test_plane_must_be_one_of_the_three(plane: Any) -> None:
         spec_with(plane=plane)
 
 
-def test_energy_far_too_high_is_refused_before_anything_is_computed() -> None:
+def test_energy_without_exits_raises_for_the_default_window() -> None:
     with pytest.raises(ValueError, match=r"energy=50\.0"):
         spec_with(energy=50.0, window=None)
 
 
 @pytest.mark.parametrize("energy", [0.125, 0.1, 0.0, -1.0])
-def test_energy_at_or_below_the_escape_energy_is_legal(energy: float) -> None:
+def test_energy_at_or_below_the_escape_energy_is_accepted(energy: float) -> None:
     assert spec_with(energy=energy).energy == energy
 
 
-def test_equal_requests_are_equal_keys() -> None:
+def test_equal_requests_are_equal_dictionary_keys() -> None:
     assert {spec_with(window=WINDOW): 1}[spec_with(window=Window(*WINDOW))] == 1
 
 
-def test_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
+def test_outer_pixel_centres_are_half_a_pixel_from_the_edges() -> None:
     x, ordinate = spec_with(resolution=(4, 2)).pixel_centres()
     np.testing.assert_allclose(x, [-0.75, -0.25, 0.25, 0.75], rtol=1e-15)
     np.testing.assert_allclose(ordinate, [-0.5, 0.5], rtol=1e-15)
 
 
 @pytest.mark.parametrize("window", [(0.0, 1.0), (0.0, 1.0, 0.0), 3.0, "abcd", (None, 1.0, 0.0, 1.0)])
-def test_a_window_is_four_numbers(window: Any) -> None:
+def test_window_must_be_four_numbers(window: Any) -> None:
     with pytest.raises(ValueError, match="window=") as error:
         spec_with(window=window)
     assert repr(window) in str(error.value)
 
 
 @pytest.mark.parametrize("width", [1e-12, 1e-10])
-def test_a_window_may_be_as_small_as_double_precision_resolves(width: float) -> None:
+def test_window_as_small_as_double_precision_allows_is_accepted(width: float) -> None:
     assert spec_with(window=(0.3, 0.3 + width, 0.2, 0.2 + width), resolution=(225, 225)).resolution == (225, 225)
 
 
-def test_a_window_beyond_double_precision_is_refused() -> None:
+def test_window_beyond_double_precision_raises() -> None:
     with pytest.raises(ValueError, match="double precision ends here"):
         spec_with(window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14))

@@ -9,7 +9,7 @@ import pytest
 
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.classification import read_outcomes
+from engine.dynamics.classification import collect_outcomes
 from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.dynamics.planes import find_mirror_images
 from engine.execution import SerialExecutor
@@ -30,7 +30,7 @@ ZOOM = Window(0.25739561116 - 5e-10, 0.25739561116 + 5e-10, 0.13079102903 - 5e-1
 
 
 @cache
-def trusted(
+def map_and_trust(
     name: str = "III",
     energy: float | tuple[float, float] = 0.45,
     plane: Plane = Plane.X_PX,
@@ -44,8 +44,8 @@ def trusted(
     return whole, compute_trust(whole)
 
 
-def run_again(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-    """Fates, and crossings before the escape, of orbits followed to t_max at one go, energy by energy."""
+def rerun(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Fates, and crossings before the escape, of orbits integrated directly to t_max."""
     potential = whole.spec.potential
     energies = ordinate if whole.spec.plane is Plane.X_H else np.full(x.size, whole.spec.energy)
     fate, crossings = np.zeros((2, x.size), np.int64)
@@ -54,7 +54,7 @@ def run_again(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: 
         curves = exit_curves(potential, float(energy))[None]
         batch = OrbitBatch.from_starts(whole.spec.start_states(x[which], ordinate[which]), np.zeros(which.sum(), np.int64))
         propagate_batch(potential, curves, batch, np.arange(which.sum()), whole.spec.t_max, final=True, tolerance=tolerance)
-        outcomes = read_outcomes(potential, energies[which], batch)
+        outcomes = collect_outcomes(potential, energies[which], batch)
         fate[which], crossings[which] = outcomes.fate, np.where(outcomes.fate >= 1, outcomes.crossings, 0)
     return fate, crossings
 
@@ -63,12 +63,12 @@ def run_again(whole: EscapeMap, x: np.ndarray, ordinate: np.ndarray, tolerance: 
     ("name", "energy", "plane"),
     [("I", 0.2, Plane.X_Y), ("II", 0.2, Plane.X_PX), ("III", 0.45, Plane.X_PX), ("III", (0.3, 0.7), Plane.X_H)],
 )
-def test_doubtful_is_what_changes_when_followed_again_at_one_go(
+def test_doubtful_pixels_are_those_that_change_in_direct_reruns(
     name: str, energy: float | tuple[float, float], plane: Plane
 ) -> None:
-    whole, trust = trusted(name, energy, plane, side=41, t_max=500.0)
+    whole, trust = map_and_trust(name, energy, plane, side=41, t_max=500.0)
     rows, columns = np.nonzero(np.isin(trust.trust, (Trust.CONFIRMED, Trust.DOUBTFUL)))
-    # Of two mirror images the first is tested.
+    # Only the first of two mirror images is tested.
     images = find_mirror_images(whole.spec.potential, plane, whole.x, whole.ordinate)
     pixels = rows * whole.x.size + columns
     first = np.ones(pixels.size, bool) if images is None else pixels <= images[pixels]
@@ -76,9 +76,9 @@ def test_doubtful_is_what_changes_when_followed_again_at_one_go(
     x, ordinate, fate = whole.x[columns], whole.ordinate[rows], whole.fate[rows, columns]
     crossings = np.where(fate >= 1, whole.crossings[rows, columns], 0)
     changed = np.zeros(x.size, bool)
-    again = (shifted_starts(whole.spec, x, ordinate), TOLERANCE), ((x, ordinate), SECOND_TOLERANCE)
-    for (start_x, start_ordinate), tolerance in again:
-        other_fate, other_crossings = run_again(whole, start_x, start_ordinate, tolerance)
+    reruns = (shifted_starts(whole.spec, x, ordinate), TOLERANCE), ((x, ordinate), SECOND_TOLERANCE)
+    for (start_x, start_ordinate), tolerance in reruns:
+        other_fate, other_crossings = rerun(whole, start_x, start_ordinate, tolerance)
         changed |= (other_fate != fate) | (other_crossings != crossings)
     np.testing.assert_array_equal(trust.trust[rows, columns] == Trust.DOUBTFUL, changed)
     assert changed.any()
@@ -86,12 +86,12 @@ def test_doubtful_is_what_changes_when_followed_again_at_one_go(
 
 
 @pytest.mark.slow
-def test_a_second_opinion_agrees_on_confirmed_pixels_and_not_on_doubtful_ones() -> None:
+def test_heyoka_agrees_on_confirmed_pixels_and_differs_on_doubtful_ones() -> None:
     pytest.importorskip("heyoka")
     from tests.peers import taylor_heyoka
     from tests.peers.exit_lines import exit_lines
 
-    whole, trust = trusted()
+    whole, trust = map_and_trust()
     potential, energy = whole.spec.potential, 0.45
     disagreeing = {}
     for code in (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED, Trust.DOUBTFUL):
@@ -109,36 +109,36 @@ def test_a_second_opinion_agrees_on_confirmed_pixels_and_not_on_doubtful_ones() 
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.2), ("II", 0.2), ("III", 0.45)])
-def test_doubtful_pixels_leave_late(name: str, energy: float) -> None:
-    whole, trust = trusted(name, energy, side=101)
+def test_doubtful_pixels_escape_late(name: str, energy: float) -> None:
+    whole, trust = map_and_trust(name, energy, side=101)
     doubtful = whole.escape_time[(trust.trust == Trust.DOUBTFUL) & (whole.fate >= 1)]
     confirmed = whole.escape_time[(trust.trust == Trust.CONFIRMED) & (whole.fate >= 1)]
-    # To grow from 1e-11 to order 1 takes 25 e-foldings, even where the exponent is 0.5.
+    # A distance of 1e-11 needs 25 e-foldings to grow to order 1; Lyapunov exponents are at most about 0.5.
     assert doubtful.min() > 50.0
     assert doubtful.min() > np.median(confirmed)
     assert np.median(doubtful) > 3.0 * np.median(confirmed)
 
 
-def test_an_orbit_that_leaves_early_is_never_doubtful() -> None:
-    _, trust = trusted(t_max=40.0)
+def test_early_escapes_are_never_doubtful() -> None:
+    _, trust = map_and_trust(t_max=40.0)
     assert trust.complete
     assert trust.doubtful_share == 0.0
     assert trust.tested_share > 0.3
 
 
-def test_the_deeper_the_zoom_the_more_is_doubtful() -> None:
-    _, whole_picture = trusted()
-    _, zoom = trusted(window=ZOOM)
+def test_deeper_zooms_have_more_doubtful_pixels() -> None:
+    _, whole_picture = map_and_trust()
+    _, zoom = map_and_trust(window=ZOOM)
     assert zoom.doubtful_share > 3.0 * whole_picture.doubtful_share
 
 
-def test_pixels_are_tested_where_a_neighbour_says_something_else() -> None:
-    whole, trust = trusted("III", 0.45, side=31)
+def test_pixels_are_tested_if_a_neighbour_has_another_outcome() -> None:
+    whole, trust = map_and_trust("III", 0.45, side=31)
     rows, columns = whole.fate.shape
     for row, column in np.ndindex(rows, columns):
         fate = whole.fate[row, column]
         if fate < Fate.BOUNDED:
-            assert trust.trust[row, column] == Trust.NO_QUESTION
+            assert trust.trust[row, column] == Trust.NOT_APPLICABLE
             continue
         near = np.s_[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
         fates, crossings = whole.fate[near], whole.crossings[near]
@@ -147,19 +147,19 @@ def test_pixels_are_tested_where_a_neighbour_says_something_else() -> None:
         assert tested == other.any()
 
 
-def test_crossings_of_bounded_neighbours_say_nothing() -> None:
+def test_crossings_of_bounded_neighbours_are_ignored() -> None:
     fate = np.zeros((3, 3), np.int8)
     assert not find_unlike_neighbours(fate, np.arange(9).reshape(3, 3)).any()
 
 
-def test_neighbours_with_no_answer_are_not_compared() -> None:
+def test_forbidden_outside_and_failed_neighbours_are_not_compared() -> None:
     fate = np.full((3, 3), Fate.FORBIDDEN, np.int8)
     fate[0], fate[1, 1] = Fate.OUTSIDE, 2
     fate[2, 0] = Fate.FAILED
     assert not find_unlike_neighbours(fate, np.zeros((3, 3), np.int32)).any()
 
 
-def test_fate_and_crossings_are_not_confused() -> None:
+def test_fate_and_crossings_are_compared_separately() -> None:
     fate = np.array([[1, 3, 3, 3]], np.int8)
     crossings = np.array([[3, 1, 1, 2]], np.int32)
     np.testing.assert_array_equal(find_unlike_neighbours(fate, crossings), [[True, True, True, True]])
@@ -167,15 +167,15 @@ def test_fate_and_crossings_are_not_confused() -> None:
 
 
 @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
-def test_mirror_images_are_trusted_alike(plane: Plane) -> None:
-    whole, trust = trusted(plane=plane)
+def test_mirror_images_have_the_same_trust(plane: Plane) -> None:
+    whole, trust = map_and_trust(plane=plane)
     images = find_mirror_images(whole.spec.potential, plane, whole.x, whole.ordinate)
     assert images is not None
     np.testing.assert_array_equal(trust.trust.ravel(), trust.trust.ravel()[images])
 
 
-def test_starts_on_the_axis_do_not_gain_a_crossing() -> None:
-    whole, trust = trusted(plane=Plane.X_Y)
+def test_shifted_starts_from_the_axis_have_no_additional_crossing() -> None:
+    whole, trust = map_and_trust(plane=Plane.X_Y)
     middle = whole.ordinate == 0.0
     assert middle.any()
     early = middle[:, None] & (whole.escape_time < 50.0)
@@ -183,72 +183,72 @@ def test_starts_on_the_axis_do_not_gain_a_crossing() -> None:
     assert not np.any(early & (trust.trust == Trust.DOUBTFUL))
 
 
-def test_certificates_change_no_verdict() -> None:
-    certified, trust = trusted("III", 0.28, side=25, t_max=1e4)
-    followed, slow_trust = trusted("III", 0.28, side=25, t_max=1e4, certify=False)
-    np.testing.assert_array_equal(certified.fate, followed.fate)
-    np.testing.assert_array_equal(trust.trust, slow_trust.trust)
+def test_certificates_do_not_change_the_result() -> None:
+    certified, trust = map_and_trust("III", 0.28, side=25, t_max=1e4)
+    integrated, integrated_trust = map_and_trust("III", 0.28, side=25, t_max=1e4, certify=False)
+    np.testing.assert_array_equal(certified.fate, integrated.fate)
+    np.testing.assert_array_equal(trust.trust, integrated_trust.trust)
     assert np.any((trust.trust == Trust.CONFIRMED) & (certified.fate == Fate.BOUNDED))
 
 
-def test_below_the_escape_energy_all_that_is_tested_is_confirmed() -> None:
-    whole, trust = trusted("II", (0.1, 0.4), Plane.X_H, side=9)
+def test_pixels_below_the_escape_energy_are_never_doubtful() -> None:
+    whole, trust = map_and_trust("II", (0.1, 0.4), Plane.X_H, side=9)
     closed = trust.trust[whole.ordinate <= CASES["II"].escape_energy]
     assert trust.complete
     assert np.any(closed == Trust.CONFIRMED)
     assert not np.any(closed == Trust.DOUBTFUL)
 
 
-def test_the_verdict_does_not_depend_on_the_executor() -> None:
-    whole, trust = trusted("II", 0.2)
+def test_result_does_not_depend_on_the_executor() -> None:
+    whole, trust = map_and_trust("II", 0.2)
     np.testing.assert_array_equal(compute_trust(whole, executor=SerialExecutor()).trust, trust.trust)
 
 
-def test_frames_only_ever_add_to_what_is_known() -> None:
-    whole, trust = trusted()
+def test_later_frames_keep_the_decided_pixels() -> None:
+    whole, trust = map_and_trust()
     frames: list[TrustMap] = []
     compute_trust(whole, frames.append)
     assert len(frames) > 4
     assert not frames[0].complete
     for before, after in pairwise(frames):
-        known = before.trust != Trust.NOT_TESTED
-        np.testing.assert_array_equal(before.trust[known], after.trust[known])
+        decided = before.trust != Trust.NOT_TESTED
+        np.testing.assert_array_equal(before.trust[decided], after.trust[decided])
     np.testing.assert_array_equal(frames[-1].trust, trust.trust)
 
 
-def test_when_cancelled_the_rest_is_not_tested() -> None:
-    whole, trust = trusted()
+def test_cancelling_leaves_the_rest_not_tested() -> None:
+    whole, trust = map_and_trust()
     cancel = threading.Event()
     partial = compute_trust(whole, lambda _frame: cancel.set(), cancel)
     assert not partial.complete
     assert Trust.NOT_TESTED in partial.trust
-    known = partial.trust != Trust.NOT_TESTED
-    np.testing.assert_array_equal(partial.trust[known], trust.trust[known])
+    decided = partial.trust != Trust.NOT_TESTED
+    np.testing.assert_array_equal(partial.trust[decided], trust.trust[decided])
 
 
-def test_an_unfinished_map_is_refused() -> None:
+def test_incomplete_map_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     unfinished = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (9, 9)), cancel=cancel)
-    with pytest.raises(ValueError, match="not complete"):
+    with pytest.raises(ValueError, match="escape_map: the map is not complete"):
         compute_trust(unfinished)
 
 
-def test_below_the_escape_energy_nothing_is_in_question() -> None:
-    _, trust = trusted("III", 0.2)
+def test_nothing_is_tested_below_the_escape_energy() -> None:
+    _, trust = map_and_trust("III", 0.2)
     assert trust.complete
     assert trust.tested_share == trust.doubtful_share == 0.0
 
 
-def test_a_map_of_nothing_has_no_shares() -> None:
-    _, trust = trusted("III", 0.2, side=5, window=Window(5.0, 6.0, 5.0, 6.0))
+def test_map_without_interior_pixels_has_no_shares() -> None:
+    _, trust = map_and_trust("III", 0.2, side=5, window=Window(5.0, 6.0, 5.0, 6.0))
     assert trust.complete
     assert np.isnan(trust.doubtful_share)
     assert np.isnan(trust.tested_share)
-    assert trust.describe() == "No pixel has an answer that could be doubted."
+    assert trust.describe() == "There are no pixels inside to test."
 
 
-def test_shares_are_of_the_pixels_that_have_an_answer() -> None:
+def test_shares_refer_to_the_interior_pixels() -> None:
     codes = np.array([[0, 0, 1, 1, 1], [2, 2, 2, 3, 4]], np.int8)
     trust = TrustMap(MapSpec(CASES["I"], Plane.X_PX, 0.2, (5, 2)), codes, complete=False)
     assert trust.doubtful_share == 1 / 8
@@ -259,33 +259,33 @@ def test_shares_are_of_the_pixels_that_have_an_answer() -> None:
     assert trust.nbytes == 10
 
 
-def test_codes_read_as_words() -> None:
+def test_codes_are_shown_as_words() -> None:
     assert str(Trust.LIKE_NEIGHBOURS) == "like neighbours"
 
 
 @pytest.mark.parametrize("size", [1.0, 1e-6, 1e-10, 1e-13])
-def test_a_start_moves_by_far_less_than_a_pixel_and_more_than_rounding(size: float) -> None:
+def test_shift_is_far_below_a_pixel_and_above_rounding(size: float) -> None:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), Window(0.3 - size, 0.3, -0.2 - size, -0.2))
     x, ordinate = spec.pixel_centres()
     for before, after in zip((x, ordinate), shifted_starts(spec, x, ordinate), strict=True):
-        moved = np.abs(before) - np.abs(after)
+        shift = np.abs(before) - np.abs(after)
         smallest = 0.9 * min(SHIFT, 0.01 * size / 40)
-        assert np.all(moved > max(smallest, 0.9 * FINEST_PIXEL))
-        # At the end of double precision rounding alone is a large part of a pixel.
-        assert np.all(moved < max(1.1 * min(SHIFT, 0.01 * size / 40), 1.1 * FINEST_PIXEL))
+        assert np.all(shift > max(smallest, 0.9 * FINEST_PIXEL))
+        # In the deepest zoom, rounding is a large part of a pixel.
+        assert np.all(shift < max(1.1 * min(SHIFT, 0.01 * size / 40), 1.1 * FINEST_PIXEL))
 
 
-def test_the_moved_starts_of_mirror_images_are_mirror_images() -> None:
+def test_shifted_starts_of_mirror_images_are_mirror_images() -> None:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.45, (20, 20))
     x, ordinate = spec.pixel_centres()
-    moved_x, moved_ordinate = shifted_starts(spec, x, ordinate)
-    np.testing.assert_array_equal(moved_x, -moved_x[::-1])
-    np.testing.assert_array_equal(moved_ordinate, -moved_ordinate[::-1])
+    shifted_x, shifted_ordinate = shifted_starts(spec, x, ordinate)
+    np.testing.assert_array_equal(shifted_x, -shifted_x[::-1])
+    np.testing.assert_array_equal(shifted_ordinate, -shifted_ordinate[::-1])
 
 
-def test_on_x_h_the_energy_stays() -> None:
+def test_shift_on_x_h_does_not_change_the_energy() -> None:
     spec = MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6), (20, 20))
     x, ordinate = spec.pixel_centres()
-    moved_x, moved_ordinate = shifted_starts(spec, x, ordinate)
-    assert np.all(moved_x != x)
-    np.testing.assert_array_equal(moved_ordinate, ordinate)
+    shifted_x, shifted_ordinate = shifted_starts(spec, x, ordinate)
+    assert np.all(shifted_x != x)
+    np.testing.assert_array_equal(shifted_ordinate, ordinate)

@@ -14,13 +14,13 @@ each_entry = pytest.mark.parametrize("name", POTENTIALS)
 
 
 @each_entry
-def test_each_formula_is_its_potential(name: str) -> None:
+def test_formula_matches_the_potential(name: str) -> None:
     entry = POTENTIALS[name]
     assert sorted(parse_formula(entry.formula).terms) == sorted(entry.potential.terms)
 
 
 @each_entry
-def test_each_entry_says_what_it_is_and_where_it_is_from(name: str) -> None:
+def test_entry_is_complete(name: str) -> None:
     entry = POTENTIALS[name]
     assert entry.name == entry.potential.name == name
     assert entry.title
@@ -29,41 +29,41 @@ def test_each_entry_says_what_it_is_and_where_it_is_from(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_papers_cases_come_first_and_are_the_same_to_the_last_term(name: str) -> None:
+def test_cases_come_first_and_have_identical_terms(name: str) -> None:
     assert list(POTENTIALS)[:3] == list(CASES)
     assert POTENTIALS[name].potential.terms == CASES[name].terms
 
 
 @pytest.mark.parametrize("n", MEMBERS)
-def test_the_family_is_a_cosine_of_the_angle(n: int) -> None:
+def test_family_matches_its_polar_form(n: int) -> None:
     angle, radius = np.linspace(0.0, 6.0, 25), 1.3
     value = channel_family(n).value(radius * np.cos(angle), radius * np.sin(angle))
     np.testing.assert_allclose(value, 0.5 * radius**2 - radius**n * np.cos(n * angle) / n, atol=1e-11)
 
 
 @pytest.mark.parametrize("n", range(3, 9))
-def test_coefficients_of_the_family_are_exact(n: int) -> None:
+def test_family_coefficients_match_sympy(n: int) -> None:
     exact = sympy.Poly((X**2 + Y**2) / 2 - sympy.re(sympy.expand((X + sympy.I * Y) ** n)) / n, X, Y)
     assert {(i, j): c for i, j, c in channel_family(n).terms} == {powers: float(c) for powers, c in exact.terms()}
 
 
 @pytest.mark.parametrize("n", MEMBERS)
-def test_the_family_has_its_saddles_at_the_corners_of_a_polygon(n: int) -> None:
+def test_family_saddles_form_a_regular_polygon(n: int) -> None:
     angle = 2.0 * np.pi * np.arange(n) / n
     np.testing.assert_allclose(channel_family(n).saddles, np.column_stack([np.cos(angle), np.sin(angle)]), atol=1e-12)
 
 
 @pytest.mark.parametrize("n", MEMBERS)
-def test_escape_energy_of_the_family(n: int) -> None:
+def test_family_escape_energy(n: int) -> None:
     assert channel_family(n).escape_energy == pytest.approx(0.5 - 1.0 / n, rel=1e-13)
 
 
-def test_three_channels_are_case_2() -> None:
+def test_family_with_three_channels_is_case_2() -> None:
     assert channel_family(3) == CASES["II"]
 
 
 @pytest.mark.parametrize("n", [2, 13])
-def test_other_numbers_of_channels_are_refused(n: int) -> None:
+def test_family_size_out_of_range_is_refused(n: int) -> None:
     with pytest.raises(ValueError, match=f"n={n}"):
         channel_family(n)
 
@@ -72,7 +72,7 @@ def test_other_numbers_of_channels_are_refused(n: int) -> None:
     ("name", "channels", "escape_energy"),
     [("HH", 3, 1 / 6), ("Barbanis", 2, 1.1**4 / (8 * 0.11**2)), ("Separable", 2, 1 / 12), ("One exit", 1, 1 / 216)],
 )
-def test_channels_and_escape_energy_of_those_of_the_literature(name: str, channels: int, escape_energy: float) -> None:
+def test_channels_and_escape_energy_of_literature_entries(name: str, channels: int, escape_energy: float) -> None:
     # Barbanis: with V = ½(a² x² + b² y²) − ε x y² the saddles lie at x = b²/2ε and V there is a² b⁴/8ε².
     potential = POTENTIALS[name].potential
     assert potential.channels == channels

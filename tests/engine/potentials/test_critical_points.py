@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from engine.potentials.catalogue import channel_family
-from engine.potentials.critical_points import NotIsolatedError, count_turns, find_critical_points
+from engine.potentials.critical_points import NotIsolatedError, find_critical_points, winding_number
 from engine.potentials.potential import Potential
 from engine.taylor.source.cauchy_products import derivative
 
@@ -26,7 +26,7 @@ def sorted_rows(points: np.ndarray) -> np.ndarray:
 
 
 def intersections(first: list[tuple[int, int, int]], second: list[tuple[int, int, int]]) -> np.ndarray | None:
-    """Points where a line of one family meets one of the other; None when a pair is nearly parallel or points are close."""
+    """Intersections of lines of two families; None if two lines are nearly parallel or two points are close."""
     points = []
     for (a, b, c), (d, e, f) in product(first, second):
         if abs(a * e - b * d) < 0.3 * np.hypot(a, b) * np.hypot(d, e):
@@ -37,7 +37,7 @@ def intersections(first: list[tuple[int, int, int]], second: list[tuple[int, int
 
 
 @given(st.lists(lines, min_size=1, max_size=3), st.lists(lines, min_size=1, max_size=3))
-def test_products_of_lines_meet_exactly_where_the_lines_do(first: list, second: list) -> None:
+def test_products_of_lines_vanish_at_the_intersections(first: list, second: list) -> None:
     expected = intersections(first, second)
     assume(expected is not None)
     p, q = (terms_of(sympy.expand(sympy.prod(a * X + b * Y - c for a, b, c in family))) for family in (first, second))
@@ -45,23 +45,23 @@ def test_products_of_lines_meet_exactly_where_the_lines_do(first: list, second: 
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_as_many_critical_points_as_sympy_counts(seed: int) -> None:
+def test_number_of_critical_points_matches_sympy(seed: int) -> None:
     rng = np.random.default_rng(seed)
     degree = 3 + seed % 2
     value = sum(int(rng.integers(-9, 10)) * X**i * Y**j for i, j in product(range(degree + 1), repeat=2) if 0 < i + j <= degree)
     p, q = sympy.diff(value, X), sympy.diff(value, Y)
     eliminated = sympy.Poly(sympy.resultant(p, q, Y), X)
-    # Simple roots in x: then each real x belongs to one real point, and Sturm's theorem counts them exactly.
+    # All roots in x are simple, so each real x belongs to one real point, and Sturm's theorem counts them exactly.
     assert sympy.gcd(eliminated, eliminated.diff()).degree() == 0
     assert len(find_critical_points(terms_of(p), terms_of(q))) == eliminated.count_roots()
 
 
-def test_points_that_share_an_x_are_all_found() -> None:
+def test_points_with_equal_x_are_all_found() -> None:
     p, q = terms_of(X * (X - 1)), terms_of(sympy.expand(Y * (Y - 2) * (Y + 2)))
     assert len(find_critical_points(p, q)) == 6
 
 
-def test_a_system_without_real_roots_has_none() -> None:
+def test_no_real_roots() -> None:
     assert find_critical_points(terms_of(X**2 + 1), terms_of(Y)).shape == (0, 2)
 
 
@@ -70,7 +70,7 @@ def random_terms(seed: int, degree: int) -> dict[tuple[int, int], float]:
     return {(i, j): rng.normal() for i in range(degree + 1) for j in range(degree + 1 - i) if i + j > 0}
 
 
-def index_of(terms: dict[tuple[int, int], float], points: np.ndarray) -> int:
+def index_sum(terms: dict[tuple[int, int], float], points: np.ndarray) -> int:
     potential = Potential("random", tuple((i, j, c) for (i, j), c in terms.items()))
     vxx, vxy, vyy = potential.hessian(*points.T)
     return int(np.sign(vxx * vyy - vxy**2).sum())
@@ -78,19 +78,19 @@ def index_of(terms: dict[tuple[int, int], float], points: np.ndarray) -> int:
 
 @pytest.mark.parametrize("degree", [3, 5, 8, 12])
 @pytest.mark.parametrize("seed", range(3))
-def test_indices_add_up_to_the_turns_of_the_gradient_far_out(seed: int, degree: int) -> None:
-    # Theorem of Poincaré and Hopf: a saddle, minimum or maximum that is missing would be missed here.
+def test_sum_of_indices_is_the_winding_number(seed: int, degree: int) -> None:
+    # Poincaré–Hopf theorem: it fails if a saddle, minimum or maximum is missing.
     terms = random_terms(seed, degree)
     slopes = derivative(terms, 0), derivative(terms, 1)
     points = find_critical_points(*slopes)
     for radius in (3.0, 300.0):
-        assert index_of(terms, points[np.hypot(*points.T) < radius]) == count_turns(*slopes, radius)
+        assert index_sum(terms, points[np.hypot(*points.T) < radius]) == winding_number(*slopes, radius)
 
 
 @pytest.mark.parametrize("n", [3, 5, 8, 9, 10, 12])
-def test_the_gradient_of_the_family_turns_as_often_as_its_saddles_say(n: int) -> None:
+def test_winding_number_of_the_family(n: int) -> None:
     potential = channel_family(n)
-    assert count_turns(potential.derivative(1, 0), potential.derivative(0, 1), 5.0) == 1 - n == 1 - potential.channels
+    assert winding_number(potential.derivative(1, 0), potential.derivative(0, 1), 5.0) == 1 - n == 1 - potential.channels
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
@@ -104,20 +104,20 @@ def test_points_scale_with_the_polynomials(size: float) -> None:
 
 
 @pytest.mark.parametrize("value", [X**2, X**2 * Y**2, (X**2 + Y**2 - 1) ** 2, (X - Y) ** 2 * (X + 1), (X * Y - 1) ** 2])
-def test_zeros_along_a_curve_are_refused(value: sympy.Expr) -> None:
+def test_roots_along_a_curve_are_refused(value: sympy.Expr) -> None:
     expanded = sympy.expand(value)
     with pytest.raises(NotIsolatedError):
         find_critical_points(terms_of(sympy.diff(expanded, X)), terms_of(sympy.diff(expanded, Y)))
 
 
-def test_a_degenerate_point_is_one_point() -> None:
-    # A monkey saddle: both slopes vanish to second order.
+def test_degenerate_root_is_found_once() -> None:
+    # A monkey saddle: the gradient vanishes to second order.
     points = find_critical_points(terms_of(3 * X**2 - 3 * Y**2), terms_of(-6 * X * Y))
     np.testing.assert_allclose(points, [[0.0, 0.0]], atol=1e-5)
 
 
-def test_a_common_factor_without_real_zeros_hides_nothing() -> None:
-    # V = (r² + 1)²: both slopes vanish on the complex circle r² = −1 and at the origin.
+def test_common_factor_without_real_roots() -> None:
+    # V = (r² + 1)²: the gradient vanishes on the complex circle r² = −1 and at the origin.
     factor = X**2 + Y**2 + 1
     points = find_critical_points(terms_of(sympy.expand(4 * X * factor)), terms_of(sympy.expand(4 * Y * factor)))
     np.testing.assert_allclose(points, [[0.0, 0.0]], atol=1e-12)

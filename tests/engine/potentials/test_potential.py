@@ -37,7 +37,7 @@ def at(expression: sympy.Expr, x: float, y: float) -> float:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_each_case_is_the_papers_polynomial(name: str) -> None:
+def test_cases_match_the_paper(name: str) -> None:
     difference = sympy.nsimplify(expression_of(CASES[name]), rational=True) - (X**2 + Y**2) / 2 - PAPER[name]
     assert sympy.expand(difference) == 0
 
@@ -63,24 +63,24 @@ def test_hessian_agrees_with_sympy(table: dict[tuple[int, int], float], x: float
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_arrays_give_what_single_points_give(name: str) -> None:
+def test_arrays_agree_with_single_points(name: str) -> None:
     x, y = np.random.default_rng(0).uniform(-1, 1, (2, 3, 4))
     singly = [CASES[name].value(a, b) for a, b in zip(x.ravel(), y.ravel(), strict=True)]
     np.testing.assert_array_equal(CASES[name].value(x, y).ravel(), singly)
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_channels_are_numbered_counterclockwise_from_the_x_axis(name: str) -> None:
+def test_saddles_are_ordered_counterclockwise_from_the_x_axis(name: str) -> None:
     np.testing.assert_allclose(CASES[name].saddles, SADDLES[name], atol=1e-13)
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_escape_energy_is_the_papers(name: str) -> None:
+def test_escape_energy_matches_the_paper(name: str) -> None:
     assert CASES[name].escape_energy == pytest.approx(ESCAPE_ENERGY[name], rel=1e-14)
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_all_channels_open_above_the_escape_energy(name: str) -> None:
+def test_all_channels_are_open_above_the_escape_energy(name: str) -> None:
     potential = CASES[name]
     assert potential.open_channels(ESCAPE_ENERGY[name] + 1e-9) == tuple(range(1, potential.channels + 1))
 
@@ -91,7 +91,7 @@ def test_no_channel_is_open_at_or_below_the_escape_energy(name: str, below: floa
     assert CASES[name].open_channels(ESCAPE_ENERGY[name] - below) == ()
 
 
-def test_saddles_of_unequal_height_open_one_after_the_other() -> None:
+def test_saddles_of_different_energies_open_separately() -> None:
     # V_x = x − x²/2 − x³/2 vanishes at x = 1 and x = −2, each a maximum along x and a minimum along y.
     lopsided = Potential("lopsided", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, -1 / 6), (4, 0, -1 / 8)))
     energies = lopsided.saddle_energies
@@ -99,7 +99,7 @@ def test_saddles_of_unequal_height_open_one_after_the_other() -> None:
     assert lopsided.open_channels(0.5 * energies.sum()) == (int(np.argmin(energies)) + 1,)
 
 
-def test_potential_without_saddle_never_lets_anything_escape() -> None:
+def test_escape_energy_without_saddles_is_infinite() -> None:
     assert Potential("harmonic", ((2, 0, 0.5), (0, 2, 0.5))).escape_energy == np.inf
 
 
@@ -108,7 +108,7 @@ def test_energy_is_kinetic_plus_potential() -> None:
     assert CASES["II"].energy(state) == pytest.approx(0.5 * (0.16 + 0.25) + CASES["II"].value(0.3, -0.2), rel=1e-15)
 
 
-def test_name_makes_no_difference() -> None:
+def test_equality_ignores_the_name() -> None:
     assert Potential("another name", CASES["I"].terms) == CASES["I"]
 
 
@@ -118,35 +118,35 @@ def test_malformed_terms_are_refused(terms: tuple[tuple[int, int, float], ...]) 
         Potential("malformed", terms)
 
 
-def test_a_saddle_from_which_nothing_falls_into_the_well_is_no_channel() -> None:
-    # Along x the well ends at the saddle x = 0.434; past the minimum at 1.441 nothing leads back.
+def test_saddle_not_connected_to_the_well_is_no_channel() -> None:
+    # On the x axis the well ends at the saddle x = 0.434; the saddle at x = 1.441 lies beyond it and does not lead into the well.
     beyond = Potential("beyond", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, -1.0), (4, 0, 0.4), (2, 2, -1.0)))
     assert len(beyond.critical_points) == 5
     assert beyond.channels == 3
 
 
-def test_without_a_well_at_the_origin_there_is_no_channel() -> None:
+def test_no_channels_without_a_well_at_the_origin() -> None:
     assert Potential("saddle", ((2, 0, 0.5), (0, 2, -0.5))).channels == 0
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_parameters_of_one_are_the_potential_itself(name: str) -> None:
+def test_default_parameters_change_nothing(name: str) -> None:
     same = CASES[name].with_parameters()
     assert (same, same.name) == (CASES[name], name)
 
 
-def test_parameters_stand_where_the_paper_has_them() -> None:
+def test_parameters_match_the_paper() -> None:
     changed = CASES["II"].with_parameters(omega_1=1.2, omega_2=0.9, epsilon=0.8)
     expression = (sympy.Float(1.44, 30) * X**2 + sympy.Float(0.81, 30) * Y**2) / 2 + sympy.Rational(4, 5) * PAPER["II"]
     assert changed.value(0.3, -0.4) == pytest.approx(at(expression, 0.3, -0.4), rel=1e-14)
 
 
-def test_parameters_other_than_one_are_in_the_name() -> None:
+def test_name_includes_parameters_other_than_one() -> None:
     assert CASES["I"].with_parameters(omega_1=1.2, epsilon=0.8).name == "I (ω1=1.2, ε=0.8)"
 
 
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), st.floats(0.01, 100.0))
-def test_saddles_of_case_1_follow_the_parameters(a: float, b: float, epsilon: float) -> None:
+def test_case_1_saddles_for_other_parameters(a: float, b: float, epsilon: float) -> None:
     # V_y = (b² − 2 ε x) y and V_x = a² x − ε y² vanish at x = b²/2ε, y = ± a b/(√2 ε); V there is a² b⁴/8ε².
     potential = CASES["I"].with_parameters(a, b, epsilon)
     x, y = b**2 / (2 * epsilon), a * b / (np.sqrt(2) * epsilon)
@@ -164,22 +164,22 @@ def test_parameters_out_of_range_are_refused(parameter: str, value: float) -> No
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_papers_wells_are_of_unit_length(name: str) -> None:
+def test_cases_have_unit_length(name: str) -> None:
     assert CASES[name].length == 1.0
 
 
 @pytest.mark.parametrize(("epsilon", "length"), [(1 / 64, 64.0), (1.0, 1.0), (64.0, 1 / 64)])
-def test_the_length_of_a_cubic_well_is_that_of_its_strength(epsilon: float, length: float) -> None:
+def test_length_of_a_cubic_well_depends_on_its_strength(epsilon: float, length: float) -> None:
     assert CASES["II"].with_parameters(epsilon=epsilon).length == length
 
 
-def test_in_units_of_its_length_a_well_is_of_unit_length() -> None:
+def test_in_units_of_its_length_case_2_is_unchanged() -> None:
     potential = CASES["II"].with_parameters(epsilon=1 / 64)
     assert potential.in_units(64.0) == CASES["II"]
 
 
 @given(polynomials, places, places)
-def test_mirror_images_have_the_same_potential_to_the_bit(table: dict[tuple[int, int], float], x: float, y: float) -> None:
+def test_mirror_images_have_exactly_the_same_potential(table: dict[tuple[int, int], float], x: float, y: float) -> None:
     even = potential_of({(2 * i, 2 * j): c for (i, j), c in table.items()})
     points = np.array([x, -x, x, -x]), np.array([y, y, -y, -y])
     assert np.unique(even.value(*points)).size == 1

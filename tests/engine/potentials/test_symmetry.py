@@ -18,5 +18,5 @@ from engine.potentials.symmetry import count_rotations
         ("r²/2 + r²xy", 2),
     ],
 )
-def test_rotations_are_counted(formula: str, n: int) -> None:
+def test_number_of_rotations(formula: str, n: int) -> None:
     assert count_rotations(parse_formula(formula)) == n

@@ -12,12 +12,12 @@ from engine.potentials.validation_report import PointKind, review_potential
 
 
 @pytest.mark.parametrize("name", POTENTIALS)
-def test_every_potential_that_comes_with_the_engine_is_accepted(name: str) -> None:
+def test_all_catalogue_potentials_are_accepted(name: str) -> None:
     assert review_potential(POTENTIALS[name].potential).refusal is None
 
 
 @pytest.mark.parametrize(
-    ("formula", "missing"),
+    ("formula", "reason"),
     [
         ("x²/2", "along a curve"),
         ("x²y²", "along a curve"),
@@ -30,85 +30,85 @@ def test_every_potential_that_comes_with_the_engine_is_accepted(name: str) -> No
         ("x + r²", "linear terms"),
     ],
 )
-def test_what_cannot_be_used_is_refused_for_what_is_missing(formula: str, missing: str) -> None:
+def test_invalid_potentials_are_refused_with_the_reason(formula: str, reason: str) -> None:
     refusal = review_potential(parse_formula(formula)).refusal
     assert refusal is not None
-    assert missing in refusal
+    assert reason in refusal
 
 
-def test_a_well_elsewhere_is_named_with_the_formula_seen_from_there() -> None:
+def test_refusal_gives_a_well_elsewhere_and_the_shifted_formula() -> None:
     refusal = review_potential(parse_formula("((x−1)² + y²)/2 − (x−1)y²")).refusal
     assert refusal is not None
     assert "(1, 0)" in refusal
     assert "x²/2 + y²/2 − xy²" in refusal
 
 
-def test_a_flat_point_away_from_the_well_is_refused() -> None:
+def test_degenerate_point_outside_the_well_is_refused() -> None:
     # V_x = x (1 − x)² touches 0 at x = 1.
     refusal = review_potential(parse_formula("y²/2 + x²/2 − 2x³/3 + x⁴/4")).refusal
     assert refusal is not None
-    assert "flat to second order at (1, 0)" in refusal
+    assert "degenerate critical point at (1, 0)" in refusal
 
 
-def test_degree_beyond_the_highest_is_refused() -> None:
+def test_too_high_degree_is_refused() -> None:
     refusal = review_potential(Potential("steep", ((2, 0, 0.5), (0, 2, 0.5), (7, 7, -1.0)))).refusal
     assert refusal is not None
     assert "degree 14" in refusal
 
 
 @pytest.mark.parametrize("n", [3, 5, 8, 12])
-def test_the_family_has_a_minimum_n_saddles_and_nothing_else(n: int) -> None:
+def test_family_has_one_minimum_and_n_saddles(n: int) -> None:
     kinds = [point.kind for point in review_potential(channel_family(n)).critical_points]
     assert kinds == [PointKind.MINIMUM, *[PointKind.SADDLE] * n]
 
 
 @pytest.mark.parametrize("n", [3, 5, 8])
-def test_symmetries_of_the_family(n: int) -> None:
+def test_family_symmetries(n: int) -> None:
     review = review_potential(channel_family(n))
     assert (review.mirror_in_x, review.mirror_in_y, review.rotations) == (n % 2 == 0, True, n)
 
 
-def test_a_saddle_elsewhere_is_no_channel() -> None:
-    # Beyond the exit at x = 0.43 lies a second critical region whose saddle at x = 1.44 leads nowhere from the well.
+def test_saddle_not_connected_to_the_well_is_no_channel() -> None:
+    # Beyond the exit at x = 0.43 there is another saddle at x = 1.44, which is not connected to the well.
     review = review_potential(parse_formula("r²/2 − x³ + 0.4x⁴ − x²y²"))
     elsewhere = [point for point in review.critical_points if point.kind is PointKind.SADDLE and not point.channel]
     assert [round(point.x, 4) for point in elsewhere] == [1.4414]
     assert review.channels == 3
 
 
-def test_another_well_beyond_an_exit_is_remarked() -> None:
+def test_remark_on_another_well() -> None:
     remarks = review_potential(parse_formula("r²/2 − x³ + 0.4x⁴")).remarks
     assert any("other wells, at (1.44139, 0)" in remark for remark in remarks)
 
 
-def test_channels_of_different_heights_are_remarked_in_their_order() -> None:
+def test_remark_on_channels_of_different_energies() -> None:
     remarks = review_potential(parse_formula("r²/2 − x³/6 − x⁴/8")).remarks
-    assert "The channels open one after the other: 1 above 0.208333, 2 above 1.33333." in remarks
+    assert "The channels open at different energies: 1 above 0.208333, 2 above 1.33333." in remarks
 
 
-def test_the_maximum_between_two_exits_bounds_the_energy() -> None:
-    # In u = x + y and v = x − y it is ¼(u² + v²) + (u³ + v³)/6: both exits join at the maximum u = v = −1, of energy 1/6.
+def test_maximum_between_two_exits_sets_the_highest_energy() -> None:
+    # In u = x + y and v = x − y, V = ¼(u² + v²) + (u³ + v³)/6: the exits merge at the maximum u = v = −1, at energy 1/6.
     assert review_potential(POTENTIALS["Separable"].potential).highest_energy == pytest.approx(1 / 6, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["I", "II", "III", "C5", "C8"])
-def test_nothing_bounds_the_energy_where_there_is_no_other_critical_point(name: str) -> None:
+def test_highest_energy_is_infinite_without_other_critical_points(name: str) -> None:
     assert review_potential(POTENTIALS[name].potential).highest_energy == np.inf
 
 
-def test_an_odd_power_of_y_is_remarked() -> None:
+def test_remark_on_an_odd_power_of_y() -> None:
     assert any("not even in y" in remark for remark in review_potential(POTENTIALS["HH"].potential).remarks)
 
 
 @pytest.mark.parametrize("epsilon", [0.01, 100.0])
-def test_large_and_small_wells_are_reviewed_alike(epsilon: float) -> None:
+def test_review_does_not_depend_on_the_size_of_the_well(epsilon: float) -> None:
     potential = POTENTIALS["C5"].potential
     scaled, usual = review_potential(potential.with_parameters(epsilon=epsilon)), review_potential(potential)
     assert (scaled.refusal, scaled.channels, scaled.rotations, scaled.remarks) == (None, usual.channels, usual.rotations, ())
 
 
 @pytest.mark.parametrize("formula", ["x²/2", "r⁴ − 2r²", "(x²y² − 1)² + (x − y)²", "(r² − 1)²(r² − 4)²/50 + x²/9"])
-def test_the_review_takes_no_time_to_speak_of(formula: str) -> None:
+def test_review_is_fast(formula: str) -> None:
     potential = parse_formula(formula)
     begin = time.process_time()
     review_potential(potential)

@@ -24,21 +24,21 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.dynamics.lyapunov_orbits import find_outside_exits
-from engine.statistics.decay_laws import FEWEST_ESCAPES
-from engine.statistics.escape_statistics import SURVIVAL_POINTS
+from engine.dynamics.lyapunov_orbits import find_outside_channels
+from engine.statistics.decay_laws import MIN_ESCAPES
+from engine.statistics.escape_statistics import MAX_SURVIVAL_POINTS
 
 T_LOW, T_HIGH = 2.0, 1e4
 KAPPA, GAMMA = 0.05, 1.5
 WINDOW = (T_LOW, T_HIGH)
-# A window that cuts off a good part of what would leave later.
+# A window that cuts off many later escapes.
 SHORT = (T_LOW, 20.0)
 SEEDS = 100
 EPSILON = 1e-12
 
 
 def statistics_of(times: np.ndarray, *, bounded: int = 0, undecided: int = 0) -> EscapeStatistics:
-    """Of a map whose orbits leave at these times."""
+    """Statistics of a map with escapes at these times."""
     return EscapeStatistics((times.size,), bounded, undecided, 0, 0.0, 0.0, np.zeros(0, np.int64), times)
 
 
@@ -91,27 +91,27 @@ def many_power() -> list[LawFit]:
 # Survival.
 
 
-def test_survival_steps_down_at_every_escape() -> None:
+def test_survival_decreases_at_every_escape() -> None:
     times, survival = compute_survival(statistics_of(np.array([3.0, 1.0, 3.0, 2.0]), bounded=4))
     assert times.tolist() == [1.0, 2.0, 3.0]
     assert survival.tolist() == [7 / 8, 6 / 8, 4 / 8]
 
 
-def test_a_long_survival_curve_is_thinned_and_stays_exact() -> None:
+def test_a_long_survival_curve_is_subsampled_exactly() -> None:
     escapes = power_times(20_000)
     times, survival = compute_survival(statistics_of(escapes, bounded=100))
-    assert 0.5 * SURVIVAL_POINTS < times.size <= SURVIVAL_POINTS
+    assert 0.5 * MAX_SURVIVAL_POINTS < times.size <= MAX_SURVIVAL_POINTS
     assert (times[0], times[-1]) == (escapes.min(), escapes.max())
     still_inside = np.array([np.count_nonzero(escapes > t) for t in times]) + 100
     np.testing.assert_allclose(survival, still_inside / 20_100, rtol=0, atol=EPSILON)
 
 
-def test_survival_is_empty_where_nothing_leaves() -> None:
+def test_survival_is_empty_without_escapes() -> None:
     times, survival = compute_survival(statistics_of(np.zeros(0), bounded=5))
     assert times.size == survival.size == 0
 
 
-def test_the_arrays_are_read_only_and_counted(exponential: DecayLaws) -> None:
+def test_arrays_are_read_only_and_count_as_bytes(exponential: DecayLaws) -> None:
     assert not exponential.times.flags.writeable
     assert not exponential.survival.flags.writeable
     assert exponential.nbytes == 16 * exponential.times.size
@@ -138,8 +138,8 @@ def test_the_exponent_of_a_power_law_is_recovered(window: tuple[float, float]) -
     assert laws.preferred is DecayLaw.POWER_LAW
 
 
-def test_the_rates_maximise_the_likelihood() -> None:
-    """The likelihoods written out, and maximised by another method."""
+def test_rates_maximise_the_likelihood() -> None:
+    """Compared with a numerical maximisation of the explicit likelihoods."""
     times, (low, high) = power_times(700, window=SHORT), SHORT
 
     def exponential_loss(kappa: float) -> float:
@@ -155,14 +155,14 @@ def test_the_rates_maximise_the_likelihood() -> None:
     assert laws.ratio == pytest.approx(best[1].fun - best[0].fun, abs=1e-8)
 
 
-def test_escapes_that_grow_more_frequent_have_a_rate_below_zero() -> None:
+def test_increasingly_frequent_escapes_have_a_negative_rate() -> None:
     low, high = SHORT
     mirrored = low + high - exponential_times(2000, window=SHORT)
     forward, backward = (both(fit(times, SHORT))[0].rate for times in (exponential_times(2000, window=SHORT), mirrored))
     assert backward == pytest.approx(-forward, rel=1e-9)
 
 
-def test_orbits_that_never_leave_change_no_rate() -> None:
+def test_bounded_orbits_do_not_affect_the_rates() -> None:
     times = power_times(400)
     alone, among_many = (fit_decay_laws(statistics_of(times, bounded=n), T_HIGH, window=WINDOW) for n in (0, 10**6))
     assert [fitted.rate for fitted in both(alone)] == [fitted.rate for fitted in both(among_many)]
@@ -175,7 +175,7 @@ def test_mirror_images_count_once() -> None:
     assert [(f.rate, f.low, f.high, f.p_value) for f in both(once)] == [(f.rate, f.low, f.high, f.p_value) for f in both(twice)]
 
 
-def test_longer_time_units_divide_kappa_and_leave_gamma() -> None:
+def test_the_time_unit_scales_kappa_and_not_gamma() -> None:
     times, factor = power_times(800), 50.0
     plain = both(fit_decay_laws(statistics_of(times), T_HIGH))
     scaled = both(fit_decay_laws(statistics_of(factor * times), factor * T_HIGH))
@@ -186,33 +186,33 @@ def test_longer_time_units_divide_kappa_and_leave_gamma() -> None:
 # Intervals and p values.
 
 
-def test_intervals_of_kappa_hold_the_truth(many_exponential: list[LawFit]) -> None:
+def test_intervals_of_kappa_have_good_coverage(many_exponential: list[LawFit]) -> None:
     assert sum(fitted.low <= KAPPA <= fitted.high for fitted in many_exponential) >= 0.88 * SEEDS
 
 
-def test_intervals_of_gamma_hold_the_truth(many_power: list[LawFit]) -> None:
+def test_intervals_of_gamma_have_good_coverage(many_power: list[LawFit]) -> None:
     assert sum(fitted.low <= GAMMA <= fitted.high for fitted in many_power) >= 0.88 * SEEDS
 
 
-def test_intervals_are_no_wider_than_they_must(many_exponential: list[LawFit]) -> None:
+def test_intervals_have_the_width_of_the_scatter(many_exponential: list[LawFit]) -> None:
     spread = np.std([fitted.rate for fitted in many_exponential])
     half_width = np.mean([fitted.high - fitted.low for fitted in many_exponential]) / 2.0
     assert half_width / spread == pytest.approx(1.96, rel=0.2)
 
 
-def test_p_values_of_the_true_law_are_even(many_exponential: list[LawFit], many_power: list[LawFit]) -> None:
+def test_p_values_of_the_true_law_are_uniform(many_exponential: list[LawFit], many_power: list[LawFit]) -> None:
     p_values = np.array([fitted.p_value for fitted in (*many_exponential, *many_power)])
     assert np.mean(p_values < 0.1) == pytest.approx(0.1, abs=0.07)
     assert np.mean(p_values < 0.5) == pytest.approx(0.5, abs=0.11)
 
 
-def test_p_values_of_large_samples_are_even() -> None:
-    """Beyond the size of the samples that are drawn for comparison."""
+def test_p_values_of_large_samples_are_uniform() -> None:
+    """For samples larger than those of the parametric bootstrap."""
     p_values = [both(fit(exponential_times(5000, seed)))[0].p_value for seed in range(30)]
     assert np.mean(np.array(p_values) < 0.5) == pytest.approx(0.5, abs=0.3)
 
 
-def test_the_distance_is_that_of_kolmogorov_and_smirnov(exponential: DecayLaws) -> None:
+def test_the_distance_is_the_kolmogorov_smirnov_distance(exponential: DecayLaws) -> None:
     fitted, _ = both(exponential)
     times = np.sort(exponential_times(5000))
     share = 1.0 - np.exp(-fitted.rate * (times - T_LOW))
@@ -220,7 +220,7 @@ def test_the_distance_is_that_of_kolmogorov_and_smirnov(exponential: DecayLaws) 
     assert fitted.distance == pytest.approx(max(np.max(steps[1:] - share), np.max(share - steps[:-1])), abs=1e-9)
 
 
-def test_one_seed_gives_one_answer_in_any_order() -> None:
+def test_the_order_of_the_escapes_does_not_matter() -> None:
     times = power_times(500)
     assert fit(times).describe() == fit(times[::-1].copy()).describe()
 
@@ -228,8 +228,8 @@ def test_one_seed_gives_one_answer_in_any_order() -> None:
 # The choice of the window.
 
 
-def test_a_chosen_window_leaves_a_burst_out() -> None:
-    """As many direct escapes, of other times, as escapes that follow the law."""
+def test_a_chosen_window_excludes_an_early_burst() -> None:
+    """Half of the escapes follow another distribution at early times."""
     held = []
     for seed in range(20):
         burst = np.random.default_rng(seed).gamma(4.0, 1.5, 2000)
@@ -240,69 +240,69 @@ def test_a_chosen_window_leaves_a_burst_out() -> None:
     assert sum(held) >= 16
 
 
-def test_a_law_that_holds_from_the_start_is_fitted_to_the_later_half() -> None:
+def test_a_law_that_always_holds_is_fitted_to_the_later_half() -> None:
     laws = fit(exponential_times(2000, 4), None)
     assert laws.settled
     assert laws.escapes == pytest.approx(1000, rel=0.01)
 
 
-def test_no_law_is_preferred_where_no_window_is_found() -> None:
-    """Eight bursts, each three times as late as the one before."""
+def test_no_law_is_preferred_without_a_window() -> None:
+    """Eight bursts, each three times later than the previous one."""
     times = np.concatenate([np.linspace(0.9, 1.0, 400) * 3.0**k for k in range(8)])
     laws = fit(times, None)
     assert not laws.settled
     assert laws.preferred is None
-    assert laws.describe().startswith("Neither law holds from any time on")
+    assert laws.describe().startswith("Neither law holds in any window")
 
 
-# What is claimed.
+# Conclusions.
 
 
-def test_a_mixture_is_neither_law() -> None:
-    """Exponential at first, a power law in the end: over the whole of it both fit badly."""
+def test_a_mixture_follows_neither_law() -> None:
+    """An exponential followed by a power law, which neither law fits."""
     laws = fit(np.concatenate([exponential_times(3000, kappa=0.5), power_times(1000, gamma=1.0)]))
     assert all(fitted.p_value < 0.1 for fitted in both(laws))
     assert laws.preferred is None
     assert laws.describe().startswith("Neither law holds (")
 
 
-def test_even_escapes_are_no_decay() -> None:
+def test_uniform_escapes_do_not_decay() -> None:
     laws = fit(np.random.default_rng(3).uniform(*WINDOW, 3000))
     fitted, _ = both(laws)
     assert fitted.low < 0.0 < fitted.high
     assert laws.preferred is None
 
 
-def test_over_a_short_window_no_law_is_preferred() -> None:
+def test_a_short_window_does_not_decide_between_the_laws() -> None:
     window = (T_LOW, 1.1 * T_LOW)
     laws = fit(exponential_times(200, window=window, kappa=10.0), window)
     assert laws.preferred is None
     assert laws.ratio_low < 0.0 < laws.ratio_high
-    assert "both may hold" in laws.describe()
+    assert laws.describe().startswith("The data do not decide between the two laws (")
 
 
 def test_too_few_escapes_give_no_fit() -> None:
-    laws = fit(exponential_times(FEWEST_ESCAPES - 1))
+    laws = fit(exponential_times(MIN_ESCAPES - 1))
     assert (laws.exponential, laws.power_law, laws.preferred) == (None, None, None)
     assert np.isnan(laws.ratio)
-    assert f"{FEWEST_ESCAPES - 1} escapes" in laws.describe()
+    assert f"{MIN_ESCAPES - 1} escapes" in laws.describe()
 
 
-def test_a_fit_begins_at_the_fewest_escapes() -> None:
-    assert fit(exponential_times(FEWEST_ESCAPES)).exponential is not None
+def test_the_smallest_number_of_escapes_gives_a_fit() -> None:
+    assert fit(exponential_times(MIN_ESCAPES)).exponential is not None
 
 
-def test_twice_as_many_are_needed_to_choose_a_window() -> None:
-    few, enough = (fit(exponential_times(n), None) for n in (2 * FEWEST_ESCAPES - 1, 2 * FEWEST_ESCAPES + 1))
+def test_choosing_a_window_takes_twice_as_many_escapes() -> None:
+    few, enough = (fit(exponential_times(n), None) for n in (2 * MIN_ESCAPES - 1, 2 * MIN_ESCAPES + 1))
     assert few.exponential is None
     assert np.isnan(few.t_low)
     assert enough.exponential is not None
 
 
-def test_nothing_is_fitted_while_orbits_are_under_way() -> None:
+def test_undecided_orbits_prevent_a_fit() -> None:
     laws = fit_decay_laws(statistics_of(exponential_times(500), undecided=3), T_HIGH, window=WINDOW)
     assert (laws.exponential, laws.power_law) == (None, None)
-    assert "3 orbits are under way" in laws.describe()
+    assert "3 orbits are undecided" in laws.describe()
 
 
 def test_a_map_without_escapes_has_no_law() -> None:
@@ -317,13 +317,13 @@ def test_the_exponential_is_described_with_its_interval(exponential: DecayLaws) 
     assert "A power law is less likely and ruled out" in sentence
 
 
-def test_the_power_law_is_described_with_its_span(power_law: DecayLaws) -> None:
+def test_the_power_law_is_described_with_its_range(power_law: DecayLaws) -> None:
     decades = np.log10(power_law.times[-1] / T_LOW)
     assert power_law.describe().startswith(f"Power law over {decades:.1f} decades: γ = ")
 
 
 @pytest.mark.parametrize("name", ["exponential", "power_law"])
-def test_the_curve_of_a_law_follows_the_survival(name: str, request: pytest.FixtureRequest) -> None:
+def test_the_curve_of_a_law_agrees_with_the_survival(name: str, request: pytest.FixtureRequest) -> None:
     laws: DecayLaws = request.getfixturevalue(name)
     fitted: LawFit = getattr(laws, name)
     inside = (laws.times >= T_LOW) & (laws.times <= T_HIGH)
@@ -364,11 +364,11 @@ def test_a_cancelled_fit_raises() -> None:
 
 
 def random_starts(potential: Potential, energy: float, count: int, seed: int) -> tuple[np.ndarray, float]:
-    """(count, 4) states spread evenly over the energy surface inside the exits, and the area of the plane they fill."""
+    """(count, 4) states uniform on the energy surface inside the exits, and the area of the (x, y) plane they cover."""
     rng, side = np.random.default_rng(seed), 3.2
     x, y = rng.uniform(-side / 2, side / 2, (2, 8 * count))
     kinetic = energy - potential.value(x, y)
-    inside = (kinetic > 0.0) & (find_outside_exits(potential, energy, x, y) == 0)
+    inside = (kinetic > 0.0) & (find_outside_channels(potential, energy, x, y) == 0)
     area = side**2 * float(np.mean(inside))
     x, y, speed = x[inside][:count], y[inside][:count], np.sqrt(2.0 * kinetic[inside][:count])
     angle = rng.uniform(0.0, 2.0 * np.pi, count)
@@ -376,8 +376,8 @@ def random_starts(potential: Potential, energy: float, count: int, seed: int) ->
 
 
 @pytest.mark.parametrize(("energy", "earlier", "later"), [(0.2, 60.0, 200.0), (0.3, 12.0, 30.0)])
-def test_the_rate_of_a_map_is_that_of_random_starts(energy: float, earlier: float, later: float) -> None:
-    """The rate of a hyperbolic escape does not depend on where the starts are; here the slope of ln S tells it."""
+def test_the_rate_of_a_map_agrees_with_random_starts(energy: float, earlier: float, later: float) -> None:
+    """The rate of a hyperbolic escape does not depend on the starts; for random ones it is the slope of ln S."""
     laws = fit_decay_laws(compute_statistics(compute_map(MapSpec(CASES["II"], Plane.X_PX, energy, t_max=1e4))), 1e4)
     fitted, _ = both(laws)
     states, _ = random_starts(CASES["II"], energy, 40_000, 11)
@@ -389,8 +389,8 @@ def test_the_rate_of_a_map_is_that_of_random_starts(energy: float, earlier: floa
     assert fitted.rate == pytest.approx(slope, abs=3.0 * np.hypot(error, (fitted.high - fitted.low) / 3.92))
 
 
-def test_survival_begins_with_the_flux_through_the_exits() -> None:
-    """Until orbits that entered could leave: gone by t are t · (actions of the Lyapunov orbits) / (2π · area) (MacKay 1990)."""
+def test_the_initial_decay_is_the_flux_through_the_exits() -> None:
+    """At small t the escaped share is t · (sum of the actions of the Lyapunov orbits) / (2π · area) (MacKay 1990)."""
     energy, t = 0.2, 2.0
     states, area = random_starts(CASES["II"], energy, 40_000, 12)
     outcomes = classify_orbits(CASES["II"], energy, states, t)
@@ -401,8 +401,8 @@ def test_survival_begins_with_the_flux_through_the_exits() -> None:
     assert 1.0 - survival[-1] == pytest.approx(t * actions / (2.0 * np.pi * area), rel=0.06)
 
 
-def test_starts_of_a_grid_scatter_as_independent_draws_would() -> None:
-    """Sixteen grids, shifted by parts of a pixel: their rates scatter as the bootstrap of one of them says."""
+def test_rates_of_shifted_grids_scatter_like_independent_samples() -> None:
+    """Rates from sixteen grids, shifted by fractions of a pixel, scatter as much as the bootstrap interval of one of them."""
     whole, side, rng = MapSpec(CASES["II"], Plane.X_PX, 0.3).window, 80, np.random.default_rng(7)
     pixel = (whole.x_high - whole.x_low) / side
     fits = []

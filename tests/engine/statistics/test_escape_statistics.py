@@ -13,7 +13,7 @@ SIDE = 60
 
 @pytest.fixture(scope="module")
 def whole() -> EscapeMap:
-    """Some leave at once, some late, some never."""
+    """A map with early escapes, late escapes and bounded orbits."""
     return compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3))
 
 
@@ -24,7 +24,7 @@ def statistics(whole: EscapeMap) -> EscapeStatistics:
 
 @pytest.fixture(scope="module")
 def under_way() -> EscapeMap:
-    """The first frame that knows some escapes while other orbits are still followed."""
+    """The first frame with some escapes and undecided orbits."""
     frames: list[EscapeMap] = []
     cancel = threading.Event()
 
@@ -41,7 +41,7 @@ def empty(frame: EscapeMap) -> EscapeStatistics:
 
 
 def with_times(frame: EscapeMap, times: list[float]) -> EscapeStatistics:
-    """The statistics of a map in which one orbit leaves at each of these times, and no other."""
+    """Statistics of a map in which one orbit escapes at each of these times and no other."""
     fate, escape_time = np.zeros(frame.fate.size, np.int8), np.full(frame.fate.size, np.nan)
     fate[: len(times)], escape_time[: len(times)] = 1, times
     shape = frame.fate.shape
@@ -60,21 +60,21 @@ def test_shares_are_the_fractions_of_the_map(whole: EscapeMap, statistics: Escap
     assert statistics.shares == whole.fractions()
 
 
-def test_direct_escapes_leave_without_crossing(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+def test_direct_escapes_have_no_crossing(whole: EscapeMap, statistics: EscapeStatistics) -> None:
     assert statistics.direct == np.count_nonzero((whole.fate >= 1) & (whole.crossings == 0))
     assert 0 < statistics.direct < statistics.escaped
 
 
-def test_direct_share_is_out_of_all_starts(statistics: EscapeStatistics) -> None:
+def test_direct_share_is_relative_to_all_starts(statistics: EscapeStatistics) -> None:
     assert statistics.direct_share == statistics.direct / statistics.starts
 
 
-def test_times_are_those_of_the_orbits_that_left(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+def test_mean_and_median_are_over_the_escapes(whole: EscapeMap, statistics: EscapeStatistics) -> None:
     assert statistics.mean_escape_time == pytest.approx(np.nanmean(whole.escape_time))
     assert statistics.median_escape_time == np.nanmedian(whole.escape_time)
 
 
-def test_failed_orbits_are_no_outcome(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+def test_failed_orbits_are_not_decided(whole: EscapeMap, statistics: EscapeStatistics) -> None:
     fate = np.where(whole.fate == Fate.BOUNDED, Fate.FAILED, whole.fate).astype(np.int8)
     broken = compute_statistics(replace(whole, fate=fate))
     assert (broken.failed, broken.bounded) == (statistics.bounded, 0)
@@ -82,7 +82,7 @@ def test_failed_orbits_are_no_outcome(whole: EscapeMap, statistics: EscapeStatis
     assert broken.decided == statistics.escaped
 
 
-def test_arrays_cannot_be_written_to(statistics: EscapeStatistics) -> None:
+def test_arrays_are_read_only(statistics: EscapeStatistics) -> None:
     arrays = (
         statistics.crossing_counts,
         statistics.escape_times,
@@ -92,27 +92,27 @@ def test_arrays_cannot_be_written_to(statistics: EscapeStatistics) -> None:
     assert not any(array.flags.writeable for array in arrays)
 
 
-# Probabilities of leaving with the n-th crossing.
+# Probabilities of escape after the n-th crossing.
 
 
-def test_crossing_counts_add_up_to_all_that_left(statistics: EscapeStatistics) -> None:
+def test_crossing_counts_add_up_to_all_escapes(statistics: EscapeStatistics) -> None:
     assert statistics.crossing_counts.sum() == statistics.escaped
     assert statistics.crossing_counts[-1] > 0
 
 
-def test_each_probability_is_out_of_those_still_inside(statistics: EscapeStatistics) -> None:
+def test_each_probability_is_relative_to_the_orbits_still_inside(statistics: EscapeStatistics) -> None:
     inside = statistics.starts
     for n, left in enumerate(statistics.crossing_counts):
         assert statistics.escape_probabilities[n] == left / inside
         inside -= left
 
 
-def test_whoever_never_leaves_is_the_product_of_staying_each_time(statistics: EscapeStatistics) -> None:
+def test_the_bounded_share_is_the_product_of_all_probabilities_of_staying(statistics: EscapeStatistics) -> None:
     staying = np.prod(1.0 - statistics.escape_probabilities)
     assert staying == pytest.approx(statistics.bounded / statistics.starts, rel=1e-12)
 
 
-def test_where_all_leave_the_last_probability_is_one(whole: EscapeMap) -> None:
+def test_the_last_probability_is_1_if_all_orbits_escape(whole: EscapeMap) -> None:
     fate = np.where(whole.fate == Fate.BOUNDED, Fate.FORBIDDEN, whole.fate).astype(np.int8)
     assert compute_statistics(replace(whole, fate=fate)).escape_probabilities[-1] == 1.0
 
@@ -127,7 +127,7 @@ def test_halves_of_a_symmetric_map_have_equal_statistics(whole: EscapeMap) -> No
     np.testing.assert_array_equal(left.crossing_counts, right.crossing_counts)
 
 
-def test_a_window_holds_the_pixels_whose_centres_lie_in_it(whole: EscapeMap) -> None:
+def test_a_window_selects_pixels_by_their_centres(whole: EscapeMap) -> None:
     x, px = whole.x, whole.ordinate
     part = compute_statistics(whole, Window(x[10], x[29], px[20], px[24]))
     fate = whole.fate[20:25, 10:30]
@@ -135,7 +135,7 @@ def test_a_window_holds_the_pixels_whose_centres_lie_in_it(whole: EscapeMap) -> 
     np.testing.assert_array_equal(part.escape_times, whole.escape_time[20:25, 10:30][fate >= 1])
 
 
-def test_a_window_larger_than_the_map_holds_all_of_it(whole: EscapeMap, statistics: EscapeStatistics) -> None:
+def test_a_window_larger_than_the_map_selects_all_pixels(whole: EscapeMap, statistics: EscapeStatistics) -> None:
     assert compute_statistics(whole, Window(-9.0, 9.0, -9.0, 9.0)).shares == statistics.shares
 
 
@@ -149,24 +149,24 @@ def test_a_window_without_pixels_has_no_starts(whole: EscapeMap, between: bool) 
     assert nothing.direct_share == 0.0
 
 
-def test_where_nothing_left_times_are_nan_and_crossings_empty(whole: EscapeMap) -> None:
+def test_without_escapes_times_are_nan_and_crossings_empty(whole: EscapeMap) -> None:
     nothing = empty(whole)
     assert np.isnan([nothing.mean_escape_time, nothing.median_escape_time]).all()
     assert nothing.crossing_counts.shape == nothing.escape_probabilities.shape == (0,)
     assert nothing.crossing_counts.dtype == np.int64
 
 
-# Maps under way.
+# Unfinished maps.
 
 
-def test_a_map_under_way_counts_what_is_open(under_way: EscapeMap) -> None:
+def test_an_unfinished_map_counts_undecided_orbits(under_way: EscapeMap) -> None:
     statistics = compute_statistics(under_way)
     assert statistics.shares == under_way.fractions()
     assert statistics.undecided == np.count_nonzero(under_way.fate == Fate.NOT_COMPUTED) > 0
     assert statistics.decided == statistics.starts - statistics.undecided
 
 
-def test_probabilities_of_a_map_under_way_are_out_of_the_decided(under_way: EscapeMap) -> None:
+def test_probabilities_of_an_unfinished_map_are_relative_to_decided_orbits(under_way: EscapeMap) -> None:
     statistics = compute_statistics(under_way)
     assert statistics.escape_probabilities[0] == statistics.direct / statistics.decided
 
@@ -181,31 +181,31 @@ def test_every_escape_is_in_one_bin(statistics: EscapeStatistics, bins: int) -> 
     assert counts.sum() == statistics.escaped
 
 
-def test_bins_are_even_on_a_logarithmic_scale(statistics: EscapeStatistics) -> None:
+def test_bins_are_logarithmically_spaced(statistics: EscapeStatistics) -> None:
     edges, _ = statistics.time_histogram(9)
     np.testing.assert_allclose(edges[1:] / edges[:-1], edges[1] / edges[0])
     assert (edges[0], edges[-1]) == (statistics.escape_times.min(), statistics.escape_times.max())
 
 
-def test_a_bin_holds_the_times_between_its_edges(statistics: EscapeStatistics) -> None:
+def test_a_bin_counts_the_times_between_its_edges(statistics: EscapeStatistics) -> None:
     edges, counts = statistics.time_histogram(9)
     inside = (statistics.escape_times >= edges[3]) & (statistics.escape_times < edges[4])
     assert counts[3] == np.count_nonzero(inside)
 
 
 @pytest.mark.parametrize("times", [[3.0], [3.0, 3.0], [3.0, np.nextafter(3.0, 4.0)], [0.0, 3.0], [0.0]])
-def test_equal_and_vanishing_times_have_a_histogram(whole: EscapeMap, times: list[float]) -> None:
+def test_equal_and_zero_times_have_a_histogram(whole: EscapeMap, times: list[float]) -> None:
     edges, counts = with_times(whole, times).time_histogram(5)
     assert np.all(np.diff(edges) > 0.0)
     assert counts.sum() == len(times)
 
 
-def test_no_escapes_have_an_empty_histogram(whole: EscapeMap) -> None:
+def test_without_escapes_the_histogram_is_empty(whole: EscapeMap) -> None:
     edges, counts = empty(whole).time_histogram(5)
     assert np.all(np.diff(edges) > 0.0)
     assert not counts.any()
 
 
-def test_a_histogram_needs_a_bin(statistics: EscapeStatistics) -> None:
+def test_zero_bins_raise(statistics: EscapeStatistics) -> None:
     with pytest.raises(ValueError, match="bins=0: must be 1 or more"):
         statistics.time_histogram(0)

@@ -1,27 +1,9 @@
-"""The paper's fits by what they say at given energies; our own by fits whose answer is known."""
-
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from engine import PAPER_FITS, HyperbolicTangent, Polynomial, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
-
-MANY = 10**9
-ENERGIES = np.linspace(0.26, 0.6, 25)
-TANGENT = HyperbolicTangent(15.85, 4.93)
-PARABOLA = Polynomial((-1.496, 7.585, -5.938))
-
-
-def counts_of(shares: np.ndarray, starts: int = MANY) -> tuple[np.ndarray, np.ndarray]:
-    return np.rint(shares * starts).astype(np.int64), np.full(shares.shape, starts)
-
-
-def drawn(shares: np.ndarray, rng: np.random.Generator, starts: int = 9000) -> tuple[np.ndarray, np.ndarray]:
-    return rng.binomial(starts, shares), np.full(shares.shape, starts)
-
-
-# What the paper prints.
+from engine import PAPER_FITS, HyperbolicTangent, Polynomial
 
 
 # ½[1 + tanh u] = 1 / (1 + exp(−2u)).
@@ -29,7 +11,7 @@ def drawn(shares: np.ndarray, rng: np.random.Generator, starts: int = 9000) -> t
     ("name", "energy", "twice_u"),
     [("I", 0.15, 1.0), ("I", 0.2, 4.0), ("II", 0.18, 4.64), ("III", 0.3, -0.35), ("III", 0.4, 2.82)],
 )
-def test_the_papers_share_of_escapes_at_an_energy(name: str, energy: float, twice_u: float) -> None:
+def test_published_shares_of_escapes(name: str, energy: float, twice_u: float) -> None:
     assert PAPER_FITS[name].escaped(energy) == pytest.approx(1.0 / (1.0 + np.exp(-twice_u)), rel=1e-12)
 
 
@@ -44,155 +26,16 @@ def test_the_papers_share_of_escapes_at_an_energy(name: str, energy: float, twic
         ("III", 0.3, 0.24508),
     ],
 )
-def test_the_papers_share_of_direct_escapes_at_an_energy(name: str, energy: float, share: float) -> None:
+def test_published_shares_of_direct_escapes(name: str, energy: float, share: float) -> None:
     assert PAPER_FITS[name].direct(energy) == pytest.approx(share, rel=1e-12)
 
 
-def test_a_curve_takes_energies_of_any_shape() -> None:
+def test_curves_accept_energies_of_any_shape() -> None:
     energies = np.linspace(0.3, 0.5, 6).reshape(2, 3)
-    for curve in (TANGENT, PARABOLA):
+    for curve in (HyperbolicTangent(15.85, 4.93), Polynomial((-1.496, 7.585, -5.938))):
         np.testing.assert_array_equal(curve(energies), [[curve(h) for h in row] for row in energies])
 
 
-def test_formulas_read_as_the_paper_prints_them() -> None:
+def test_formulas_are_written_as_in_the_paper() -> None:
     assert PAPER_FITS["III"].escaped.formula == "½[1 + tanh(15.85 h − 4.93)]"
     assert PAPER_FITS["II"].direct.formula == "−2.2 + 22.86 h − 59.24 h² + 51.42 h³"
-
-
-# Our own fits.
-
-
-def test_a_fit_to_a_tangent_finds_it() -> None:
-    fit = fit_escape_shares(ENERGIES, *counts_of(TANGENT(ENERGIES)))
-    assert fit.curve.parameters == pytest.approx({"a": 15.85, "b": 4.93}, rel=1e-6)
-    assert abs(fit.deviation.largest) < 1e-8
-
-
-def test_a_fit_to_a_polynomial_finds_it() -> None:
-    fit = fit_direct_shares(ENERGIES, *counts_of(PARABOLA(ENERGIES)), degree=2)
-    assert fit.curve.parameters == pytest.approx({"c0": -1.496, "c1": 7.585, "c2": -5.938}, rel=1e-6)
-
-
-def test_a_direct_fit_is_that_of_numpy() -> None:
-    direct, starts = drawn(PARABOLA(ENERGIES), np.random.default_rng(1))
-    fit = fit_direct_shares(ENERGIES, direct, starts)
-    expected = np.polynomial.polynomial.polyfit(ENERGIES, direct / starts, 3)
-    assert list(fit.curve.parameters.values()) == pytest.approx(expected.tolist(), rel=1e-7)
-
-
-def test_the_interval_of_a_line_is_the_sandwich_written_out() -> None:
-    direct, starts = drawn(np.linspace(0.2, 0.8, 12), np.random.default_rng(2))
-    h = np.linspace(0.2, 0.5, 12) ** 1.5
-    fit = fit_direct_shares(h, direct, starts, degree=1)
-    design = np.column_stack([np.ones(12), h])
-    bread = np.linalg.inv(design.T @ design)
-    leverage = np.diag(design @ bread @ design.T)
-    residuals = direct / starts - design @ list(fit.curve.parameters.values())
-    covariance = bread @ design.T @ np.diag((residuals / (1.0 - leverage)) ** 2) @ design @ bread
-    # Student's t with 10 degrees of freedom: 2.228 (tables).
-    expected = 2.2281388 * np.sqrt(np.diag(covariance))
-    np.testing.assert_allclose([(high - low) / 2.0 for low, high in fit.intervals.values()], expected, rtol=1e-6)
-
-
-def coverage(fits: list[ShareFit], truth: dict[str, float]) -> dict[str, float]:
-    return {
-        name: float(np.mean([fit.intervals[name][0] <= value <= fit.intervals[name][1] for fit in fits]))
-        for name, value in truth.items()
-    }
-
-
-def test_intervals_hold_the_parameters_of_a_tangent_in_some_95_percent() -> None:
-    rng = np.random.default_rng(3)
-    held = coverage([fit_escape_shares(ENERGIES, *drawn(TANGENT(ENERGIES), rng)) for _ in range(400)], TANGENT.parameters)
-    assert all(0.91 <= share <= 0.985 for share in held.values()), held
-
-
-def test_intervals_hold_the_coefficients_of_a_polynomial_in_some_95_percent() -> None:
-    rng = np.random.default_rng(4)
-    held = coverage([fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), rng), 2) for _ in range(400)], PARABOLA.parameters)
-    assert all(0.91 <= share <= 0.99 for share in held.values()), held
-
-
-def bent(h: np.ndarray) -> np.ndarray:
-    """No tangent: an island comes and goes."""
-    shares: np.ndarray = TANGENT(h) - 0.1 * np.exp(-(((h - 0.4) / 0.03) ** 2))
-    return shares
-
-
-def test_intervals_hold_the_best_curve_where_the_form_is_wrong_and_energies_are_random() -> None:
-    rng = np.random.default_rng(5)
-    dense = np.linspace(0.26, 0.6, 4001)
-    best = fit_escape_shares(dense, *counts_of(bent(dense))).curve.parameters
-    draws = [np.sort(rng.uniform(0.26, 0.6, 25)) for _ in range(400)]
-    held = coverage([fit_escape_shares(h, *counts_of(bent(h))) for h in draws], best)
-    assert all(0.8 <= share <= 0.985 for share in held.values()), held
-
-
-def test_systematic_residuals_widen_intervals_though_starts_are_many() -> None:
-    true, wrong = (fit_escape_shares(ENERGIES, *counts_of(curve(ENERGIES))) for curve in (TANGENT, bent))
-    widths = [fit.intervals["a"][1] - fit.intervals["a"][0] for fit in (true, wrong)]
-    assert widths[1] > 1000.0 * widths[0]
-
-
-def test_shares_that_all_saturate_determine_no_tangent() -> None:
-    fit = fit_escape_shares(ENERGIES, np.where(ENERGIES > 0.4, 100, 0), np.full(25, 100))
-    assert not fit.determined
-    assert fit.describe() == "No fit: 25 energies with shares from 0 to 1."
-
-
-def test_a_step_with_little_between_has_no_finite_interval() -> None:
-    escaped = np.where(ENERGIES > 0.4, MANY, 0)
-    escaped[[8, 9, 10]] = 1, MANY // 2, MANY - 1
-    fit = fit_escape_shares(ENERGIES, escaped, np.full(25, MANY))
-    assert fit.determined
-    assert all(high - low > abs(fit.curve.parameters[name]) for name, (low, high) in fit.intervals.items())
-
-
-# How far a curve is from data.
-
-
-def test_the_largest_deviation_has_its_place_and_sign() -> None:
-    shares = PARABOLA(ENERGIES)
-    shares[7] += 0.05
-    found = measure_deviation(PARABOLA, ENERGIES, *counts_of(shares))
-    assert found.largest == pytest.approx(-0.05, abs=1e-8)
-    assert found.energy == ENERGIES[7]
-    assert found.rms == pytest.approx(0.05 / 5.0, abs=1e-8)
-
-
-def test_a_fit_describes_itself() -> None:
-    fit = fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), np.random.default_rng(6)), 2)
-    text = fit.describe()
-    assert text.startswith(f"{fit.curve.formula} with c0 = −1.")
-    assert f"at h = {fit.deviation.energy:g}" in text
-
-
-# What is refused.
-
-
-def test_counts_beyond_the_starts_are_refused() -> None:
-    with pytest.raises(ValueError, match="escaped="):
-        fit_escape_shares(ENERGIES, np.full(25, 11), np.full(25, 10))
-
-
-def test_shares_in_place_of_counts_are_refused() -> None:
-    with pytest.raises(ValueError, match="direct="):
-        fit_direct_shares(ENERGIES, np.full(25, 0.5), np.full(25, 10))
-
-
-def test_no_starts_are_refused() -> None:
-    with pytest.raises(ValueError, match="starts="):
-        fit_escape_shares(ENERGIES, np.zeros(25, int), np.zeros(25, int))
-
-
-@pytest.mark.parametrize("energies", [[0.3, 0.4, 0.5], [0.3, 0.3, 0.4, 0.5], [0.3, 0.4, 0.5, float("inf")]])
-def test_energies_that_cannot_carry_a_fit_are_refused(energies: list[float]) -> None:
-    count = len(energies)
-    with pytest.raises(ValueError, match="h="):
-        fit_escape_shares(energies, np.full(count, 5), np.full(count, 10))
-
-
-@pytest.mark.parametrize("degree", [0, 7])
-def test_degrees_beyond_reason_are_refused(degree: int) -> None:
-    with pytest.raises(ValueError, match="degree="):
-        fit_direct_shares(ENERGIES, np.full(25, 5), np.full(25, 10), degree)

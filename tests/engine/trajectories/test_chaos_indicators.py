@@ -1,4 +1,4 @@
-"""SALI, Lyapunov exponent and Birkhoff digits: the same of orbits whose character is known, and nothing of orbits that leave."""
+"""SALI, Lyapunov exponent and Birkhoff digits on orbits whose character is known, and on orbits that escape."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from engine import CASES, Fate, Orbit, Plane, Potential, classify_orbits, integr
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
 
-# Hénon & Heiles at or below E = 1/8, their y our x: in an island, and in the chaotic sea.
+# Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
-# Two oscillators that do not know of each other: every bounded orbit runs on a torus. The saddle is at (1, 0), with V = 1/6.
+# Two uncoupled oscillators: every bounded orbit lies on a torus. The saddle is at (1, 0), with V = 1/6.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (3, 0, -1 / 3), (0, 2, 0.8)))
-# Along an axis, where it is unstable.
+# An unstable orbit along an axis.
 STRAIGHT = [0.0, 0.0, 0.0, np.sqrt(1.2)]
 
 
@@ -37,7 +37,7 @@ def sea() -> Orbit:
 
 @pytest.fixture(scope="module")
 def late_escape() -> tuple[np.ndarray, Orbit]:
-    """One that leaves between t = 2000 and 8000."""
+    """An orbit that escapes between t = 2000 and 8000."""
     x = np.linspace(-0.4, 0.4, 1500)
     states = start_states(CASES["I"], Plane.X_PX, 0.14, x, np.full_like(x, 0.05))
     states = states[np.isfinite(states).all(axis=1)]
@@ -46,10 +46,10 @@ def late_escape() -> tuple[np.ndarray, Orbit]:
     return state, integrate_orbit(CASES["I"], state, 1e5)
 
 
-# Digits against the length of the window.
+# Digits by window length.
 
 
-def test_digits_of_a_torus_rise_until_they_certify() -> None:
+def test_digits_of_a_torus_rise_to_the_certified_value() -> None:
     found = compute_birkhoff_digits(CASES["I"], start_states(CASES["I"], Plane.X_PX, 0.12, np.array([-0.2]), np.zeros(1))[0], 1e5)
     assert found.digits.size > 1
     assert np.all(np.diff(found.digits) > 1.0)
@@ -62,17 +62,17 @@ def test_digits_of_a_bounded_chaotic_orbit_stay_few() -> None:
     assert found.digits.max() < 3.0
 
 
-def test_digits_are_those_of_a_list() -> None:
+def test_digits_equal_those_of_a_batch() -> None:
     found = compute_birkhoff_digits(CASES["II"], SEA, 8000.0)
     assert found.digits.tolist() == [count_agreeing_digits(CASES["II"], np.array([SEA]), T)[0] for T in (1000.0, 4000.0)]
 
 
 @pytest.mark.parametrize(("t_max", "count"), [(1.0, 0), (1999.0, 0), (2000.0, 1), (7999.0, 1), (8000.0, 2)])
-def test_two_windows_fit_into_t_max(t_max: float, count: int) -> None:
+def test_two_windows_must_fit_into_t_max(t_max: float, count: int) -> None:
     assert compute_birkhoff_digits(CASES["II"], SEA, t_max).windows.tolist() == list(WINDOWS[:count])
 
 
-def test_windows_end_before_the_orbit_leaves(late_escape: tuple[np.ndarray, Orbit]) -> None:
+def test_windows_end_before_the_orbit_escapes(late_escape: tuple[np.ndarray, Orbit]) -> None:
     assert compute_birkhoff_digits(CASES["I"], late_escape[0], 1e5).windows.tolist() == [1000.0]
 
 
@@ -92,7 +92,7 @@ def test_digits_are_read_only_and_counted_as_bytes() -> None:
         found.digits[0] = 1.0
 
 
-def test_cancelled_digits_end_at_once() -> None:
+def test_cancelled_digits_raise() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
@@ -100,19 +100,19 @@ def test_cancelled_digits_end_at_once() -> None:
 
 
 @pytest.mark.parametrize(("state", "t_max", "named"), [([0.0, 0.0, np.nan, 0.1], 1e4, "state="), (SEA, 0.0, "t_max=")])
-def test_bad_input_is_refused_by_name(state: list[float], t_max: float, named: str) -> None:
+def test_invalid_parameters_are_named(state: list[float], t_max: float, named: str) -> None:
     with pytest.raises(ValueError, match=named):
         compute_birkhoff_digits(CASES["II"], state, t_max)
 
 
-# What each concludes.
+# Conclusions.
 
 
-def test_all_conclude_that_an_island_orbit_is_regular(island: Orbit) -> None:
+def test_all_indicators_call_an_island_orbit_regular(island: Orbit) -> None:
     assert conclusions(island, compute_birkhoff_digits(CASES["II"], ISLAND, 8000.0)) == [Verdict.REGULAR] * 3
 
 
-def test_all_conclude_that_an_orbit_of_the_chaotic_sea_is_chaotic(sea: Orbit) -> None:
+def test_all_indicators_call_an_orbit_of_the_chaotic_sea_chaotic(sea: Orbit) -> None:
     assert conclusions(sea, compute_birkhoff_digits(CASES["II"], SEA, 8000.0)) == [Verdict.CHAOTIC] * 3
 
 
@@ -123,25 +123,25 @@ def test_orbits_of_a_separable_potential_are_regular(seed: int) -> None:
     assert conclusions(orbit, compute_birkhoff_digits(SEPARABLE, state, 2000.0)) == [Verdict.REGULAR] * 3
 
 
-def test_an_unstable_straight_line_orbit_is_chaotic_and_its_digits_know_nothing() -> None:
+def test_an_unstable_straight_line_orbit_is_chaotic_with_undecided_digits() -> None:
     orbit = integrate_orbit(CASES["III"], STRAIGHT, 2000.0)
     found = compute_birkhoff_digits(CASES["III"], STRAIGHT, 2000.0)
     assert conclusions(orbit, found) == [Verdict.CHAOTIC, Verdict.CHAOTIC, Verdict.UNDECIDED]
 
 
-def test_indicators_do_not_contradict_each_other_where_both_kinds_live() -> None:
+def test_indicators_agree_where_regular_and_chaotic_orbits_coexist() -> None:
     x, px = np.random.default_rng(4).uniform(-0.4, 0.4, (2, 24))
     states = start_states(CASES["I"], Plane.X_PX, 0.12, x, px)
-    said = set()
+    seen = set()
     for state in states[np.isfinite(states).all(axis=1)][:8]:
         orbit = integrate_orbit(CASES["I"], state, 8000.0)
-        of_one = set(conclusions(orbit, compute_birkhoff_digits(CASES["I"], state, 8000.0)))
-        assert not {Verdict.REGULAR, Verdict.CHAOTIC} <= of_one
-        said |= of_one
-    assert {Verdict.REGULAR, Verdict.CHAOTIC} <= said
+        of_this_orbit = set(conclusions(orbit, compute_birkhoff_digits(CASES["I"], state, 8000.0)))
+        assert not {Verdict.REGULAR, Verdict.CHAOTIC} <= of_this_orbit
+        seen |= of_this_orbit
+    assert {Verdict.REGULAR, Verdict.CHAOTIC} <= seen
 
 
-def test_an_orbit_that_escapes_keeps_its_numbers_and_gets_no_conclusion(late_escape: tuple[np.ndarray, Orbit]) -> None:
+def test_an_escaping_orbit_has_values_but_no_conclusion(late_escape: tuple[np.ndarray, Orbit]) -> None:
     orbit, digits = late_escape[1], BirkhoffDigits(np.array([1000.0]), np.array([1.5]))
     verdicts = evaluate_indicators(orbit, digits)
     assert [verdict.conclusion for verdict in verdicts] == [None] * 3
@@ -149,7 +149,7 @@ def test_an_orbit_that_escapes_keeps_its_numbers_and_gets_no_conclusion(late_esc
     assert all("Transient" in verdict.sentence and f"{orbit.escape_time:.6g}" in verdict.sentence for verdict in verdicts)
 
 
-def test_of_an_outside_start_is_said_that_it_is_outside() -> None:
+def test_an_outside_start_is_described_as_outside() -> None:
     orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_Y, 0.3, np.array([1.3]), np.zeros(1))[0], 10.0)
     assert orbit.fate == Fate.OUTSIDE
     assert [(verdict.conclusion, verdict.sentence.split(":")[0]) for verdict in evaluate_indicators(orbit)] == [
@@ -157,7 +157,7 @@ def test_of_an_outside_start_is_said_that_it_is_outside() -> None:
     ] * 2
 
 
-def test_digits_not_asked_for_are_left_out(island: Orbit) -> None:
+def test_missing_digits_are_left_out(island: Orbit) -> None:
     assert [verdict.name for verdict in evaluate_indicators(island)] == ["SALI", "Lyapunov exponent"]
 
 
@@ -168,7 +168,7 @@ def test_a_short_regular_orbit_is_undecided(t_max: float) -> None:
     assert conclusions(orbit, digits) == [Verdict.UNDECIDED] * 3
 
 
-def test_strong_chaos_is_seen_before_regular_motion_could_be() -> None:
+def test_strong_chaos_is_detected_before_any_orbit_is_called_regular() -> None:
     start = start_states(CASES["II"], Plane.X_PX, 0.1666, np.array([0.1]), np.array([-0.2]))[0]
     assert conclusions(integrate_orbit(CASES["II"], start, 500.0)) == [Verdict.CHAOTIC] * 2
 
@@ -190,7 +190,7 @@ def test_sali_between_chaos_and_tori_is_undecided(island: Orbit, sali: float, ex
 @pytest.mark.parametrize(
     ("power", "expected"), [(0.0, Verdict.REGULAR), (1.0, Verdict.REGULAR), (1.8, Verdict.UNDECIDED), (2.1, Verdict.CHAOTIC)]
 )
-def test_growth_by_a_power_of_time_is_told_by_the_power(island: Orbit, power: float, expected: Verdict) -> None:
+def test_growth_by_a_power_of_time_is_judged_by_the_power(island: Orbit, power: float, expected: Verdict) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         exponent = power * np.log(island.t) / island.t
     verdict = evaluate_indicators(replace(island, lyapunov_exponent=exponent))[1]

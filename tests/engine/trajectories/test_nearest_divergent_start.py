@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, Plane, Twin, classify_orbits, find_twin, integrate_orbit, start_states
+from engine import CASES, DivergentStart, Fate, Plane, classify_orbits, find_divergent_start, integrate_orbit, start_states
 from engine.execution import SerialExecutor
 
 T_MAX = 2000.0
-# potential, plane, energy, x, ordinate: of different depth in their basins, the third one bounded.
+# Potential, plane, energy, x, ordinate, at different distances from the basin boundary; the third one is bounded.
 STARTS = [
     ("I", Plane.X_PX, 0.2, -0.2, 0.1),
     ("II", Plane.X_Y, 0.22, 0.2, -0.1),
@@ -21,14 +21,14 @@ STARTS = [
 ]
 
 
-def twin_of(name: str, plane: Plane, energy: Any, x: float, ordinate: float, **options: Any) -> Twin | None:
-    return find_twin(CASES[name], plane, energy, x, ordinate, T_MAX, **options)
+def find(name: str, plane: Plane, energy: Any, x: float, ordinate: float, **options: Any) -> DivergentStart | None:
+    return find_divergent_start(CASES[name], plane, energy, x, ordinate, T_MAX, **options)
 
 
-def found(*start: Any, **options: Any) -> Twin:
-    twin = twin_of(*start, **options)
-    assert twin is not None
-    return twin
+def find_existing(*start: Any, **options: Any) -> DivergentStart:
+    divergent = find(*start, **options)
+    assert divergent is not None
+    return divergent
 
 
 def fate_of(name: str, plane: Plane, energy: Any, x: float, ordinate: float) -> int:
@@ -42,84 +42,88 @@ def start(request: pytest.FixtureRequest) -> tuple[Any, ...]:
 
 
 @pytest.fixture(scope="module")
-def twin(start: tuple[Any, ...]) -> Twin:
-    return found(*start)
+def divergent(start: tuple[Any, ...]) -> DivergentStart:
+    return find_existing(*start)
 
 
-def test_the_twin_leaves_elsewhere(start: tuple[Any, ...], twin: Twin) -> None:
-    assert twin.first_fate == fate_of(*start)
-    assert twin.fate == fate_of(*start[:3], twin.x, twin.ordinate)
-    assert twin.fate >= 1
-    assert twin.fate != twin.first_fate
+def test_it_escapes_through_another_channel(start: tuple[Any, ...], divergent: DivergentStart) -> None:
+    assert divergent.reference_fate == fate_of(*start)
+    assert divergent.fate == fate_of(*start[:3], divergent.x, divergent.ordinate)
+    assert divergent.fate >= 1
+    assert divergent.fate != divergent.reference_fate
 
 
-def test_the_distance_is_that_in_the_plane(start: tuple[Any, ...], twin: Twin) -> None:
-    assert twin.distance == pytest.approx(np.hypot(twin.x - start[3], twin.ordinate - start[4]), rel=1e-12)
+def test_the_distance_is_measured_in_the_plane(start: tuple[Any, ...], divergent: DivergentStart) -> None:
+    assert divergent.distance == pytest.approx(np.hypot(divergent.x - start[3], divergent.ordinate - start[4]), rel=1e-12)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.98])
-def test_nothing_nearer_on_the_way_to_the_twin_leaves_elsewhere(start: tuple[Any, ...], twin: Twin, share: float) -> None:
-    x, ordinate = start[3] + share * (twin.x - start[3]), start[4] + share * (twin.ordinate - start[4])
-    assert fate_of(*start[:3], x, ordinate) in (twin.first_fate, Fate.BOUNDED)
+def test_no_closer_start_in_the_same_direction_diverges(start: tuple[Any, ...], divergent: DivergentStart, share: float) -> None:
+    x, ordinate = start[3] + share * (divergent.x - start[3]), start[4] + share * (divergent.ordinate - start[4])
+    assert fate_of(*start[:3], x, ordinate) in (divergent.reference_fate, Fate.BOUNDED)
 
 
 @pytest.mark.parametrize("start", [start for start in STARTS if start[1] is not Plane.X_H], ids=str, scope="module")
-def test_at_half_the_distance_no_direction_leaves_elsewhere(start: tuple[Any, ...], twin: Twin) -> None:
+def test_no_start_at_half_the_distance_diverges(start: tuple[Any, ...], divergent: DivergentStart) -> None:
     name, plane, energy, x, ordinate = start
     angle = np.pi / 8 * np.arange(16)
     around = start_states(
-        CASES[name], plane, energy, x + 0.5 * twin.distance * np.cos(angle), ordinate + 0.5 * twin.distance * np.sin(angle)
+        CASES[name],
+        plane,
+        energy,
+        x + 0.5 * divergent.distance * np.cos(angle),
+        ordinate + 0.5 * divergent.distance * np.sin(angle),
     )
-    assert set(classify_orbits(CASES[name], energy, around, T_MAX).fate) <= {twin.first_fate, Fate.BOUNDED}
+    assert set(classify_orbits(CASES[name], energy, around, T_MAX).fate) <= {divergent.reference_fate, Fate.BOUNDED}
 
 
-def test_near_a_boundary_the_twin_is_near(start: tuple[Any, ...], twin: Twin) -> None:
-    nearly = (start[3] + 0.98 * (twin.x - start[3]), start[4] + 0.98 * (twin.ordinate - start[4]))
-    assert found(*start[:3], *nearly).distance < 0.03 * twin.distance
+def test_it_is_close_near_a_boundary(start: tuple[Any, ...], divergent: DivergentStart) -> None:
+    nearly = (start[3] + 0.98 * (divergent.x - start[3]), start[4] + 0.98 * (divergent.ordinate - start[4]))
+    assert find_existing(*start[:3], *nearly).distance < 0.03 * divergent.distance
 
 
-def test_an_orbit_that_leaves_late_has_its_twin_at_the_end_of_double_precision() -> None:
-    assert found("I", Plane.X_PX, 0.13, 0.3, 0.2).distance == pytest.approx(1e-13, rel=2e-3)
+def test_a_late_escape_has_a_divergent_start_at_the_smallest_distance() -> None:
+    assert find_existing("I", Plane.X_PX, 0.13, 0.3, 0.2).distance == pytest.approx(1e-13, rel=2e-3)
 
 
-def test_on_x_h_the_twin_has_the_same_energy() -> None:
-    assert found("II", Plane.X_H, (0.2, 0.4), -0.2, 0.25).ordinate == 0.25
+def test_on_x_h_it_has_the_same_energy() -> None:
+    assert find_existing("II", Plane.X_H, (0.2, 0.4), -0.2, 0.25).ordinate == 0.25
 
 
-def test_any_escape_is_a_twin_of_a_bounded_start() -> None:
-    assert found("III", Plane.X_Y, 0.5, 0.2, 0.3).first_fate == Fate.BOUNDED
+def test_any_escape_diverges_from_a_bounded_start() -> None:
+    assert find_existing("III", Plane.X_Y, 0.5, 0.2, 0.3).reference_fate == Fate.BOUNDED
 
 
-def test_deep_in_an_island_there_is_none() -> None:
-    assert twin_of("III", Plane.X_PX, 0.26, 0.1, 0.1, furthest=0.01) is None
+def test_there_is_none_deep_in_an_island() -> None:
+    assert find("III", Plane.X_PX, 0.26, 0.1, 0.1, furthest=0.01) is None
 
 
-def test_deep_in_a_basin_it_is_found_only_far_away() -> None:
+def test_it_is_far_away_deep_in_a_basin() -> None:
     start = ("I", Plane.X_PX, 0.2, 0.1, 0.2)
-    assert twin_of(*start, furthest=0.1) is None
-    assert found(*start).distance > 0.1
+    assert find(*start, furthest=0.1) is None
+    assert find_existing(*start).distance > 0.1
 
 
-def test_below_the_escape_energy_there_is_none() -> None:
-    assert twin_of("II", Plane.X_PX, 0.1, 0.1, 0.1) is None
+def test_there_is_none_below_the_escape_energy() -> None:
+    assert find("II", Plane.X_PX, 0.1, 0.1, 0.1) is None
 
 
-def test_mirror_images_have_their_twins_equally_far() -> None:
-    one = found("III", Plane.X_PX, 0.35, 0.1, 0.3)
-    other = found("III", Plane.X_PX, 0.35, -0.1, -0.3)
+def test_mirror_images_have_equal_distances() -> None:
+    one = find_existing("III", Plane.X_PX, 0.35, 0.1, 0.3)
+    other = find_existing("III", Plane.X_PX, 0.35, -0.1, -0.3)
     assert one.distance == other.distance
-    assert (1, 0, 3, 2)[one.first_fate - 1] + 1 == other.first_fate
+    assert (1, 0, 3, 2)[one.reference_fate - 1] + 1 == other.reference_fate
 
 
-def test_an_executor_makes_no_difference() -> None:
-    assert found(*STARTS[0], executor=SerialExecutor()) == found(*STARTS[0])
+def test_the_executor_does_not_affect_the_result() -> None:
+    assert find_existing(*STARTS[0], executor=SerialExecutor()) == find_existing(*STARTS[0])
 
 
-def test_when_cancelled_it_says_so() -> None:
+def test_a_cancelled_search_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        twin_of(*STARTS[0], cancel=cancel)
+        find(*STARTS[0], cancel=cancel)
 
 
 @pytest.mark.parametrize(
@@ -136,11 +140,11 @@ def test_when_cancelled_it_says_so() -> None:
         (STARTS[0], {"furthest": np.inf}, "furthest=inf: must be a finite number above 1e-13"),
     ],
 )
-def test_what_has_no_twin_is_refused(start: tuple[Any, ...], options: dict[str, Any], message: str) -> None:
+def test_invalid_starts_and_distances_raise(start: tuple[Any, ...], options: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        twin_of(*start, **options)
+        find(*start, **options)
 
 
-def test_a_time_out_of_range_is_refused() -> None:
+def test_t_max_out_of_range_raises() -> None:
     with pytest.raises(ValueError, match="t_max=0"):
-        find_twin(CASES["I"], Plane.X_PX, 0.2, 0.1, 0.1, 0.0)
+        find_divergent_start(CASES["I"], Plane.X_PX, 0.2, 0.1, 0.1, 0.0)

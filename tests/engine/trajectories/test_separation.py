@@ -1,4 +1,4 @@
-"""Two orbits part as their potential says: at the rate of a saddle, of chaos, or of two frequencies."""
+"""Distance of two orbits, compared with another integrator and with exponential growth."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def state_at(case: str, h: float, x: float, px: float) -> np.ndarray:
     return start_states(CASES[case], Plane.X_PX, h, np.array([x]), np.array([px]))[0]
 
 
-def test_the_distance_is_that_of_two_orbits_by_another_method() -> None:
+def test_the_distance_agrees_with_scipy() -> None:
     potential, first, second = CASES["II"], state_at("II", 0.15, 0.1, 0.2), state_at("II", 0.15, 0.1001, 0.2)
     separation = compute_separation(potential, first, second, 50.0)
 
@@ -28,7 +28,7 @@ def test_the_distance_is_that_of_two_orbits_by_another_method() -> None:
     np.testing.assert_allclose(separation.distance, np.linalg.norm(paths[0] - paths[1], axis=0), rtol=1e-5)
 
 
-def test_close_starts_on_a_boundary_part_exponentially() -> None:
+def test_close_starts_on_a_boundary_separate_exponentially() -> None:
     x = np.linspace(-0.4, 0.4, 200)
     states = start_states(CASES["I"], Plane.X_PX, 0.19, x, np.full_like(x, 0.1))
     times = classify_orbits(CASES["I"], 0.19, states, 1e3).escape_time
@@ -40,17 +40,17 @@ def test_close_starts_on_a_boundary_part_exponentially() -> None:
     assert separation.distance[-1] > 1e4 * separation.distance[0]
 
 
-def test_an_orbit_is_no_distance_from_itself() -> None:
+def test_an_orbit_has_no_distance_from_itself() -> None:
     state = state_at("III", 0.3, 0.1, 0.1)
     assert not compute_separation(CASES["III"], state, state, 10.0).distance.any()
 
 
-def test_long_orbits_are_compared_for_as_long_as_it_takes_to_part() -> None:
+def test_long_orbits_are_compared_for_the_longest_separation_time() -> None:
     state = state_at("I", 0.1, 0.1, 0.1)
     assert compute_separation(CASES["I"], state, 1.0000001 * state, 1e6).t[-1] == LONGEST_SEPARATION
 
 
-def test_a_cancelled_comparison_ends_at_once() -> None:
+def test_a_cancelled_comparison_raises() -> None:
     cancel, state = threading.Event(), state_at("I", 0.1, 0.1, 0.1)
     cancel.set()
     with pytest.raises(CancelledError):
@@ -58,6 +58,6 @@ def test_a_cancelled_comparison_ends_at_once() -> None:
 
 
 @pytest.mark.parametrize(("second", "t_end", "named"), [([0.0, 0.0, np.nan, 1.0], 10.0, "second="), ([0.0] * 4, -1.0, "t_max")])
-def test_nonsense_is_named(second: list[float], t_end: float, named: str) -> None:
+def test_invalid_parameters_are_named(second: list[float], t_end: float, named: str) -> None:
     with pytest.raises(ValueError, match=named):
         compute_separation(CASES["I"], [0.0, 0.0, 0.0, 0.5], second, t_end)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
 
-# An energy of each case at which some orbits leave and some do not.
+# An energy of each case at which some orbits escape and some do not.
 ENERGY = {"I": 0.14, "II": 0.18, "III": 0.35}
 ESCAPING = [(name, channel) for name in CASES for channel in range(1, CASES[name].channels + 1)]
 
@@ -58,20 +59,20 @@ def test_samples_are_evenly_spaced_to_t_max(bounded: tuple[str, np.ndarray, Orbi
     np.testing.assert_allclose(np.diff(t), t[1], rtol=1e-9)
 
 
-def test_every_sample_has_the_energy_of_the_start(bounded: tuple[str, np.ndarray, Orbit]) -> None:
+def test_every_sample_has_the_initial_energy(bounded: tuple[str, np.ndarray, Orbit]) -> None:
     name, _, orbit = bounded
     np.testing.assert_allclose(CASES[name].energy(states_of(orbit)), orbit.energy, rtol=1e-12)
 
 
 def test_momentum_is_the_velocity_of_the_path(bounded: tuple[str, np.ndarray, Orbit]) -> None:
     _, _, orbit = bounded
-    # Central differences of samples 0.02 apart err by the third derivative times 0.02²/6.
+    # The error of central differences of samples 0.02 apart is the third derivative times 0.02²/6.
     np.testing.assert_allclose(np.gradient(orbit.x, orbit.t)[1:-1], orbit.px[1:-1], atol=1e-3)
     np.testing.assert_allclose(np.gradient(orbit.y, orbit.t)[1:-1], orbit.py[1:-1], atol=1e-3)
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.05), ("II", 0.08), ("III", 0.1)])
-def test_a_regular_orbit_is_scipys(name: str, energy: float) -> None:
+def test_a_regular_orbit_agrees_with_scipy(name: str, energy: float) -> None:
     start = interior_starts(name, energy, 20, reach=0.15)[0]
     orbit = integrate_orbit(CASES[name], start, 50.0)
     path = solve_ivp(
@@ -90,12 +91,12 @@ def test_arrays_are_read_only(bounded: tuple[str, np.ndarray, Orbit]) -> None:
         bounded[2].x[0] = 1.0
 
 
-def test_crossings_are_those_of_the_samples(bounded: tuple[str, np.ndarray, Orbit]) -> None:
+def test_crossings_agree_with_the_samples(bounded: tuple[str, np.ndarray, Orbit]) -> None:
     orbit = bounded[2]
     assert orbit.crossings == np.sum((orbit.y[:-1] < 0) & (orbit.y[1:] >= 0)) > 5
 
 
-# The verdict.
+# Fate and verdict.
 
 
 def test_a_bounded_orbit_has_no_escape_time(bounded: tuple[str, np.ndarray, Orbit]) -> None:
@@ -104,7 +105,7 @@ def test_a_bounded_orbit_has_no_escape_time(bounded: tuple[str, np.ndarray, Orbi
     assert np.isnan(orbit.escape_time)
 
 
-def test_fate_time_and_crossings_are_those_of_a_list(escaping: tuple[str, np.ndarray, Orbit]) -> None:
+def test_fate_time_and_crossings_equal_those_of_a_batch(escaping: tuple[str, np.ndarray, Orbit]) -> None:
     name, start, orbit = escaping
     outcome = classify_orbits(CASES[name], orbit.energy, start[None], 200.0)
     mine = (orbit.fate, orbit.escape_time, orbit.crossings, orbit.energy_error)
@@ -115,7 +116,7 @@ def test_an_escaped_orbit_ends_at_its_escape_time(escaping: tuple[str, np.ndarra
     assert escaping[2].t[-1] == escaping[2].escape_time
 
 
-def test_an_escaped_orbit_ends_on_its_exit_and_was_inside_before(escaping: tuple[str, np.ndarray, Orbit]) -> None:
+def test_an_escaped_orbit_ends_on_its_exit_and_is_inside_before(escaping: tuple[str, np.ndarray, Orbit]) -> None:
     name, _, orbit = escaping
     line = exit_lines(CASES[name], orbit.energy)[orbit.fate - 1]
     beyond = line.beyond(orbit.x, orbit.y)
@@ -127,10 +128,16 @@ def test_an_escaped_orbit_is_neither_regular_nor_chaotic(escaping: tuple[str, np
     assert escaping[2].regularity is None
 
 
-def test_the_verdict_in_words_names_the_channel(escaping: tuple[str, np.ndarray, Orbit]) -> None:
+def test_the_description_names_the_channel(escaping: tuple[str, np.ndarray, Orbit]) -> None:
     orbit = escaping[2]
     assert f"channel {orbit.fate} " in orbit.describe()
     assert f"{orbit.escape_time:.6g}" in orbit.describe()
+
+
+def test_the_description_has_the_singular_for_one_crossing(bounded: tuple[str, np.ndarray, Orbit]) -> None:
+    orbit = replace(bounded[2], crossings=1)
+    assert orbit.describe().endswith("with 1 upward crossing of y = 0.")
+    assert "after 1 upward crossing of y = 0." in replace(orbit, fate=2, escape_time=3.0).describe()
 
 
 @pytest.mark.parametrize(("factor", "escapes"), [(1 - 1e-9, False), (1 + 1e-9, True), (1.001, True), (0.999, False)])
@@ -153,14 +160,14 @@ def test_an_outside_start_stays_where_it_is() -> None:
     assert orbit.describe().startswith("Outside")
 
 
-def test_rest_at_the_bottom_stays_there() -> None:
+def test_an_orbit_at_rest_at_the_minimum_stays_there() -> None:
     orbit = integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.0], 10.0)
     assert orbit.fate == Fate.BOUNDED
     assert not states_of(orbit).any()
 
 
 @pytest.mark.parametrize("t_max", [1e-9, 0.01, 3.3])
-def test_a_short_time_will_do(t_max: float) -> None:
+def test_short_times_are_possible(t_max: float) -> None:
     orbit = integrate_orbit(CASES["III"], start_with_fate("III", Fate.BOUNDED), t_max)
     assert orbit.t[-1] == t_max
     assert np.isfinite(states_of(orbit)).all()
@@ -170,7 +177,7 @@ def test_a_short_time_will_do(t_max: float) -> None:
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
-def test_sali_is_that_of_scipys_variational_equations(name: str, energy: float) -> None:
+def test_sali_agrees_with_scipys_variational_equations(name: str, energy: float) -> None:
     start = interior_starts(name, energy, 20)[0]
     orbit = integrate_orbit(CASES[name], start, 40.0)
     pick = slice(None, None, orbit.t.size // 50)
@@ -193,9 +200,9 @@ def test_sali_starts_at_its_largest_value() -> None:
     assert orbit.sali.max() <= np.sqrt(2) * (1 + 1e-15)
 
 
-# Hénon & Heiles (1964): at half the escape energy nearly every orbit lies on a torus, just below it few do.
+# Hénon & Heiles (1964): at half the escape energy nearly every orbit lies on a torus, just below the escape energy few do.
 @pytest.mark.parametrize(("energy", "expected"), [(1 / 12, Regularity.REGULAR), (0.1666, Regularity.CHAOTIC)])
-def test_henon_heiles_turns_from_regular_to_chaotic(energy: float, expected: Regularity) -> None:
+def test_henon_heiles_changes_from_regular_to_chaotic(energy: float, expected: Regularity) -> None:
     verdicts = [
         integrate_orbit(CASES["II"], start, 3000.0).regularity for start in interior_starts("II", energy, 24, reach=0.25)[:16]
     ]
@@ -207,8 +214,8 @@ def test_case_1_below_its_escape_energy_has_both_kinds() -> None:
     assert verdicts == {Regularity.REGULAR, Regularity.CHAOTIC}
 
 
-def test_sali_of_a_chaotic_orbit_follows_nearby_orbits_apart() -> None:
-    """Deviations of the largest growth are real: an orbit 1e-9 away separates as fast as SALI, its inverse, falls."""
+def test_sali_of_a_chaotic_orbit_decreases_as_nearby_orbits_separate() -> None:
+    """An orbit at a distance of 1e-9 separates about as fast as SALI decreases."""
     start = interior_starts("II", 0.1666, 4)[0]
     chaotic = integrate_orbit(CASES["II"], start, 300.0)
     neighbour = integrate_orbit(CASES["II"], start + np.array([1e-9, 0.0, 0.0, 0.0]), 300.0)
@@ -221,7 +228,7 @@ def test_sali_of_a_chaotic_orbit_follows_nearby_orbits_apart() -> None:
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.1666), ("III", 0.24)])
-def test_the_lyapunov_exponent_is_that_of_scipys_variational_equations(name: str, energy: float) -> None:
+def test_the_lyapunov_exponent_agrees_with_scipys_variational_equations(name: str, energy: float) -> None:
     start = interior_starts(name, energy, 20)[0]
     orbit = integrate_orbit(CASES[name], start, 80.0)
     pick = slice(orbit.t.size // 20, None, orbit.t.size // 20)
@@ -232,7 +239,7 @@ def test_the_lyapunov_exponent_is_that_of_scipys_variational_equations(name: str
 
 
 # Along the axis x = 0 of Case III the orbit is y = A sin t, A² = 2h, and deviations from the axis obey Mathieu's equation.
-def test_the_lyapunov_exponent_of_a_straight_line_orbit_is_mathieus() -> None:
+def test_the_lyapunov_exponent_of_a_straight_line_orbit_agrees_with_mathieus_equation() -> None:
     energy = 0.6
 
     def mathieu(t: float, d: np.ndarray) -> list[float]:
@@ -255,8 +262,8 @@ def test_the_lyapunov_exponent_falls_like_a_logarithm_over_t_on_a_torus() -> Non
     assert orbit.lyapunov_exponent[-1] < 1e-3
 
 
-def test_mirror_images_grow_alike() -> None:
-    """Their deviation vectors are no mirror images, which must not matter once the fastest growing direction has won."""
+def test_mirror_images_have_equal_growth() -> None:
+    """Their deviation vectors are not mirror images, but all vectors align with the fastest growing direction."""
     start = interior_starts("II", 0.1666, 20)[0]
     orbit, image = (integrate_orbit(CASES["II"], start * signs, 1000.0) for signs in ([1, 1, 1, 1], [1, -1, 1, -1]))
     growth = orbit.lyapunov_exponent[-1] * 1000.0
@@ -264,7 +271,7 @@ def test_mirror_images_grow_alike() -> None:
     assert image.lyapunov_exponent[-1] * 1000.0 == pytest.approx(growth, abs=4.0)
 
 
-def test_a_chaotic_orbit_run_backwards_grows_alike() -> None:
+def test_a_reversed_chaotic_orbit_has_equal_growth() -> None:
     start = interior_starts("II", 0.1666, 20)[2]
     orbit = integrate_orbit(CASES["II"], start, 300.0)
     back = integrate_orbit(CASES["II"], states_of(orbit)[-1] * [1, 1, -1, -1], 300.0)
@@ -274,36 +281,36 @@ def test_a_chaotic_orbit_run_backwards_grows_alike() -> None:
     assert back.lyapunov_exponent[-1] * 300.0 == pytest.approx(growth, abs=2.0)
 
 
-def test_there_is_no_lyapunov_exponent_of_no_time() -> None:
+def test_the_lyapunov_exponent_is_nan_at_time_0() -> None:
     orbit = integrate_orbit(CASES["II"], start_with_fate("II", Fate.BOUNDED), 5.0)
     assert np.isnan(orbit.lyapunov_exponent[0])
     assert np.isfinite(orbit.lyapunov_exponent[1:]).all()
 
 
-def test_all_arrays_count_as_bytes(bounded: tuple[str, np.ndarray, Orbit]) -> None:
+def test_nbytes_counts_all_arrays(bounded: tuple[str, np.ndarray, Orbit]) -> None:
     arrays = [value for value in vars(bounded[2]).values() if isinstance(value, np.ndarray)]
     assert bounded[2].nbytes == sum(array.nbytes for array in arrays) == 8 * bounded[2].t.nbytes
 
 
-# Bad input.
+# Invalid parameters.
 
 
 @pytest.mark.parametrize(
     "state",
     [[0.0, 0.0, 0.0], [0.0] * 5, [[0.0, 0.0, 0.0, 0.1]], [np.nan, 0, 0, 0], [0, np.inf, 0, 0], [0, 0, 0, -np.inf], None, 3.0],
 )
-def test_a_state_that_is_not_four_finite_numbers_is_refused(state: Any) -> None:
+def test_a_state_that_is_not_four_finite_numbers_raises(state: Any) -> None:
     with pytest.raises(ValueError, match="state=") as error:
         integrate_orbit(CASES["I"], state, 10.0)
     assert repr(state) in str(error.value)
 
 
 @pytest.mark.parametrize("t_max", [0.0, -1.0, np.nan, np.inf, 1e9])
-def test_t_max_has_limits(t_max: float) -> None:
+def test_t_max_out_of_range_raises(t_max: float) -> None:
     with pytest.raises(ValueError, match="t_max="):
         integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.1], t_max)
 
 
-def test_a_start_of_far_too_high_an_energy_is_refused() -> None:
+def test_a_far_too_high_energy_raises() -> None:
     with pytest.raises(ValueError, match="energy="):
         integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 100.0], 10.0)

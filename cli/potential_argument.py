@@ -1,4 +1,4 @@
-"""Which potential is meant: one of the known ones by name, or a formula, and the parameters of either."""
+"""The CASE argument: a catalogue name or a formula, with optional parameters."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ PARAMETERS = ("omega_1", "omega_2", "epsilon")
 
 
 def find_potential(case: str) -> Potential:
-    """The potential that is meant by ``NAME`` or a formula in x and y, with ``@omega_1=1.2,epsilon=0.8`` after it where wanted.
+    """Return the potential of ``NAME`` or of a formula in x and y, with optional parameters ``@omega_1=1.2,epsilon=0.8``.
 
     Raises
     ------
     ValueError
-        When there is none of this name and it is no formula, a parameter is of no use, or nothing can be computed with it.
+        If it is neither a name nor a formula, a parameter is invalid, or the potential is not supported.
     """
     potential = _find_system(case).potential
     problem = refusal(review_potential(potential))
@@ -27,8 +27,8 @@ def find_potential(case: str) -> Potential:
     return potential
 
 
-def name_in_files(case: str) -> str:
-    """What stands for a potential in the names of files."""
+def file_name_part(case: str) -> str:
+    """Return the part of file names that identifies a potential."""
     name, _, parameters = case.partition("@")
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", "-".join([name if name in POTENTIALS else TYPED, *filter(None, [parameters])]))
 
@@ -58,7 +58,7 @@ def _read_parameters(case: str, text: str) -> dict[str, float]:
             number = None
         if name.strip() not in PARAMETERS or number is None:
             raise ValueError(
-                f"case={reprlib.repr(case)}: after @ stand {', '.join(PARAMETERS)}, as in III@omega_1=1.1,epsilon=0.5"
+                f"case={reprlib.repr(case)}: parameters are {', '.join(PARAMETERS)}, as in III@omega_1=1.1,epsilon=0.5"
             )
         chosen[name.strip()] = number
     return chosen

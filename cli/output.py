@@ -1,4 +1,4 @@
-"""Answers on stdout: small tables and sentences for people, JSON for programs."""
+"""Output on stdout: tables and sentences, or JSON."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from rich.table import Table
 
 from engine import EscapeMap, Fate
 
-# Wide enough for any table of ours where nobody's window sets a width.
+# Width of tables when stdout is not a terminal.
 _PIPE_WIDTH = 200
 
 
-def print_json(answer: Mapping[str, Any]) -> None:
-    """One JSON object; NaN and infinity, which JSON lacks, are null."""
-    _console().out(json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False), highlight=False)
+def print_json(content: Mapping[str, Any]) -> None:
+    """Print one JSON object; NaN and infinity become null."""
+    _console().out(json.dumps(_to_json(content), indent=2, ensure_ascii=False, allow_nan=False), highlight=False)
 
 
 def print_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """A table; all columns but the first to the right."""
+    """Print a table; all columns but the first are right-aligned."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False)
     for number, name in enumerate(head):
         table.add_column(name, justify="right" if number else "left", no_wrap=True)
@@ -35,20 +35,20 @@ def print_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
 
 
 def print_sentences(*sentences: str) -> None:
-    """Sentences, a line each."""
+    """Print sentences, one per line."""
     for sentence in sentences:
         _console().out(sentence, highlight=False)
 
 
-def name_outcome(code: int) -> str:
-    """A fate code in a word or two."""
+def outcome_name(code: int) -> str:
+    """Return the name of a fate code."""
     return f"channel {code}" if code >= 1 else Fate(code).name.lower().replace("_", " ")
 
 
-def name_shares(frame: EscapeMap, *, count_outside: bool) -> dict[str, float]:
-    """Shares of a whole map's starts by the names of their outcomes."""
+def outcome_shares(frame: EscapeMap, *, count_outside: bool) -> dict[str, float]:
+    """Return the share of each outcome among the starts of a complete map, by outcome name."""
     fractions = frame.fractions(count_outside=count_outside)
-    return {name_outcome(code): share for code, share in fractions.items() if code != Fate.NOT_COMPUTED}
+    return {outcome_name(code): share for code, share in fractions.items() if code != Fate.NOT_COMPUTED}
 
 
 def _console() -> Console:
@@ -56,13 +56,13 @@ def _console() -> Console:
     return console if console.is_terminal else Console(width=_PIPE_WIDTH)
 
 
-def _plain(value: Any) -> Any:
+def _to_json(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {str(name): _plain(one) for name, one in value.items()}
+        return {str(name): _to_json(one) for name, one in value.items()}
     if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
+        return _to_json(value.tolist())
     if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
+        return [_to_json(one) for one in value]
     if isinstance(value, Enum):
-        return _plain(value.value)
+        return _to_json(value.value)
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,4 +1,4 @@
-"""Results on disk: whole, or not at all."""
+"""Atomic writing of result files."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ Content = str | bytes
 
 
 def add_ending(stem: Path, ending: str) -> Path:
-    """A file's path: the stem, a dot and the ending; dots in the stem are its own."""
+    """Return the stem with a dot and the ending appended; dots in the stem are kept."""
     return stem.with_name(f"{stem.name}.{ending}")
 
 
 def check_folder(path: Path) -> None:
-    """ValueError unless the folder that the file is to be written to exists: said before hours of work, not after."""
+    """Raise ValueError if the output folder does not exist; checked before the computation."""
     if not path.name or not path.parent.is_dir():
         raise ValueError(f"output='{path}': there is no folder '{path.parent}' to write to")
 
 
 def write_files(contents: Mapping[Path, Content]) -> list[str]:
-    """Write files, each of which is at every moment absent, as it was, or whole.
+    """Write files atomically: each is replaced as a whole or left unchanged.
 
     Returns
     -------
-    Their paths, as they were given.
+    The paths, as given.
 
     Raises
     ------
     OSError
-        When one cannot be written; those before it stay.
+        If a file cannot be written; those written before it stay.
     """
     for path, content in contents.items():
         _write(path, content.encode() if isinstance(content, str) else content)
@@ -38,7 +38,7 @@ def write_files(contents: Mapping[Path, Content]) -> list[str]:
 
 
 def _write(path: Path, content: bytes) -> None:
-    # In the same folder: only within a file system does a file replace another at once.
+    # In the same folder: replacing is atomic only within one file system.
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with part.open("xb") as file:

@@ -1,4 +1,4 @@
-"""From what was typed to what the engine is asked for."""
+"""Conversion of command-line arguments to engine requests."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ import numpy as np
 
 from app.rendering.palette import PALETTES, Palette
 from cli.options import Edges, PlaneName
-from cli.potentials import find_potential
+from cli.potential_argument import find_potential
 from engine import MapSpec, Plane, start_states
 
 
 def find_palette(name: str) -> Palette:
-    """The colours of a name; ValueError unless there are some."""
+    """Return the palette of this name; ValueError if there is none."""
     if name not in PALETTES:
         raise ValueError(f"palette={name!r}: must be one of {', '.join(PALETTES)}")
     return PALETTES[name]
 
 
 def find_plane(name: PlaneName) -> Plane:
-    """The plane of a name."""
+    """Return the plane of this name."""
     return Plane[name.name]
 
 
 def read_resolution(text: str) -> tuple[int, int]:
-    """(columns, rows) from ``N`` or ``NxM``; ValueError when it is neither."""
+    """Return (columns, rows) from ``N`` or ``NxM``; ValueError for anything else."""
     match = re.fullmatch(r"(\d{1,9})(?:[x×](\d{1,9}))?", text)
     if match is None:
         raise ValueError(f"resolution={text!r}: must be N or NxM, whole numbers of columns and rows")
@@ -37,12 +37,12 @@ def read_resolution(text: str) -> tuple[int, int]:
 def space_energies(
     low: float | None, high: float | None, count: int | None, listed: Sequence[float] | None = None
 ) -> tuple[float, ...]:
-    """The energies of a sweep, evenly spaced with both ends or as listed; ValueError unless it is one of the two, and whole."""
+    """Return the energies of a sweep, either evenly spaced including both ends or as listed; ValueError otherwise."""
     span = (low, high, count)
     if listed and not any(one is not None for one in span):
         return tuple(listed)
     if listed or low is None or high is None or count is None:
-        raise ValueError("energies: give --low, --high and --count, or --energy once for each")
+        raise ValueError("energies: give --low, --high and --count, or repeat --energy")
     if not (low < high or (low == high and count == 1)):
         raise ValueError(f"low={low}, high={high}: the lower energy must be below the higher one")
     return tuple(np.linspace(low, high, count).tolist())
@@ -59,7 +59,7 @@ def build_map_spec(
     certify: bool,
     backward: bool = False,
 ) -> MapSpec:
-    """The request for a map; ValueError, naming the option, where one is missing, too many or out of its range."""
+    """Return the request for a map; ValueError names a missing, superfluous or invalid option."""
     return MapSpec(
         find_potential(case),
         find_plane(plane),
@@ -75,10 +75,10 @@ def build_map_spec(
 def _choose_energy(plane: PlaneName, energy: float | None, energies: tuple[float, float] | None) -> float | tuple[float, float]:
     if plane is PlaneName.X_H:
         if energies is None or energy is not None:
-            raise ValueError("energies: the plane x_h takes a range, --energies LOW HIGH, and no --energy")
+            raise ValueError("energies: the plane x_h needs --energies LOW HIGH, not --energy")
         return energies
     if energy is None or energies is not None:
-        raise ValueError(f"energy: the plane {plane} takes one, --energy H, and no --energies")
+        raise ValueError(f"energy: the plane {plane} needs --energy H, not --energies")
     return energy
 
 
@@ -89,12 +89,12 @@ def find_start(
     start: tuple[float, float] | None,
     state: tuple[float, float, float, float] | None,
 ) -> tuple[float, float, float, float]:
-    """x, y, px, py of one orbit, given as they are or as a point of a plane; ValueError when no orbit starts there."""
+    """Return x, y, px, py of a start, given as a state or as a point of a plane; ValueError if it is forbidden."""
     if (start is None) == (state is None):
         raise ValueError("start: give either --start X ORDINATE on a plane, or --state X Y PX PY")
     if state is not None:
         if energy is not None:
-            raise ValueError("energy: a whole state, --state, has its energy already")
+            raise ValueError("energy: --state already determines it; leave --energy out")
         return state
     assert start is not None
     if plane is PlaneName.X_H and energy is not None:

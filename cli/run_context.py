@@ -1,4 +1,4 @@
-"""Work under way: Ctrl-C stops it in good order, a bar on the terminal tells how far it is."""
+"""Cancellation by Ctrl-C and progress bars for one run of a command."""
 
 from __future__ import annotations
 
@@ -15,29 +15,32 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 
 
 @dataclass(frozen=True)
-class Work:
-    """What computations need.
+class RunContext:
+    """Executor, cancel event and progress bars of one run.
 
     Attributes
     ----------
     cancel
         Set by Ctrl-C.
     executor
-        The pool; None for the engine's own, with a thread for each core.
+        Executor of the computations; None for the default pool with one thread per core.
     progress
-        The bars; nobody sees them unless stderr is a terminal.
+        Progress bars, disabled unless stderr is a terminal.
     """
 
     cancel: threading.Event
     executor: Executor | None
     progress: Progress
 
-    def begin(self, stage: str) -> Callable[[float], None] | None:
-        """Show what is done next; the returned call tells its share, 0 to 1. None where nobody looks: it costs time.
+    def start_stage(self, stage: str) -> Callable[[float], None] | None:
+        """Show a new stage and return its progress callback, which takes a share from 0 to 1; None if bars are disabled.
 
-        Raises CancelledError when stopped already.
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            If the run is already cancelled.
         """
-        self.stop_if_cancelled()
+        self.raise_if_cancelled()
         if self.progress.disable:
             return None
         for task in self.progress.tasks:
@@ -45,45 +48,45 @@ class Work:
         task_id = self.progress.add_task(stage, total=None)
         return lambda share: self.progress.update(task_id, total=1.0, completed=share)
 
-    def stop_if_cancelled(self) -> None:
-        """Raise CancelledError when stopped."""
+    def raise_if_cancelled(self) -> None:
+        """Raise `concurrent.futures.CancelledError` if Ctrl-C was pressed."""
         if self.cancel.is_set():
             raise CancelledError
 
 
 @contextmanager
-def working(threads: int | None = None, executor: Executor | None = None) -> Iterator[Work]:
-    """Everything inside may take long; on leaving it is whole.
+def cancellable_run(threads: int | None = None, executor: Executor | None = None) -> Iterator[RunContext]:
+    """Run a long computation that Ctrl-C cancels.
 
     Parameters
     ----------
     threads
-        Of a pool of its own, 1 or more; None for none.
+        Size of a new thread pool, 1 or more; None for the default pool.
     executor
-        Where to compute instead, such as a cluster's; left open.
+        Executor to use instead, such as a cluster's; not shut down here.
 
     Raises
     ------
     concurrent.futures.CancelledError
-        On leaving, when Ctrl-C was pressed: what was computed may be unfinished, and is not to be written.
+        On exit, if Ctrl-C was pressed: results may be incomplete and must not be written.
     """
     cancel = threading.Event()
     console = Console(stderr=True)
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     bars = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
     pool = nullcontext(executor) if executor is not None or threads is None else ThreadPoolExecutor(threads)
-    with pool as chosen, _ctrl_c_sets(cancel), bars:
-        work = Work(cancel, chosen, bars)
-        yield work
-        work.stop_if_cancelled()
+    with pool as chosen, _cancel_on_ctrl_c(cancel), bars:
+        context = RunContext(cancel, chosen, bars)
+        yield context
+        context.raise_if_cancelled()
 
 
 @contextmanager
-def _ctrl_c_sets(cancel: threading.Event) -> Iterator[None]:
-    """The first Ctrl-C asks the work to stop, which it does within 0.2 s; a second one does not wait for it."""
-    elsewhere = threading.current_thread() is not threading.main_thread()
-    if elsewhere or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-        # Signals come to the main thread; and who starts a program in the background has them ignored.
+def _cancel_on_ctrl_c(cancel: threading.Event) -> Iterator[None]:
+    """Set `cancel` at the first Ctrl-C; a second one raises KeyboardInterrupt at once."""
+    in_thread = threading.current_thread() is not threading.main_thread()
+    if in_thread or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # Signal handlers belong to the main thread, and a shell starts background jobs with SIGINT ignored.
         yield
         return
 

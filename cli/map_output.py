@@ -1,4 +1,4 @@
-"""The files that a map is written to."""
+"""Output files of a map."""
 
 from __future__ import annotations
 
@@ -8,17 +8,16 @@ from pathlib import Path
 
 from app.exports import netcdf_bytes, png_bytes
 from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import LARGEST_SIDE, SMALLEST_SIDE
-from app.rendering.map_images import TITLES
+from app.rendering.map_images import LARGEST_PICTURE, SMALLEST_PICTURE, TITLES
 from app.rendering.palette import Palette
-from cli.requests import find_palette
-from cli.written_files import Content, add_ending
+from cli.arguments import find_palette
+from cli.files import Content, add_ending
 from engine import EscapeMap, StableManifolds
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """Which pictures, in which colours, how large."""
+    """Pictures to draw, their palette and size."""
 
     pictures: tuple[str, ...]
     palette: Palette
@@ -26,26 +25,26 @@ class Drawing:
 
     @classmethod
     def of(cls, pictures: Sequence[str], palette: str, side: int) -> Drawing:
-        """From what was typed; ValueError, before anything is computed, when one of it is not known."""
+        """Check the options; ValueError if one is invalid."""
         for picture in pictures:
             if picture not in TITLES:
                 raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
-        if not SMALLEST_SIDE <= side <= LARGEST_SIDE:
-            raise ValueError(f"side={side}: must be from {SMALLEST_SIDE} to {LARGEST_SIDE} pixels")
+        if not SMALLEST_PICTURE <= side <= LARGEST_PICTURE:
+            raise ValueError(f"side={side}: must be from {SMALLEST_PICTURE} to {LARGEST_PICTURE} pixels")
         return cls(tuple(dict.fromkeys(pictures)), find_palette(palette), side)
 
 
 def contents(
-    stem: Path, formats: Sequence[str], frame: EscapeMap, findings: MapAnalyses, drawing: Drawing
+    stem: Path, formats: Sequence[str], frame: EscapeMap, analyses: MapAnalyses, drawing: Drawing
 ) -> dict[Path, Content]:
-    """What to write where: the map in each of the formats nc and png, and its manifolds as a table where there are any."""
+    """Return the content of each output file: the map in the given formats, and its manifolds, if any, as CSV."""
     files: dict[Path, Content] = {}
     if "nc" in formats:
-        files[add_ending(stem, "nc")] = netcdf_bytes(frame, findings)
+        files[add_ending(stem, "nc")] = netcdf_bytes(frame, analyses)
     if "png" in formats:
-        files[add_ending(stem, "png")] = png_bytes(frame, drawing.pictures, drawing.palette, drawing.side, findings=findings)
-    if findings.manifolds is not None:
-        files[stem.with_name(f"{stem.name}-manifolds.csv")] = _manifolds_csv(findings.manifolds)
+        files[add_ending(stem, "png")] = png_bytes(frame, drawing.pictures, drawing.palette, drawing.side, analyses=analyses)
+    if analyses.manifolds is not None:
+        files[stem.with_name(f"{stem.name}-manifolds.csv")] = _manifolds_csv(analyses.manifolds)
     return files
 
 

@@ -1,0 +1,96 @@
+"""A map and its analyses, computed one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import isnan
+from typing import Any
+
+from app.rendering.map_analyses import MapAnalyses
+from cli.run_context import RunContext
+from engine import (
+    MOST_IMAGES,
+    EscapeMap,
+    MapSpec,
+    Plane,
+    compute_map,
+    compute_regularity,
+    compute_trust,
+    find_stable_manifolds,
+    join_origin_fates,
+)
+
+
+@dataclass(frozen=True)
+class AnalysisOptions:
+    """Requested analyses: regularity of bounded orbits, origin channels, trust, and number of manifold images."""
+
+    judge: bool
+    origins: bool
+    trust: bool
+    images: int
+
+    @property
+    def pictures(self) -> list[str]:
+        """Pictures of the requested analyses."""
+        return [name for name, requested in (("characters", self.judge), ("origins", self.origins)) if requested]
+
+    def check(self, spec: MapSpec) -> None:
+        """Raise ValueError if an analysis is not defined for the map."""
+        if not 0 <= self.images <= MOST_IMAGES:
+            raise ValueError(f"manifolds={self.images}: must be from 0 to {MOST_IMAGES} images")
+        if self.images and (spec.plane is not Plane.X_PX or spec.backward):
+            raise ValueError(f"manifolds={self.images}: stable manifolds need --plane x_px, and no --backward")
+        if self.origins and spec.backward:
+            raise ValueError("origins: cannot be combined with --backward")
+
+
+def compute_map_with_analyses(spec: MapSpec, wanted: AnalysisOptions, run: RunContext) -> tuple[EscapeMap, MapAnalyses]:
+    """Return the complete map and its analyses; CancelledError if interrupted."""
+    frame = compute_whole_map(spec, run, "map")
+    found: dict[str, Any] = {}
+    if wanted.judge:
+        run.start_stage("bounded orbits")
+        found["regularity"] = compute_regularity(frame, None, run.cancel, run.executor)
+    if wanted.origins:
+        found["origins"] = join_origin_fates(frame, compute_whole_map(replace(spec, backward=True), run, "origins"))
+    if wanted.trust:
+        run.start_stage("doubtful pixels")
+        found["trust"] = compute_trust(frame, None, run.cancel, run.executor)
+    if wanted.images:
+        assert not isinstance(spec.energy, tuple)
+        run.start_stage("stable manifolds")
+        found["manifolds"] = find_stable_manifolds(
+            spec.potential, spec.energy, wanted.images, window=spec.window, executor=run.executor, cancel=run.cancel
+        )
+    run.raise_if_cancelled()
+    return frame, MapAnalyses(**found)
+
+
+def compute_whole_map(spec: MapSpec, run: RunContext, stage: str) -> EscapeMap:
+    """Return the complete map; CancelledError if interrupted."""
+    frame = compute_map(spec, _report_frames(run.start_stage(stage)), run.cancel, run.executor)
+    run.raise_if_cancelled()
+    return frame
+
+
+def _report_frames(report: Callable[[float], None] | None) -> Callable[[EscapeMap], None] | None:
+    return None if report is None else lambda frame: report(frame.progress)
+
+
+def describe_analyses(analyses: MapAnalyses) -> list[str]:
+    """Return one sentence per analysis."""
+    sentences = []
+    if analyses.regularity is not None:
+        share = analyses.regularity.chaotic_share
+        sentences.append("No orbit is bounded." if isnan(share) else f"Of the bounded orbits {100 * share:.2f} % are chaotic.")
+    if analyses.origins is not None:
+        sentences.append(analyses.origins.describe())
+    if analyses.trust is not None:
+        sentences.append(analyses.trust.describe())
+    if analyses.manifolds is not None:
+        arcs = analyses.manifolds.arcs
+        cut = ", some of them left unfinished" if analyses.manifolds.truncated else ""
+        sentences.append(f"Stable manifolds: {len(arcs)} arcs of {sum(arc.x.size for arc in arcs)} points{cut}.")
+    return sentences

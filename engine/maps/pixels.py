@@ -1,0 +1,109 @@
+"""Pixels of a map, numbered row by row from 0: mirror images, and codes that an analysis assigns to pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from engine.arrays import read_only
+from engine.dynamics.planes import find_mirror_images
+from engine.maps.result import EscapeMap
+from engine.maps.spec import MapSpec
+
+
+@dataclass(frozen=True, eq=False)
+class PixelAnalysis:
+    """Result of an analysis of every pixel of a map.
+
+    Attributes
+    ----------
+    spec
+        The map's request.
+    """
+
+    spec: MapSpec
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes held by the arrays."""
+        values = (getattr(self, field.name) for field in fields(self))
+        return sum(value.nbytes for value in values if isinstance(value, np.ndarray))
+
+
+def code_share(codes: np.ndarray, *counted: int) -> float:
+    """Share of the codes that equal one of `counted`; NaN if there are no codes."""
+    return float(np.mean(np.isin(codes, counted))) if codes.size else float("nan")
+
+
+class MirrorPixels:
+    """Pairs of pixels whose orbits are exact mirror images under x → −x; only the first pixel of a pair needs computing.
+
+    Parameters
+    ----------
+    spec
+        The map.
+    x, ordinate
+        (columns,), (rows,) pixel centres of the map or of some of its rows.
+
+    Attributes
+    ----------
+    symmetric
+        Whether the potential and the pixels have this symmetry.
+    partner
+        (n,) the mirror image of each pixel; without the symmetry, the pixel itself.
+    """
+
+    def __init__(self, spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> None:
+        partner = find_mirror_images(spec.potential, spec.plane, x, ordinate)
+        self.symmetric = partner is not None
+        self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
+
+    def firsts_among(self, pixels: np.ndarray) -> np.ndarray:
+        """Those of the pixels (n,) that are the first of their pair."""
+        firsts: np.ndarray = pixels[pixels <= self.partner[pixels]]
+        return firsts
+
+    def firsts_of(self, pixels: np.ndarray) -> np.ndarray:
+        """The first pixel of the pair of each of the pixels (n,), sorted, without duplicates."""
+        firsts: np.ndarray = np.unique(np.minimum(pixels, self.partner[pixels]))
+        return firsts
+
+    def copy_to_seconds(self, values: np.ndarray) -> None:
+        """In an array (rows, columns), overwrite the second pixel of each pair by the first."""
+        seconds = np.flatnonzero(self.partner < np.arange(self.partner.size))
+        values.ravel()[seconds] = values.ravel()[self.partner[seconds]]
+
+
+class PixelCodes:
+    """Codes of a map's pixels while an analysis decides them; the second of two mirror images gets the code of the first.
+
+    Parameters
+    ----------
+    escape_map
+        The map.
+    codes
+        (rows, columns) codes known from the map alone, and `pending` where the analysis has to decide.
+    pending
+        The code of undecided pixels.
+
+    Attributes
+    ----------
+    pixels
+        (n,) the pixels to decide, without second mirror images.
+    """
+
+    def __init__(self, escape_map: EscapeMap, codes: np.ndarray, pending: int) -> None:
+        self._mirror = MirrorPixels(escape_map.spec, escape_map.x, escape_map.ordinate)
+        self._codes, self._pending = codes.astype(np.int8), pending
+        self.pixels = self._mirror.firsts_among(np.flatnonzero(codes == pending))
+
+    def assign(self, pixels: np.ndarray, code: int) -> None:
+        """Set the code of the pixels (n,)."""
+        self._codes.ravel()[pixels] = code
+
+    def snapshot(self) -> tuple[np.ndarray, bool]:
+        """A read-only copy of the codes (rows, columns), and whether all pixels are decided."""
+        codes = self._codes.copy()
+        self._mirror.copy_to_seconds(codes)
+        return read_only(codes), not np.any(codes == self._pending)

@@ -1,0 +1,22 @@
+"""Numbers and counts in sentences."""
+
+from __future__ import annotations
+
+
+def format_count(count: int, singular: str, plural: str = "") -> str:
+    """A count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
+    return f"{count} {singular if count == 1 else plural or f'{singular}s'}"
+
+
+def format_number(value: float, digits: int = 4) -> str:
+    """A number to `digits` significant digits, with typographic minus and infinity signs."""
+    return _typeset(f"{value:.{digits}g}")
+
+
+def format_decimals(value: float, decimals: int) -> str:
+    """A number to `decimals` decimals, with a typographic minus sign and without a negative zero."""
+    return _typeset(f"{round(value, decimals) + 0.0:.{decimals}f}")
+
+
+def _typeset(text: str) -> str:
+    return text.replace("-", "−").replace("inf", "∞")

@@ -1,0 +1,158 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import HyperbolicTangent, Polynomial, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+
+MANY = 10**9
+ENERGIES = np.linspace(0.26, 0.6, 25)
+TANGENT = HyperbolicTangent(15.85, 4.93)
+PARABOLA = Polynomial((-1.496, 7.585, -5.938))
+
+
+def counts_of(shares: np.ndarray, starts: int = MANY) -> tuple[np.ndarray, np.ndarray]:
+    return np.rint(shares * starts).astype(np.int64), np.full(shares.shape, starts)
+
+
+def drawn(shares: np.ndarray, rng: np.random.Generator, starts: int = 9000) -> tuple[np.ndarray, np.ndarray]:
+    return rng.binomial(starts, shares), np.full(shares.shape, starts)
+
+
+# Fits.
+
+
+def test_a_hyperbolic_tangent_is_recovered() -> None:
+    fit = fit_escape_shares(ENERGIES, *counts_of(TANGENT(ENERGIES)))
+    assert fit.curve.parameters == pytest.approx({"a": 15.85, "b": 4.93}, rel=1e-6)
+    assert abs(fit.deviation.largest) < 1e-8
+
+
+def test_a_polynomial_is_recovered() -> None:
+    fit = fit_direct_shares(ENERGIES, *counts_of(PARABOLA(ENERGIES)), degree=2)
+    assert fit.curve.parameters == pytest.approx({"c0": -1.496, "c1": 7.585, "c2": -5.938}, rel=1e-6)
+
+
+def test_a_polynomial_fit_agrees_with_numpy() -> None:
+    direct, starts = drawn(PARABOLA(ENERGIES), np.random.default_rng(1))
+    fit = fit_direct_shares(ENERGIES, direct, starts)
+    expected = np.polynomial.polynomial.polyfit(ENERGIES, direct / starts, 3)
+    assert list(fit.curve.parameters.values()) == pytest.approx(expected.tolist(), rel=1e-7)
+
+
+def test_the_interval_of_a_line_is_the_sandwich_formula() -> None:
+    direct, starts = drawn(np.linspace(0.2, 0.8, 12), np.random.default_rng(2))
+    h = np.linspace(0.2, 0.5, 12) ** 1.5
+    fit = fit_direct_shares(h, direct, starts, degree=1)
+    design = np.column_stack([np.ones(12), h])
+    bread = np.linalg.inv(design.T @ design)
+    leverage = np.diag(design @ bread @ design.T)
+    residuals = direct / starts - design @ list(fit.curve.parameters.values())
+    covariance = bread @ design.T @ np.diag((residuals / (1.0 - leverage)) ** 2) @ design @ bread
+    # Student's t with 10 degrees of freedom: 2.228 (tables).
+    expected = 2.2281388 * np.sqrt(np.diag(covariance))
+    np.testing.assert_allclose([(high - low) / 2.0 for low, high in fit.intervals.values()], expected, rtol=1e-6)
+
+
+def coverage(fits: list[ShareFit], truth: dict[str, float]) -> dict[str, float]:
+    return {
+        name: float(np.mean([fit.intervals[name][0] <= value <= fit.intervals[name][1] for fit in fits]))
+        for name, value in truth.items()
+    }
+
+
+def test_intervals_of_a_tangent_have_about_95_percent_coverage() -> None:
+    rng = np.random.default_rng(3)
+    held = coverage([fit_escape_shares(ENERGIES, *drawn(TANGENT(ENERGIES), rng)) for _ in range(400)], TANGENT.parameters)
+    assert all(0.91 <= share <= 0.985 for share in held.values()), held
+
+
+def test_intervals_of_a_polynomial_have_about_95_percent_coverage() -> None:
+    rng = np.random.default_rng(4)
+    held = coverage([fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), rng), 2) for _ in range(400)], PARABOLA.parameters)
+    assert all(0.91 <= share <= 0.99 for share in held.values()), held
+
+
+def bent(h: np.ndarray) -> np.ndarray:
+    """Not a hyperbolic tangent: an island appears and vanishes."""
+    shares: np.ndarray = TANGENT(h) - 0.1 * np.exp(-(((h - 0.4) / 0.03) ** 2))
+    return shares
+
+
+def test_intervals_cover_the_best_curve_of_a_wrong_form_at_random_energies() -> None:
+    rng = np.random.default_rng(5)
+    dense = np.linspace(0.26, 0.6, 4001)
+    best = fit_escape_shares(dense, *counts_of(bent(dense))).curve.parameters
+    draws = [np.sort(rng.uniform(0.26, 0.6, 25)) for _ in range(400)]
+    held = coverage([fit_escape_shares(h, *counts_of(bent(h))) for h in draws], best)
+    assert all(0.8 <= share <= 0.985 for share in held.values()), held
+
+
+def test_systematic_residuals_widen_intervals_for_any_number_of_starts() -> None:
+    true, wrong = (fit_escape_shares(ENERGIES, *counts_of(curve(ENERGIES))) for curve in (TANGENT, bent))
+    widths = [fit.intervals["a"][1] - fit.intervals["a"][0] for fit in (true, wrong)]
+    assert widths[1] > 1000.0 * widths[0]
+
+
+def test_saturated_shares_determine_no_tangent() -> None:
+    fit = fit_escape_shares(ENERGIES, np.where(ENERGIES > 0.4, 100, 0), np.full(25, 100))
+    assert not fit.determined
+    assert fit.describe() == "No fit: the shares, from 0 to 1 at 25 energies, determine no curve."
+
+
+def test_a_steep_step_has_very_wide_intervals() -> None:
+    escaped = np.where(ENERGIES > 0.4, MANY, 0)
+    escaped[[8, 9, 10]] = 1, MANY // 2, MANY - 1
+    fit = fit_escape_shares(ENERGIES, escaped, np.full(25, MANY))
+    assert fit.determined
+    assert all(high - low > abs(fit.curve.parameters[name]) for name, (low, high) in fit.intervals.items())
+
+
+# Deviations.
+
+
+def test_the_largest_deviation_has_its_energy_and_sign() -> None:
+    shares = PARABOLA(ENERGIES)
+    shares[7] += 0.05
+    found = measure_deviation(PARABOLA, ENERGIES, *counts_of(shares))
+    assert found.largest == pytest.approx(-0.05, abs=1e-8)
+    assert found.energy == ENERGIES[7]
+    assert found.rms == pytest.approx(0.05 / 5.0, abs=1e-8)
+
+
+def test_the_description_has_formula_and_deviation() -> None:
+    fit = fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), np.random.default_rng(6)), 2)
+    text = fit.describe()
+    assert text.startswith(f"{fit.curve.formula} with c0 = −1.")
+    assert f"at h = {fit.deviation.energy:g}" in text
+
+
+# Invalid parameters.
+
+
+def test_counts_above_the_starts_raise() -> None:
+    with pytest.raises(ValueError, match="escaped="):
+        fit_escape_shares(ENERGIES, np.full(25, 11), np.full(25, 10))
+
+
+def test_shares_instead_of_counts_raise() -> None:
+    with pytest.raises(ValueError, match="direct="):
+        fit_direct_shares(ENERGIES, np.full(25, 0.5), np.full(25, 10))
+
+
+def test_zero_starts_raise() -> None:
+    with pytest.raises(ValueError, match="starts="):
+        fit_escape_shares(ENERGIES, np.zeros(25, int), np.zeros(25, int))
+
+
+@pytest.mark.parametrize("energies", [[0.3, 0.4, 0.5], [0.3, 0.3, 0.4, 0.5], [0.3, 0.4, 0.5, float("inf")]])
+def test_energies_too_few_for_a_fit_raise(energies: list[float]) -> None:
+    count = len(energies)
+    with pytest.raises(ValueError, match="h="):
+        fit_escape_shares(energies, np.full(count, 5), np.full(count, 10))
+
+
+@pytest.mark.parametrize("degree", [0, 7])
+def test_degrees_out_of_range_raise(degree: int) -> None:
+    with pytest.raises(ValueError, match="degree="):
+        fit_direct_shares(ENERGIES, np.full(25, 5), np.full(25, 10), degree)
