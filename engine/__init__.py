@@ -1,4 +1,14 @@
-"""Escapes in open Hamiltonian systems with polynomial potentials: orbits, exits, maps. Computes, and knows of no screen."""
+"""Escapes in open Hamiltonian systems with two degrees of freedom and polynomial potentials.
+
+These are the public names of the library; it does not depend on the page in `app`.
+
+- systems: `Potential`, `CASES`, `parse_formula`, `review_potential`
+- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `evaluate_indicators`
+- maps of escapes: `MapSpec`, `compute_map`, `compute_preview`, `compute_regularity`, `compute_trust`
+- basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`
+- energies: `compute_energy_curves`, `compute_crossing_statistics`, `run_sweep`
+- background jobs: `Jobs`, `JobClient` and the requests
+"""
 
 from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
@@ -11,22 +21,21 @@ from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.dynamics.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.execution import count_cores
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
-from engine.jobs.client import MOST_REQUESTS, JobClient, Requests
-from engine.jobs.manager import JobRequest, Jobs
+from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
+from engine.jobs.context import JobRequest
+from engine.jobs.manager import Jobs
 from engine.jobs.requests import (
+    Answer,
     BasinMeasures,
     BasinMeasuresRequest,
     BirkhoffDigitsRequest,
     DecayLawsRequest,
-    DivergentStartAnswer,
     DivergentStartRequest,
     EnergyCurvesRequest,
     EnergyPointRequest,
     OrbitRequest,
     OriginFateRequest,
-    PotentialReviewAnswer,
     PotentialReviewRequest,
-    Preview,
     PreviewRequest,
     RegularityRequest,
     SeparationRequest,
@@ -47,7 +56,7 @@ from engine.maps.spec import LARGEST_SIDE, MapSpec
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from engine.maps.trust import TrustMap, compute_trust
 from engine.potentials.catalogue import POTENTIALS, PotentialEntry, channel_family
-from engine.potentials.formula_parser import LONGEST_TEXT, parse_formula, typeset, write_formula
+from engine.potentials.formula_parser import LONGEST_TEXT, parse_formula, write_formula
 from engine.potentials.potential import CASES, FREQUENCIES, STRENGTHS, Potential
 from engine.potentials.validation_report import CriticalPoint, PointKind, PotentialReview, review_potential
 from engine.statistics.decay_law_fits import fit_decay_laws
@@ -73,13 +82,14 @@ from engine.trajectories.chaos_indicators import (
     compute_birkhoff_digits,
     evaluate_indicators,
 )
-from engine.trajectories.nearest_divergent_start import Twin, find_twin
+from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
 from engine.trajectories.section_crossings import find_section_crossings
 from engine.trajectories.separation import LONGEST_SEPARATION, Separation, compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
 from engine.validation import LONGEST_TIME
 from engine.warmup import is_ready_for_maps, prepare_kernels
+from engine.wording import format_number
 
 __all__ = [
     "CASES",
@@ -98,6 +108,7 @@ __all__ = [
     "PREVIEW_TIME",
     "STRENGTHS",
     "WADA_COUNTS_BOUNDED",
+    "Answer",
     "BasinEntropy",
     "BasinMeasures",
     "BasinMeasuresRequest",
@@ -109,7 +120,7 @@ __all__ = [
     "DecayLaws",
     "DecayLawsRequest",
     "Deviation",
-    "DivergentStartAnswer",
+    "DivergentStart",
     "DivergentStartRequest",
     "EnergyCurves",
     "EnergyCurvesRequest",
@@ -125,6 +136,7 @@ __all__ = [
     "JobClient",
     "JobRequest",
     "JobStats",
+    "JobSubmitter",
     "Jobs",
     "LawFit",
     "LyapunovOrbit",
@@ -142,15 +154,12 @@ __all__ = [
     "Potential",
     "PotentialEntry",
     "PotentialReview",
-    "PotentialReviewAnswer",
     "PotentialReviewRequest",
-    "Preview",
     "PreviewRequest",
     "RadiusEnvelope",
     "Regularity",
     "RegularityMap",
     "RegularityRequest",
-    "Requests",
     "Separation",
     "SeparationRequest",
     "ShareFit",
@@ -163,7 +172,6 @@ __all__ = [
     "Trust",
     "TrustMap",
     "TrustRequest",
-    "Twin",
     "UncertaintyExponent",
     "UncertaintyExponentRequest",
     "UnresolvedMapSpec",
@@ -196,15 +204,16 @@ __all__ = [
     "describe_fate",
     "evaluate_indicators",
     "exit_labels",
+    "find_divergent_start",
     "find_lyapunov_orbits",
     "find_section_crossings",
     "find_stable_manifolds",
     "find_super_sticky_orbits",
-    "find_twin",
     "fit_decay_laws",
     "fit_direct_shares",
     "fit_escape_shares",
     "fit_uncertainty",
+    "format_number",
     "integrate_orbit",
     "is_ready_for_maps",
     "join_origin_fates",
@@ -220,6 +229,5 @@ __all__ = [
     "tabulate_crossing_statistics",
     "trace_equipotentials",
     "trace_zero_velocity_curve",
-    "typeset",
     "write_formula",
 ]

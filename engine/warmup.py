@@ -1,4 +1,4 @@
-"""Compiling ahead of time, so that nobody waits for it later."""
+"""Compile kernels ahead of time, or load them from the kernel cache."""
 
 from __future__ import annotations
 
@@ -16,48 +16,48 @@ from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.trajectories.trajectory import integrate_orbit
 
-_SHORT = 10.0
+# Integration time of the calls that trigger compilation.
+_T_MAX = 10.0
 
-
-# What the first picture of a map, and the exits that it needs, are computed by.
-_FOR_MAPS = ("step", "jets", "potential_value", "advance", "swing")
+# Kernels of the first frame of a map and of the Lyapunov orbits it needs.
+_MAP_KERNELS = ("step", "jets", "potential_value", "advance", "swing")
 
 
 def is_ready_for_maps(potential: Potential) -> bool:
-    """Whether a map can begin at once: nothing needs to be compiled, as for other coefficients of a potential computed before."""
+    """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
     kernels = kernels_of(potential)
-    return all(getattr(kernels, name).signatures for name in _FOR_MAPS)
+    return all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
 def prepare_for_maps(potential: Potential) -> None:
-    """Compile what the first picture of a map needs, or load it from the cache.
+    """Compile the kernels for the first frame of a map, or load them from the cache.
 
     Parameters
     ----------
     potential
-        Any `Potential` with an exit; a structure not met before takes some seconds.
+        Any `Potential` with an exit. Compilation takes some seconds.
     """
     if is_ready_for_maps(potential):
         return
     find_lyapunov_orbits(potential, 1.01 * potential.escape_energy)
-    compute_map(MapSpec(potential, Plane.X_PX, 1.01 * potential.escape_energy, (2, 2), t_max=_SHORT))
+    compute_map(MapSpec(potential, Plane.X_PX, 1.01 * potential.escape_energy, (2, 2), t_max=_T_MAX))
 
 
 def prepare_kernels(potential: Potential) -> None:
-    """Compile every kernel of a potential, or load it from the cache, by running it once on next to nothing.
+    """Compile all kernels of a potential, or load them from the cache, by calling each with minimal input.
 
     Parameters
     ----------
     potential
-        Any `Potential` with a saddle; the first time on a machine this takes some seconds.
+        Any `Potential` with an exit. Compilation takes some seconds, once per machine.
     """
     prepare_for_maps(potential)
     find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1)
-    # Nothing leaves, so that there are bounded orbits to judge.
+    # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
     energy = 0.5 * potential.escape_energy
-    spec = MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_SHORT)
+    spec = MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX)
     compute_regularity(compute_map(spec))
     start = start_states(potential, Plane.X_PX, energy, np.zeros(1), np.zeros(1))
-    integrate_orbit(potential, start[0], _SHORT)
-    count_agreeing_digits(potential, start, _SHORT)
-    find_section_points(potential, start, 1, _SHORT)
+    integrate_orbit(potential, start[0], _T_MAX)
+    count_agreeing_digits(potential, start, _T_MAX)
+    find_section_points(potential, start, 1, _T_MAX)

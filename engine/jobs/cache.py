@@ -1,47 +1,58 @@
-"""Results kept for the next one who asks, in bounded memory."""
+"""Thread-safe least-recently-used cache of results, bounded by memory."""
 
 from __future__ import annotations
 
-from collections import OrderedDict
+import threading
 from collections.abc import Hashable, Iterator
 from typing import Any, Protocol
 
+from cachetools import LRUCache
 
-class Sized(Protocol):
-    """A result that knows its size in memory."""
+
+class SupportsNbytes(Protocol):
+    """A result that reports its size in memory, as NumPy arrays do."""
 
     @property
     def nbytes(self) -> int:
-        """Bytes held."""
+        """Size in bytes."""
 
 
 class ResultCache:
-    """Least recently used results, together at most `limit` bytes."""
+    """Least-recently-used cache of results.
+
+    Parameters
+    ----------
+    limit
+        Largest total size in bytes, 0 or more; larger results are not stored.
+    """
 
     def __init__(self, limit: int) -> None:
-        self.limit = limit
-        self.nbytes = 0
-        self._results: OrderedDict[Hashable, Any] = OrderedDict()
+        self._results: LRUCache[Hashable, Any] = LRUCache(limit, getsizeof=lambda result: result.nbytes)
+        self._lock = threading.Lock()
+
+    @property
+    def limit(self) -> int:
+        """Largest total size in bytes."""
+        return int(self._results.maxsize)
+
+    @property
+    def nbytes(self) -> int:
+        """Total size of the stored results in bytes."""
+        return int(self._results.currsize)
 
     def get(self, key: Hashable) -> Any:
-        """The result, None when it is not kept."""
-        if key in self._results:
-            self._results.move_to_end(key)
-        return self._results.get(key)
+        """Return the result stored under a key, or None."""
+        with self._lock:
+            return self._results.get(key)
 
-    def put(self, key: Hashable, result: Sized) -> None:
-        """Keep a result, at the cost of the ones not used for longest; one larger than the limit is not kept."""
-        self._drop(key)
-        if result.nbytes > self.limit:
-            return
-        self._results[key] = result
-        self.nbytes += result.nbytes
-        while self.nbytes > self.limit:
-            self._drop(next(iter(self._results)))
+    def put(self, key: Hashable, result: SupportsNbytes) -> None:
+        """Store a result, evicting the least recently used ones where space is needed."""
+        with self._lock:
+            self._results.pop(key, None)
+            if result.nbytes <= self.limit:
+                self._results[key] = result
 
     def __iter__(self) -> Iterator[Hashable]:
-        return iter(list(self._results))
-
-    def _drop(self, key: Hashable) -> None:
-        if key in self._results:
-            self.nbytes -= self._results.pop(key).nbytes
+        """Iterate over a snapshot of the keys, without marking the results as used."""
+        with self._lock:
+            return iter(list(self._results))

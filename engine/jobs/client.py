@@ -1,91 +1,86 @@
-"""One of the many who ask: requests that take turns with those of others, and are limited in number."""
+"""A client of the job manager: scheduled fairly against other clients, with a limit on its requests."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
-from engine.jobs.cache import Sized
-from engine.jobs.manager import JobRequest, Jobs
+from engine.jobs.cache import SupportsNbytes
+from engine.jobs.context import JobRequest
+from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.validation import read_count
+from engine.validation import checked_count
 
 MOST_REQUESTS = 32
-"""Requests of one visitor under way at the same time, unless told otherwise: more than all switches of the page make together."""
+"""Default limit on the open requests of one client; more than all controls of a page can cause together."""
+
+_LARGEST_LIMIT = 1000
 
 
-MOST_REQUESTS_EVER = 1000
-"""Largest limit: beyond it there is none to speak of."""
-
-
-class Requests(Protocol):
-    """Where requests are made: `Jobs` itself, or one visitor's way to it."""
+class JobSubmitter(Protocol):
+    """Accepts requests: `Jobs` itself, or a `JobClient` of it."""
 
     def request_map(
         self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
-        """Ask for a map, as `Jobs.request_map` says."""
+        """Request a map; see `Jobs.request_map`."""
 
-    def request[Result: Sized](
+    def request[Result: SupportsNbytes](
         self, spec: JobRequest[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
-        """Ask for anything else, as `Jobs.request` says."""
+        """Request any other result; see `Jobs.request`."""
 
 
 class JobClient:
-    """One visitor's way to the jobs of a process.
+    """One client of `Jobs`, such as a browser session.
 
     Parameters
     ----------
     jobs
-        The background work of the process.
+        The job manager.
     most_requests
-        How many may be under way at the same time, 1 to 1000.
+        Most requests open at the same time, 1 to 1000.
     """
 
     def __init__(self, jobs: Jobs, most_requests: int = MOST_REQUESTS) -> None:
         self._jobs = jobs
-        self._most_requests = read_count("most_requests", most_requests, 1, MOST_REQUESTS_EVER)
-        self._tickets: list[Subscription] = []
+        self._most_requests = checked_count("most_requests", most_requests, 1, _LARGEST_LIMIT)
+        self._subscriptions: list[Subscription] = []
 
     def request_map(
         self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
-        """As `Jobs.request_map`; ValueError to `on_error` when too many requests are under way."""
-        return self._admit(on_error) or self._keep(self._jobs.request_map(spec, on_frame, on_error, owner=self))
+        """Request a map as `Jobs.request_map` does; `on_error` receives a ValueError when too many requests are open."""
+        return self._refuse(on_error) or self._add(self._jobs.request_map(spec, on_frame, on_error, client=self))
 
-    def request[Result: Sized](
+    def request[Result: SupportsNbytes](
         self, spec: JobRequest[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
-        """As `Jobs.request`; ValueError to `on_error` when too many requests are under way."""
-        return self._admit(on_error) or self._keep(self._jobs.request(spec, on_result, on_error, owner=self))
+        """Request a result as `Jobs.request` does; `on_error` receives a ValueError when too many requests are open."""
+        return self._refuse(on_error) or self._add(self._jobs.request(spec, on_result, on_error, client=self))
 
     def close(self) -> None:
-        """Nobody waits any more, for anything."""
-        for ticket in self._tickets:
-            ticket.cancel()
-        self._tickets.clear()
+        """Cancel all subscriptions."""
+        for subscription in self._subscriptions:
+            subscription.cancel()
+        self._subscriptions.clear()
 
-    def _keep(self, ticket: Subscription) -> Subscription:
-        self._tickets.append(ticket)
-        return ticket
+    def _add(self, subscription: Subscription) -> Subscription:
+        self._subscriptions.append(subscription)
+        return subscription
 
-    def _admit(self, on_error: Callable[[Exception], None]) -> Subscription | None:
-        """None where there is room for one more request; else the ticket of one that has failed."""
-        self._tickets = [ticket for ticket in self._tickets if ticket.open]
-        if len(self._tickets) < self._most_requests:
+    def _refuse(self, on_error: Callable[[Exception], None]) -> Subscription | None:
+        """Return None if another request is allowed, else a closed subscription whose error has been reported."""
+        self._subscriptions = [subscription for subscription in self._subscriptions if subscription.open]
+        if len(self._subscriptions) < self._most_requests:
             return None
-        refused = Subscription(lambda ticket: None, _nobody, on_error)
+        refused = Subscription(lambda _: None, lambda _: None, on_error)
         refused.fail(
             ValueError(
-                f"requests: {self._most_requests} are under way for this page, and that is all it may have; "
-                "wait for one to end, or switch something off"
+                f"requests: {self._most_requests} are under way for this page, which is the limit; "
+                "wait for one to finish, or switch something off"
             )
         )
         return refused
-
-
-def _nobody(_result: Any) -> None:
-    """Where a request that was never made would have been answered."""

@@ -1,55 +1,63 @@
-"""What a job works with: the pool, the wish to stop, and the maps that are there already."""
+"""The interface between a job and the job manager: executors, cancellation, and results of other requests."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
+from engine.jobs.cache import SupportsNbytes
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 
 
+class JobRequest[Result: SupportsNbytes](Protocol):
+    """A hashable request that computes its own result; it is the key of that result in the cache."""
+
+    def __hash__(self) -> int: ...
+
+    def run(self, context: JobContext) -> Result:
+        """Compute the result. Raises CancelledError when the job is cancelled."""
+
+
 @dataclass(frozen=True, eq=False)
 class JobContext:
-    """The place where one job is done.
+    """What a running job may use.
 
     Attributes
     ----------
     executor
-        Takes the parts of what is computed: each call is back within about 50 ms.
-    call_executor
-        Takes calls that compute something whole, and may last.
+        For many short calls, each of about 50 ms.
+    long_call_executor
+        For single calls that may take seconds.
     cancel
-        Set when nobody waits for the job any more.
+        Set when the job has no subscriber left.
     publish
-        Hands a result on that is not complete yet.
+        Sends a partial result to the subscribers.
     find_map
-        On a bench, the map of a request, finished: kept, or computed for the purpose, or None when cancelled.
-    find_answer
-        On a bench, what another request of `engine.jobs.requests` comes to: kept, or made for the purpose.
+        Called with the context and the spec of a map; see `complete_map`.
+    find_result
+        Called with the context and a request; see `result`.
     """
 
     executor: Executor
-    call_executor: Executor
+    long_call_executor: Executor
     cancel: threading.Event
     publish: Callable[[Any], None]
-    find_map: Callable[[JobContext, MapSpec], EscapeMap | None]
-    find_answer: Callable[[JobContext, Any], Any]
+    find_map: Callable[[JobContext, MapSpec], EscapeMap]
+    find_result: Callable[[JobContext, Any], Any]
 
-    def whole_map(self, spec: MapSpec) -> EscapeMap:
-        """The map of a request, finished. Raises CancelledError when nobody waits for it any more."""
-        whole = self.find_map(self, spec)
-        if whole is None:
-            raise CancelledError
-        return whole
+    def complete_map(self, spec: MapSpec) -> EscapeMap:
+        """Return the complete map, from the cache or computed now. Raises CancelledError when the job is cancelled."""
+        return self.find_map(self, spec)
 
-    def answer(self, spec: Any) -> Any:
-        """What another request of `engine.jobs.requests` comes to."""
-        return self.find_answer(self, spec)
+    def result[Result: SupportsNbytes](self, request: JobRequest[Result]) -> Result:
+        """Return the result of another request, from the cache or computed now and cached."""
+        found: Result = self.find_result(self, request)
+        return found
 
-    def on_pool[Result](self, compute: Callable[..., Result], *arguments: Any, **options: Any) -> Result:
-        """What one call comes to, made by a thread that is there for computing."""
-        return self.call_executor.submit(compute, *arguments, cancel=self.cancel, **options).result()
+    def run_long_call[Result](self, function: Callable[..., Result], *arguments: Any, **options: Any) -> Result:
+        """Call ``function(*arguments, cancel=self.cancel, **options)`` on a worker thread and wait for its result."""
+        return self.long_call_executor.submit(function, *arguments, cancel=self.cancel, **options).result()

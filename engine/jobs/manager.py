@@ -1,96 +1,82 @@
-"""Requests from many people to one pool: in the background, shared while in flight, cancellable, kept in bounded memory."""
+"""Job manager: background computations that are shared while in flight, cancellable, and cached in bounded memory."""
 
 from __future__ import annotations
 
 import logging
 import threading
+from collections import Counter
 from collections.abc import Callable, Hashable
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
-from engine.execution import count_workers, thread_pool
-from engine.jobs.cache import ResultCache, Sized
-from engine.jobs.context import JobContext
+from engine.execution import count_workers, create_thread_pool, is_cancelled, raise_if_cancelled
+from engine.jobs.cache import ResultCache, SupportsNbytes
+from engine.jobs.context import JobContext, JobRequest
 from engine.jobs.orbit_semaphore import OrbitSemaphore
-from engine.jobs.scheduler import FairScheduler, Line, Priority
+from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
 from engine.maps.compute import LARGEST_RUN, compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.sweeps.complete_map import require_complete
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
-"""Memory for kept results."""
+"""Default memory limit of cached results, in bytes."""
 
 DEFAULT_ORBITS = 4 * 2**20
-"""Orbits of large jobs under way together: some 500 MiB."""
+"""Default limit on the orbits of large running jobs; about 500 MiB."""
 
-# Threads that only wait for the pool and hand frames on; more jobs than this wait for their turn.
+# Coordinating threads mostly wait for the pool; further jobs are queued.
 _COORDINATORS = 1024
 
 log = logging.getLogger(__name__)
 
 
-class JobRequest[Result: Sized](Protocol):
-    """A request that knows how it is answered."""
-
-    def __hash__(self) -> int: ...
-
-    def run(self, bench: JobContext) -> Result:
-        """The answer."""
-
-
-class _End(Enum):
-    DONE = "done"
-    FAILED = "failed"
-    CANCELLED = "cancelled"
-
-
 @dataclass(eq=False)
 class _Job:
     key: Hashable
-    tickets: list[Subscription]
-    owner: Hashable
+    subscriptions: list[Subscription]
+    client: Hashable
     interactive: bool
-    """Whether somebody sees nothing until this is there."""
+    """Whether the calls up to its first result have the highest priority."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
-    lines: list[Line] = field(default_factory=list)
-    """Where its calls wait for their turn."""
+    """The last partial result."""
+    executors: list[QueueExecutor] = field(default_factory=list)
 
     def stop(self) -> None:
-        """Nobody waits for it any more."""
+        """Cancel the job and its queued calls."""
         self.cancel.set()
-        for line in self.lines:
-            line.drop()
+        for executor in self.executors:
+            executor.cancel_futures()
 
-    def empty(self) -> list[Subscription]:
-        """It is over: let go of all that refers to it, so that its memory is free at once, and return its tickets."""
-        tickets, self.tickets, self.lines, self.latest = self.tickets, [], [], None
-        return tickets
+    def release(self) -> list[Subscription]:
+        """Drop all references, so that reference counting alone frees the memory, and return the subscriptions."""
+        subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], [], None
+        return subscriptions
 
-    def rank(self) -> Priority:
-        return Priority.FIRST_LOOK if self.interactive and self.latest is None else Priority.TILE
+    def priority(self) -> Priority:
+        return Priority.FIRST_FRAME if self.interactive and self.latest is None else Priority.BACKGROUND
 
 
 class Jobs:
-    """The background work of a process.
+    """Job manager of a process.
 
     Parameters
     ----------
     executor
-        Any `concurrent.futures.Executor` for the computing; None for the pool of this process, in which those who ask take turns.
+        Any `concurrent.futures.Executor` for the computations; None for a thread pool that is scheduled fairly among clients.
     cache_bytes
-        Most memory for finished and interrupted results, in bytes.
+        Memory limit of complete and interrupted results, in bytes.
     most_orbits
-        Of all large jobs under way together, which bounds the memory that they hold, by about 120 bytes an orbit.
+        Most orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
-        Of a pool of its own; None for that of this process.
-    only_idle
-        Whether that pool of its own takes no more than what the processors have left (`thread_pool`).
+        Size of a thread pool of its own; None for the default pool of this process.
+    idle_priority
+        Whether that pool of its own runs on idle cores only; see `engine.execution.create_thread_pool`.
     """
 
     def __init__(
@@ -99,12 +85,12 @@ class Jobs:
         cache_bytes: int = DEFAULT_CACHE_BYTES,
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
-        only_idle: bool = False,
+        idle_priority: bool = False,
     ) -> None:
         self._executor = executor
-        self._pool = FairScheduler(None if threads is None else thread_pool(threads, only_idle=only_idle))
-        self._room = OrbitSemaphore(most_orbits)
-        self._ended = dict.fromkeys(_End, 0)
+        self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads, idle_priority=idle_priority))
+        self._semaphore = OrbitSemaphore(most_orbits)
+        self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
         self._in_flight: dict[Hashable, _Job] = {}
@@ -116,176 +102,198 @@ class Jobs:
         on_frame: Callable[[EscapeMap], None],
         on_error: Callable[[Exception], None],
         *,
-        owner: Hashable = None,
+        client: Hashable = None,
     ) -> Subscription:
-        """Ask for a map; frames come to `on_frame` from another thread, the last one with ``complete`` True.
+        """Request a map.
 
-        A map that is kept comes at once; one that somebody already waits for is shared; one that was interrupted, or is kept
-        to a shorter t_max, goes on from there. All jobs of an `owner` together have one turn in each round; the first frame of
-        every map comes before the second one of any.
+        A cached map is delivered at once, a map in flight is shared, and an interrupted map, or one with a shorter t_max, is
+        resumed.
+
+        Parameters
+        ----------
+        spec
+            The map.
+        on_frame
+            Called from another thread with each frame; the last one has ``complete`` True.
+        on_error
+            Called from another thread with the exception if the computation fails.
+        client
+            Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
+            the second frame of any.
         """
 
-        def run(bench: JobContext) -> EscapeMap:
-            return self._compute_map(spec, bench, bench.publish)
+        def run(context: JobContext) -> EscapeMap:
+            return self._compute_map(spec, context, context.publish)
 
-        return self._request(spec, on_frame, on_error, run, owner, interactive=True)
+        return self._request(spec, on_frame, on_error, run, client, interactive=True)
 
-    def request[Result: Sized](
+    def request[Result: SupportsNbytes](
         self,
         spec: JobRequest[Result],
         on_result: Callable[[Result], None],
         on_error: Callable[[Exception], None],
         *,
-        owner: Hashable = None,
+        client: Hashable = None,
     ) -> Subscription:
-        """Ask for anything else (`engine.jobs.requests`); it comes to `on_result` from another thread.
+        """Request any other result; see `engine.jobs.requests`.
 
-        What grows as it is computed comes more than once, the last time with ``complete`` True.
+        Parameters
+        ----------
+        spec
+            The request.
+        on_result
+            Called from another thread with the result; if it has an attribute ``complete``, partial results come before.
+        on_error, client
+            As in `request_map`.
         """
-        return self._request(spec, on_result, on_error, spec.run, owner, interactive=False)
+        return self._request(spec, on_result, on_error, spec.run, client, interactive=False)
 
     @property
     def in_flight(self) -> int:
-        """Number of jobs under way."""
+        """Number of running and queued jobs."""
         return len(self._in_flight)
 
-    def figures(self) -> JobStats:
-        """How busy this is, and has been."""
-        done, failed, cancelled = (self._ended[end] for end in _End)
+    def stats(self) -> JobStats:
+        """Return the current load, totals and memory."""
         return JobStats(
             in_flight=self.in_flight,
-            calls_waiting=self._pool.waiting,
-            done=done,
-            failed=failed,
-            cancelled=cancelled,
+            calls_waiting=self._scheduler.pending_calls,
+            done=self._ended["done"],
+            failed=self._ended["failed"],
+            cancelled=self._ended["cancelled"],
             cache_bytes=self.cache.nbytes,
             cache_limit=self.cache.limit,
-            orbits_held=self._room.taken,
-            orbits_limit=self._room.orbits,
-            threads=count_workers(self._executor) if self._executor is not None else self._pool.threads,
+            orbits_held=self._semaphore.held,
+            orbits_limit=self._semaphore.limit,
+            threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
         )
 
-    def put_off_tiles(self, put_off: bool) -> None:
-        """Whether what makes pictures finer, and quick looks, wait, however long; first frames and orbits do not."""
-        self._pool.put_off_tiles(put_off)
+    def pause_background(self, paused: bool) -> None:
+        """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
+        self._scheduler.pause_background(paused)
 
     def stop(self) -> None:
-        """Stop all jobs, within about 0.2 s; those who wait for them hear nothing any more."""
+        """Cancel all jobs and subscriptions; the computations end within about 0.2 s."""
         with self._lock:
-            tickets = [ticket for job in self._in_flight.values() for ticket in job.tickets]
-        for ticket in tickets:
-            ticket.cancel()
+            subscriptions = [subscription for job in self._in_flight.values() for subscription in job.subscriptions]
+        for subscription in subscriptions:
+            subscription.cancel()
 
     def _request(
         self,
         key: Hashable,
         on_result: Callable[[Any], None],
         on_error: Callable[[Exception], None],
-        run: Callable[[JobContext], Sized],
-        owner: Hashable,
+        run: Callable[[JobContext], SupportsNbytes],
+        client: Hashable,
         interactive: bool,
     ) -> Subscription:
-        ticket = Subscription(lambda ticket: self._leave(key, ticket), on_result, on_error)
+        subscription = Subscription(partial(self._unsubscribe, key), on_result, on_error)
         with self._lock:
-            kept = self.cache.get(key)
-            whole = kept is not None and getattr(kept, "complete", True)
-            if whole:
-                latest = kept
+            cached = self.cache.get(key)
+            complete = _is_complete(cached)
+            if complete:
+                latest = cached
             elif key in self._in_flight:
-                self._in_flight[key].tickets.append(ticket)
+                self._in_flight[key].subscriptions.append(subscription)
                 latest = self._in_flight[key].latest
             else:
                 latest = None
-                job = self._in_flight[key] = _Job(key, [ticket], owner, interactive)
-                self._coordinators.submit(self._work, job, run)
+                job = self._in_flight[key] = _Job(key, [subscription], client, interactive)
+                self._coordinators.submit(self._run_job, job, run)
         if latest is not None:
-            ticket.deliver(latest, last=whole)
-        return ticket
+            subscription.deliver(latest, last=complete)
+        return subscription
 
-    def _leave(self, key: Hashable, ticket: Subscription) -> None:
+    def _unsubscribe(self, key: Hashable, subscription: Subscription) -> None:
         with self._lock:
             job = self._in_flight.get(key)
-            if job is None or ticket not in job.tickets:
+            if job is None or subscription not in job.subscriptions:
                 return
-            job.tickets.remove(ticket)
-            if not job.tickets:
+            job.subscriptions.remove(subscription)
+            if not job.subscriptions:
                 job.stop()
                 del self._in_flight[key]
 
-    def _work(self, job: _Job, run: Callable[[JobContext], Sized]) -> None:
+    def _run_job(self, job: _Job, run: Callable[[JobContext], SupportsNbytes]) -> None:
         error: Exception | None = None
-        result: Sized | None = None
+        result: SupportsNbytes | None = None
         try:
-            with self._room.hold(_count_orbits(job.key), job.cancel):
-                if not job.cancel.is_set():
-                    result = run(self._bench(job))
+            with self._semaphore.acquire(_count_orbits(job.key), job.cancel):
+                raise_if_cancelled(job.cancel)
+                result = run(self._context(job))
         except CancelledError:
             pass
         except Exception as raised:
             log.info("job %s ended with %r", job.key, raised)
             error = raised
+        for subscription in self._finish(job, result, error):
+            if error is not None:
+                subscription.fail(error)
+            elif result is not None:
+                subscription.deliver(result, last=True)
+
+    def _finish(self, job: _Job, result: SupportsNbytes | None, error: Exception | None) -> list[Subscription]:
+        """Cache the result, remove the job and return its subscriptions."""
         with self._lock:
-            if result is not None and not _is_less_than_kept(result, self.cache.get(job.key)):
+            # An interrupted result must not replace a complete one.
+            if result is not None and (_is_complete(result) or not _is_complete(self.cache.get(job.key))):
                 self.cache.put(job.key, result)
             if self._in_flight.get(job.key) is job:
                 del self._in_flight[job.key]
-            tickets = job.empty()
-            self._ended[_End.FAILED if error else _End.CANCELLED if job.cancel.is_set() else _End.DONE] += 1
-        for ticket in tickets:
-            if error is not None:
-                ticket.fail(error)
-            elif result is not None:
-                ticket.deliver(result, last=True)
+            self._ended["failed" if error else "cancelled" if is_cancelled(job.cancel) else "done"] += 1
+            return job.release()
 
-    def _bench(self, job: _Job) -> JobContext:
-        job.lines = [self._pool.line(job.owner, rank) for rank in (job.rank, lambda: Priority.WHOLE)]
-        tiles, calls = (self._executor or line for line in job.lines)
-        return JobContext(tiles, calls, job.cancel, partial(self._publish, job), self._find_map, self._find_answer)
+    def _context(self, job: _Job) -> JobContext:
+        job.executors = [
+            self._scheduler.executor(job.client, priority) for priority in (job.priority, lambda: Priority.LONG_CALL)
+        ]
+        short_calls, long_calls = (self._executor or executor for executor in job.executors)
+        return JobContext(short_calls, long_calls, job.cancel, partial(self._publish, job), self._find_map, self._find_result)
 
-    def _find_answer(self, bench: JobContext, spec: JobRequest[Any]) -> Any:
-        kept = self.cache.get(spec)
-        if kept is None or not getattr(kept, "complete", True):
-            kept = spec.run(bench)
-            self.cache.put(spec, kept)
-        return kept
+    def _find_result(self, context: JobContext, request: JobRequest[Any]) -> Any:
+        result = self.cache.get(request)
+        if not _is_complete(result):
+            result = request.run(context)
+            self.cache.put(request, result)
+        return result
 
-    def _find_map(self, bench: JobContext, spec: MapSpec) -> EscapeMap | None:
-        whole: EscapeMap | None = self.cache.get(spec)
-        if whole is None or not whole.complete:
-            whole = self._compute_map(spec, bench, on_frame=None)
-        return whole if whole.complete else None
+    def _find_map(self, context: JobContext, spec: MapSpec) -> EscapeMap:
+        cached: EscapeMap | None = self.cache.get(spec)
+        if cached is not None and cached.complete:
+            return cached
+        return require_complete(self._compute_map(spec, context, on_frame=None))
 
-    def _compute_map(self, spec: MapSpec, bench: JobContext, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
-        return compute_map(spec, on_frame, bench.cancel, bench.executor, resume=self._find_resumable(spec))
+    def _compute_map(self, spec: MapSpec, context: JobContext, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
+        return compute_map(spec, on_frame, context.cancel, context.executor, resume=self._find_resumable(spec))
 
-    def _publish(self, job: _Job, frame: Any) -> None:
-        """Hand a frame on; the complete one is the result, which follows at once with all that belongs to it."""
-        if frame.complete:
+    def _publish(self, job: _Job, result: Any) -> None:
+        """Deliver a partial result. A complete one is left to `_run_job`, which delivers it with all its data."""
+        if result.complete:
             return
         with self._lock:
-            job.latest = frame
-            tickets = list(job.tickets)
-        for ticket in tickets:
-            ticket.deliver(frame, last=False)
+            job.latest = result
+            subscriptions = list(job.subscriptions)
+        for subscription in subscriptions:
+            subscription.deliver(result, last=False)
 
     def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
-        """The kept map of the same picture that has been followed longest, though not beyond t_max."""
+        """Return the cached map that differs from `spec` by the smallest reduction of t_max and can be resumed, or None."""
         with self._lock:
-            # By energy first, as there may be thousands of others.
-            alike = [key for key in self.cache if isinstance(key, MapSpec) and key.energy == spec.energy]
-            candidates = [key for key in alike if replace(key, t_max=spec.t_max) == spec]
-            earlier = [key for key in candidates if key.t_max <= spec.t_max]
-            kept = self.cache.get(max(earlier, key=lambda key: key.t_max)) if earlier else None
-            return kept if kept is not None and kept.batch is not None else None
+            # Compare energies first: cheap, and there may be thousands of maps.
+            same_energy = [key for key in self.cache if isinstance(key, MapSpec) and key.energy == spec.energy]
+            shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
+            cached = self.cache.get(max(shorter, key=lambda key: key.t_max)) if shorter else None
+            return cached if cached is not None and cached.batch is not None else None
 
 
-def _is_less_than_kept(result: Sized, kept: Any) -> bool:
-    """An interrupted result never replaces a finished one."""
-    return kept is not None and getattr(kept, "complete", True) and not getattr(result, "complete", True)
+def _is_complete(result: Any) -> bool:
+    """Whether there is a result and it is final; only results that grow have an attribute ``complete``."""
+    return result is not None and getattr(result, "complete", True)
 
 
 def _count_orbits(spec: Any) -> int:
-    """How many orbits the job holds at the same time: those of its map, when it has one."""
+    """Number of orbits that a job holds in memory: those of its map, or 0 without one."""
     map_spec = getattr(spec, "map_spec", spec)
     if not isinstance(map_spec, MapSpec):
         return 0

@@ -1,45 +1,45 @@
-"""How many orbits may be held in memory at the same time by all jobs together."""
+"""Semaphore that bounds the number of orbits held in memory by all jobs together."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from concurrent.futures import CancelledError
 from contextlib import contextmanager
 
-SMALL = 2**16
-"""A job of at most this many orbits, such as a map of 256 × 256, never waits for room."""
+from engine.execution import raise_if_cancelled
 
-_LOOKS_AT_CANCEL_EVERY = 0.2
+SMALL_JOB = 2**16
+"""Jobs of at most this many orbits, such as a map of 256 × 256, are not counted and never wait."""
+
+_CANCEL_POLL_SECONDS = 0.2
 
 
 class OrbitSemaphore:
-    """OrbitSemaphore for large jobs.
+    """Weighted semaphore for large jobs: each acquires as many units as it holds orbits.
 
     Parameters
     ----------
-    orbits
-        Of all large jobs under way together; one larger than that has the room to itself.
+    limit
+        Most orbits held at the same time. A job with more than that runs when no other large job does.
     """
 
-    def __init__(self, orbits: int) -> None:
-        self.orbits = orbits
-        self.taken = 0
-        self._left = threading.Condition()
+    def __init__(self, limit: int) -> None:
+        self.limit = limit
+        self.held = 0
+        self._released = threading.Condition()
 
     @contextmanager
-    def hold(self, orbits: int, cancel: threading.Event) -> Iterator[None]:
-        """Wait for room, and have it. Raises CancelledError when `cancel` is set meanwhile."""
-        orbits = orbits if orbits > SMALL else 0
-        with self._left:
-            while orbits and self.taken and self.taken + orbits > self.orbits:
-                self._left.wait(_LOOKS_AT_CANCEL_EVERY)
-                if cancel.is_set():
-                    raise CancelledError
-            self.taken += orbits
+    def acquire(self, orbits: int, cancel: threading.Event) -> Iterator[None]:
+        """Hold this many orbits while the context is active; CancelledError if `cancel` is set during the wait."""
+        orbits = orbits if orbits > SMALL_JOB else 0
+        with self._released:
+            while orbits and self.held and self.held + orbits > self.limit:
+                self._released.wait(_CANCEL_POLL_SECONDS)
+                raise_if_cancelled(cancel)
+            self.held += orbits
         try:
             yield
         finally:
-            with self._left:
-                self.taken -= orbits
-                self._left.notify_all()
+            with self._released:
+                self.held -= orbits
+                self._released.notify_all()

@@ -1,11 +1,7 @@
-"""What can be asked of the background besides maps: frozen and hashable, so that a request is the key its answer is kept under.
-
-Each request knows how it is answered on a `JobContext`.
-"""
+"""Requests of `Jobs` other than maps: frozen and hashable, so that each is the key of its result in the cache."""
 
 from __future__ import annotations
 
-from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
 
 from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
@@ -13,6 +9,7 @@ from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, ex
 from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.basins.wada import WadaTest, compute_wada_test
 from engine.dynamics.planes import Plane, Window
+from engine.execution import raise_if_cancelled
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.jobs.context import JobContext
 from engine.maps.origin_fates import OriginFateMap, join_origin_fates
@@ -35,61 +32,99 @@ from engine.sweeps.energy_curves import (
     compute_energy_point,
 )
 from engine.trajectories.chaos_indicators import BirkhoffDigits, compute_birkhoff_digits
-from engine.trajectories.nearest_divergent_start import Twin, find_twin
+from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.separation import Separation, compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
 from engine.warmup import is_ready_for_maps, prepare_for_maps
 
 
 @dataclass(frozen=True)
+class Answer[T]:
+    """A final result that has no `nbytes` of its own, or is None.
+
+    Attributes
+    ----------
+    value
+        The result.
+    nbytes
+        Approximate size in bytes, including the request.
+    """
+
+    value: T
+    nbytes: int = 1024
+
+
+@dataclass(frozen=True)
 class OrbitRequest:
-    """The request for one orbit: `integrate_orbit`'s arguments, hashable."""
+    """Request for one orbit: the arguments of `integrate_orbit`."""
 
     potential: Potential
     state: tuple[float, float, float, float]
     t_max: float
 
-    def run(self, bench: JobContext) -> Orbit:
-        """Integrate it."""
-        return bench.on_pool(integrate_orbit, self.potential, self.state, self.t_max)
+    def run(self, context: JobContext) -> Orbit:
+        """Integrate the orbit."""
+        return context.run_long_call(integrate_orbit, self.potential, self.state, self.t_max)
 
 
 @dataclass(frozen=True)
 class BirkhoffDigitsRequest:
-    """The request for the Birkhoff digits of an orbit: `compute_birkhoff_digits`' arguments, hashable."""
+    """Request for the convergence of Birkhoff averages: the arguments of `compute_birkhoff_digits`."""
 
     potential: Potential
     state: tuple[float, float, float, float]
     t_max: float
 
-    def run(self, bench: JobContext) -> BirkhoffDigits:
-        """Compute them."""
-        return bench.on_pool(compute_birkhoff_digits, self.potential, self.state, self.t_max)
+    def run(self, context: JobContext) -> BirkhoffDigits:
+        """Compute the digits."""
+        return context.run_long_call(compute_birkhoff_digits, self.potential, self.state, self.t_max)
 
 
 @dataclass(frozen=True)
-class PotentialReviewAnswer:
-    """What a potential is like."""
+class SeparationRequest:
+    """Request for the distance of two orbits against time: the arguments of `compute_separation`."""
 
-    review: PotentialReview
-    nbytes: int = 8192
-    """About what it takes."""
+    potential: Potential
+    first: tuple[float, float, float, float]
+    second: tuple[float, float, float, float]
+    t_end: float
+
+    def run(self, context: JobContext) -> Separation:
+        """Integrate both orbits."""
+        return context.run_long_call(compute_separation, self.potential, self.first, self.second, self.t_end)
+
+
+@dataclass(frozen=True)
+class DivergentStartRequest:
+    """Request for the nearest start with another fate: the arguments of `find_divergent_start`."""
+
+    potential: Potential
+    plane: Plane
+    energy: float | tuple[float, float]
+    x: float
+    ordinate: float
+    t_max: float
+
+    def run(self, context: JobContext) -> Answer[DivergentStart | None]:
+        """Search for it; the value is None if there is none."""
+        start = (self.potential, self.plane, self.energy, self.x, self.ordinate)
+        return Answer(find_divergent_start(*start, self.t_max, executor=context.executor, cancel=context.cancel))
 
 
 @dataclass(frozen=True)
 class PotentialReviewRequest:
-    """The request to look a potential over."""
+    """Request for the validation report of a potential: the argument of `review_potential`."""
 
     potential: Potential
 
-    def run(self, bench: JobContext) -> PotentialReviewAnswer:
-        """Look it over."""
-        return PotentialReviewAnswer(bench.executor.submit(review_potential, self.potential).result())
+    def run(self, context: JobContext) -> Answer[PotentialReview]:
+        """Review the potential."""
+        return Answer(context.executor.submit(review_potential, self.potential).result(), nbytes=8192)
 
 
 @dataclass(frozen=True)
 class UnresolvedMapSpec:
-    """A map as it is wished for: `MapSpec`'s arguments, hashable, before a window is found and anything is checked."""
+    """The arguments of `MapSpec`, not validated yet; a window of None is not replaced by the default window yet."""
 
     potential: Potential
     plane: Plane
@@ -99,222 +134,168 @@ class UnresolvedMapSpec:
     t_max: float
 
     def spec(self) -> MapSpec:
-        """The request for it: to find the whole interior takes Lyapunov orbits, thus milliseconds and a compiled integrator."""
-        where = (self.potential, self.plane, self.energy, self.resolution)
-        return MapSpec(*where, self.window, self.t_max)  # type: ignore[arg-type]  # None is replaced
-
-
-@dataclass(frozen=True)
-class WarmupAnswer:
-    """A map that can be computed now: all is compiled, its window is known."""
-
-    map_spec: MapSpec
-    nbytes: int = 1024
+        """Return the validated spec. The default window needs Lyapunov orbits: milliseconds, and compiled kernels."""
+        system = (self.potential, self.plane, self.energy, self.resolution)
+        return MapSpec(*system, self.window, self.t_max)  # type: ignore[arg-type]  # MapSpec replaces None
 
 
 @dataclass(frozen=True)
 class WarmupRequest:
-    """The request to compile what a map needs, and to find its window."""
+    """Request to compile the kernels of a map and resolve its spec."""
 
-    wish: UnresolvedMapSpec
+    unresolved: UnresolvedMapSpec
 
-    def run(self, bench: JobContext) -> WarmupAnswer:
-        """Compile, where that has not been done; ValueError where there can be no such map."""
-        if not is_ready_for_maps(self.wish.potential):
-            bench.call_executor.submit(prepare_for_maps, self.wish.potential).result()
-        return WarmupAnswer(self.wish.spec())
-
-
-@dataclass(frozen=True)
-class DivergentStartAnswer:
-    """A twin, or the knowledge that there is none."""
-
-    twin: Twin | None
-    nbytes: int = 1024
-    """About what it takes together with its request."""
-
-
-@dataclass(frozen=True)
-class DivergentStartRequest:
-    """The request for the twin of a start: `find_twin`'s arguments, hashable."""
-
-    potential: Potential
-    plane: Plane
-    energy: float | tuple[float, float]
-    x: float
-    ordinate: float
-    t_max: float
-
-    def run(self, bench: JobContext) -> DivergentStartAnswer:
-        """Find it."""
-        where = (self.potential, self.plane, self.energy, self.x, self.ordinate)
-        return DivergentStartAnswer(find_twin(*where, self.t_max, executor=bench.executor, cancel=bench.cancel))
-
-
-@dataclass(frozen=True)
-class SeparationRequest:
-    """The request to compare two orbits: `compute_separation`'s arguments, hashable."""
-
-    potential: Potential
-    first: tuple[float, float, float, float]
-    second: tuple[float, float, float, float]
-    t_end: float
-
-    def run(self, bench: JobContext) -> Separation:
-        """Follow both."""
-        return bench.on_pool(compute_separation, self.potential, self.first, self.second, self.t_end)
-
-
-@dataclass(frozen=True, eq=False)
-class Preview:
-    """A quick look at a map, as it is kept: whole, for what it is."""
-
-    frame: EscapeMap
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes held."""
-        return self.frame.nbytes
+    def run(self, context: JobContext) -> Answer[MapSpec]:
+        """Compile what is not compiled yet. Raises ValueError if the spec is not valid."""
+        if not is_ready_for_maps(self.unresolved.potential):
+            context.long_call_executor.submit(prepare_for_maps, self.unresolved.potential).result()
+        return Answer(self.unresolved.spec())
 
 
 @dataclass(frozen=True)
 class PreviewRequest:
-    """The request for a quick look at a map."""
+    """Request for the preview of a map."""
 
-    wish: UnresolvedMapSpec
+    unresolved: UnresolvedMapSpec
 
-    def run(self, bench: JobContext) -> Preview:
-        """Compute it; ValueError where there can be no such map."""
-        frame = compute_preview(preview_spec(self.wish.spec()), bench.executor, bench.cancel)
-        if bench.cancel.is_set():
-            raise CancelledError
-        return Preview(frame)
+    def run(self, context: JobContext) -> Answer[EscapeMap]:
+        """Compute the preview; it is final although its map is not complete. Raises ValueError if the spec is not valid."""
+        preview = compute_preview(preview_spec(self.unresolved.spec()), context.executor, context.cancel)
+        raise_if_cancelled(context.cancel)
+        return Answer(preview, preview.nbytes)
 
 
 @dataclass(frozen=True)
 class RegularityRequest:
-    """The request to judge the bounded orbits of a map."""
+    """Request for the regularity of the bounded orbits of a map: `compute_regularity`."""
 
     map_spec: MapSpec
 
-    def run(self, bench: JobContext) -> RegularityMap:
-        """Judge them, once the map is there."""
-        return compute_regularity(bench.whole_map(self.map_spec), bench.publish, bench.cancel, bench.executor)
+    def run(self, context: JobContext) -> RegularityMap:
+        """Classify the bounded orbits of the complete map."""
+        return compute_regularity(context.complete_map(self.map_spec), context.publish, context.cancel, context.executor)
 
 
 @dataclass(frozen=True)
 class TrustRequest:
-    """The request to try which pixels of a map are to be trusted."""
+    """Request for the trust in each pixel of a map: `compute_trust`."""
 
     map_spec: MapSpec
 
-    def run(self, bench: JobContext) -> TrustMap:
-        """Try them, once the map is there."""
-        return compute_trust(bench.whole_map(self.map_spec), bench.publish, bench.cancel, bench.executor)
+    def run(self, context: JobContext) -> TrustMap:
+        """Test the pixels of the complete map."""
+        return compute_trust(context.complete_map(self.map_spec), context.publish, context.cancel, context.executor)
 
 
 @dataclass(frozen=True)
 class OriginFateRequest:
-    """The request to follow the orbits of a map into the past, too; `map_spec` is the one into the future."""
+    """Request for the exits of orbits in the past and the future; `map_spec` is the map forward in time."""
 
     map_spec: MapSpec
 
-    def run(self, bench: JobContext) -> OriginFateMap:
-        """Join both maps, once they are there."""
-        return join_origin_fates(*(bench.whole_map(replace(self.map_spec, backward=way)) for way in (False, True)))
+    def run(self, context: JobContext) -> OriginFateMap:
+        """Join the maps of both directions of time."""
+        forward, backward = (context.complete_map(replace(self.map_spec, backward=backward)) for backward in (False, True))
+        return join_origin_fates(forward, backward)
 
 
 @dataclass(frozen=True)
 class StableManifoldsRequest:
-    """The request for the stable manifolds of the Lyapunov orbits: `find_stable_manifolds`' arguments, hashable."""
+    """Request for the stable manifolds of the Lyapunov orbits: the arguments of `find_stable_manifolds`."""
 
     potential: Potential
     energy: float
     images: int
     window: Window | None = None
 
-    def run(self, bench: JobContext) -> StableManifolds:
-        """Find them."""
+    def run(self, context: JobContext) -> StableManifolds:
+        """Compute the manifolds."""
         return find_stable_manifolds(
-            self.potential, self.energy, self.images, window=self.window, executor=bench.executor, cancel=bench.cancel
+            self.potential, self.energy, self.images, window=self.window, executor=context.executor, cancel=context.cancel
         )
 
 
 @dataclass(frozen=True)
 class BasinMeasures:
-    """What is read off the pixels of a map: how mixed its basins are, and whether they share their boundary."""
+    """Measures of the basins of escape that need only the pixels of a map.
+
+    Attributes
+    ----------
+    entropy
+        Basin entropy.
+    merging
+        Merging test for Wada basins.
+    """
 
     entropy: BasinEntropy
     merging: WadaTest
 
     @property
     def nbytes(self) -> int:
-        """Bytes held."""
+        """Approximate size in bytes."""
         return self.merging.shares.nbytes + 1024
 
 
 @dataclass(frozen=True)
 class BasinMeasuresRequest:
-    """The request to measure the basins of a map."""
+    """Request for the basin entropy and the Wada test of a map."""
 
     map_spec: MapSpec
 
-    def run(self, bench: JobContext) -> BasinMeasures:
-        """Measure them, once the map is there."""
-        frame = bench.whole_map(self.map_spec)
+    def run(self, context: JobContext) -> BasinMeasures:
+        """Evaluate the complete map."""
+        fate = context.complete_map(self.map_spec).fate
         return BasinMeasures(
-            compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED)),
-            compute_wada_test(*exit_labels(frame.fate, bounded=WADA_COUNTS_BOUNDED)),
+            compute_basin_entropy(*exit_labels(fate, bounded=ENTROPY_COUNTS_BOUNDED)),
+            compute_wada_test(*exit_labels(fate, bounded=WADA_COUNTS_BOUNDED)),
         )
 
 
 @dataclass(frozen=True)
 class DecayLawsRequest:
-    """The request to fit laws to the escape times of a map, or of the part of it in a box."""
+    """Request for the decay laws of the escape times of a map, or of the part of it in a box: `fit_decay_laws`."""
 
     map_spec: MapSpec
     box: Window | None = None
 
-    def run(self, bench: JobContext) -> DecayLaws:
-        """Fit them, once the map is there."""
-        statistics = compute_statistics(bench.whole_map(self.map_spec), self.box)
-        return bench.on_pool(fit_decay_laws, statistics, self.map_spec.t_max)
+    def run(self, context: JobContext) -> DecayLaws:
+        """Fit the laws to the complete map."""
+        statistics = compute_statistics(context.complete_map(self.map_spec), self.box)
+        return context.run_long_call(fit_decay_laws, statistics, self.map_spec.t_max)
 
 
 @dataclass(frozen=True)
 class UncertaintyExponentRequest:
-    """The request for the uncertainty exponent of a map's window."""
+    """Request for the uncertainty exponent in the window of a map: `compute_uncertainty_exponent`."""
 
     map_spec: MapSpec
 
-    def run(self, bench: JobContext) -> UncertaintyExponent:
-        """Measure it by new pairs of starts."""
-        return compute_uncertainty_exponent(self.map_spec, executor=bench.executor, cancel=bench.cancel)
+    def run(self, context: JobContext) -> UncertaintyExponent:
+        """Measure it with new pairs of starts."""
+        return compute_uncertainty_exponent(self.map_spec, executor=context.executor, cancel=context.cancel)
 
 
 @dataclass(frozen=True)
 class EnergyPointRequest:
-    """The request to measure the exits at one energy."""
+    """Request for the measures at one energy: `compute_energy_point`."""
 
     point_spec: EnergyPointSpec
 
-    def run(self, bench: JobContext) -> EnergyPoint:
-        """Measure them, once the map is there."""
-        whole_map = bench.whole_map(self.point_spec.map_spec)
-        return compute_energy_point(self.point_spec, bench.cancel, bench.executor, whole_map=whole_map)
+    def run(self, context: JobContext) -> EnergyPoint:
+        """Evaluate the complete map."""
+        frame = context.complete_map(self.point_spec.map_spec)
+        return compute_energy_point(self.point_spec, context.cancel, context.executor, frame=frame)
 
 
 @dataclass(frozen=True)
 class EnergyCurvesRequest:
-    """The request for curves against energy; each energy is cached for other requests."""
+    """Request for measures against energy: `compute_energy_curves`. The result at each energy is cached separately."""
 
     curves_spec: EnergyCurvesSpec
 
-    def run(self, bench: JobContext) -> EnergyCurves:
-        """Measure all energies."""
-
-        def measure(point_spec: EnergyPointSpec) -> EnergyPoint:
-            point: EnergyPoint = bench.answer(EnergyPointRequest(point_spec))
-            return point
-
-        return compute_energy_curves(self.curves_spec, bench.publish, bench.cancel, bench.executor, measure=measure)
+    def run(self, context: JobContext) -> EnergyCurves:
+        """Evaluate all energies."""
+        return compute_energy_curves(
+            self.curves_spec, context.publish, context.cancel, context.executor,
+            measure=lambda point_spec: context.result(EnergyPointRequest(point_spec)),
+        )  # fmt: skip

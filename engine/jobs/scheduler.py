@@ -1,4 +1,4 @@
-"""One pool for many: those who wait take turns, and nobody's fine picture is computed before everybody's first coarse one."""
+"""Fair scheduling of many clients' calls on one thread pool, by priority and then round-robin."""
 
 from __future__ import annotations
 
@@ -12,176 +12,176 @@ from typing import Any, NamedTuple
 
 from engine.execution import count_workers, default_executor
 
-# While tiles are put off: how many times as long as a call has lasted the next one that lasts waits.
-_REST = 9.0
+# While background calls are paused, a long call of duration d is followed by a pause of 9 d: a duty cycle of 10 %.
+_PAUSE_PER_LONG_CALL = 9.0
 
 
 class Priority(IntEnum):
-    """What is computed before what."""
+    """Priority of a call; lower values run first."""
 
-    FIRST_LOOK = 0
-    """For somebody who sees nothing yet."""
+    FIRST_FRAME = 0
+    """Part of the first frame of a map, before which its page shows nothing."""
 
-    WHOLE = 1
-    """All of something at once, as an orbit that was clicked; it may take a second or more, so one thread is kept free of these,
-    where there are two."""
+    LONG_CALL = 1
+    """A single call of up to seconds, such as one orbit. If there are several threads, one is kept free of these."""
 
-    TILE = 2
-    """A part of something larger, back within about 50 ms: there are always more of these where many look at maps."""
+    BACKGROUND = 2
+    """Part of a larger computation, about 50 ms long; under load most calls are of this kind."""
 
 
-class _Task(NamedTuple):
-    line: Line
+class _Call(NamedTuple):
+    executor: QueueExecutor
     future: Future[Any]
-    call: Callable[[], Any]
+    function: Callable[[], Any]
+
+    def run(self) -> None:
+        if not self.future.set_running_or_notify_cancel():
+            return
+        try:
+            result = self.function()
+        except BaseException as error:
+            self.future.set_exception(error)
+        else:
+            self.future.set_result(result)
 
 
 class FairScheduler:
-    """Threads whose work is chosen at the last moment: by rank, and within a rank by turns.
+    """Chooses, whenever a thread is free, the next call: by priority, and within a priority by client, round-robin.
 
     Parameters
     ----------
     pool
-        The threads; None for those of this process.
+        The threads; None for the default pool of this process.
     """
 
     def __init__(self, pool: ThreadPoolExecutor | None = None) -> None:
         self._pool = pool or default_executor()
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
-        # In the order of their turns; only those who wait for something.
-        self._waiting: OrderedDict[Hashable, deque[_Task]] = OrderedDict()
-        self._whole_ones = 0
-        self._puts_off_tiles = False
-        # Until when whole ones wait while tiles are put off.
-        self._rest_until = 0.0
-        # Threads that came for work while there was none that is not put off.
-        self._sent_away = 0
+        # By client, in round-robin order; clients without pending calls are removed.
+        self._pending: OrderedDict[Hashable, deque[_Call]] = OrderedDict()
+        self._running_long_calls = 0
+        self._background_paused = False
+        # Earliest start of the next long call while background calls are paused, on the monotonic clock.
+        self._next_long_call = 0.0
+        # Pool tasks that ended without a call while background calls were paused.
+        self._unused_runs = 0
 
-    def line(self, owner: Hashable, rank: Callable[[], Priority]) -> Line:
-        """Where one job hands its work in.
+    def executor(self, client: Hashable, priority: Callable[[], Priority]) -> QueueExecutor:
+        """Create an executor for one job.
 
         Parameters
         ----------
-        owner
-            Whose job it is: all jobs of one owner together have one turn in each round.
-        rank
-            Asked each time that a thread is free.
+        client
+            Whose job it is. All jobs of one client share its turn.
+        priority
+            Evaluated for each pending call whenever a thread is free.
         """
-        return Line(self, owner, rank)
+        return QueueExecutor(self, client, priority)
 
     @property
-    def waiting(self) -> int:
-        """Number of calls that no thread has taken up yet."""
+    def pending_calls(self) -> int:
+        """Number of calls that no thread has started."""
         with self._lock:
-            return sum(map(len, self._waiting.values()))
+            return sum(map(len, self._pending.values()))
 
-    def put_off_tiles(self, put_off: bool) -> None:
-        """Leave them waiting, or with False take them up again: for a process that is behind with other things.
+    def pause_background(self, paused: bool) -> None:
+        """Pause or resume `Priority.BACKGROUND` calls, to relieve an overloaded process.
 
-        Meanwhile calls that last have a tenth of a thread. To be called again and again, every tenth of a second or so.
+        While they are paused, long calls have a duty cycle of 10 % of one thread. To start the next of these, call this method
+        about every 0.1 s during the pause.
         """
         with self._lock:
-            self._puts_off_tiles = put_off
-            again = min(1, self._sent_away) if put_off else self._sent_away
-            self._sent_away -= again
-        for _ in range(again):
-            self._pool.submit(self._serve)
+            self._background_paused = paused
+            runs = min(1, self._unused_runs) if paused else self._unused_runs
+            self._unused_runs -= runs
+        for _ in range(runs):
+            self._pool.submit(self._run_next)
 
-    def drop(self, line: Line) -> None:
-        """Cancel those calls of a line that no thread has taken up."""
+    def add(self, call: _Call) -> None:
+        """Queue a call."""
         with self._lock:
-            dropped = [task for task in self._waiting.get(line.owner, ()) if task.line is line]
-            for task in dropped:
-                self._take_out(task)
-        for task in dropped:
-            # The first says so, the second wakes those who wait for it.
-            task.future.cancel()
-            task.future.set_running_or_notify_cancel()
+            self._pending.setdefault(call.executor.client, deque()).append(call)
+        self._pool.submit(self._run_next)
 
-    def _take_in(self, task: _Task) -> None:
+    def cancel_futures(self, executor: QueueExecutor) -> None:
+        """Cancel the calls of an executor that no thread has started."""
         with self._lock:
-            self._waiting.setdefault(task.line.owner, deque()).append(task)
-        self._pool.submit(self._serve)
+            cancelled = [call for call in self._pending.get(executor.client, ()) if call.executor is executor]
+            for call in cancelled:
+                self._remove(call)
+        for call in cancelled:
+            call.future.cancel()
+            # Wakes the threads that wait for the future.
+            call.future.set_running_or_notify_cancel()
 
-    def _serve(self) -> None:
-        """The work of a thread: whatever is next. As many of these are under way as there are calls."""
+    def _run_next(self) -> None:
+        """Run the next eligible call, if any. The pool holds one task of this kind per pending call."""
         with self._lock:
-            chosen = self._choose()
+            chosen = self._take_next()
             if chosen is None:
-                # Whoever ends a call that lasts comes for the next of these.
-                self._sent_away += self._puts_off_tiles
+                # If not paused, the pending calls are long ones, and a running long call submits the next run when it ends.
+                self._unused_runs += self._background_paused
                 return
-        task, rank = chosen
+        call, priority = chosen
         begun = time.monotonic()
         try:
-            _carry_out(task)
+            call.run()
         finally:
-            if rank is Priority.WHOLE:
+            if priority is Priority.LONG_CALL:
                 with self._lock:
-                    self._whole_ones -= 1
+                    self._running_long_calls -= 1
                     now = time.monotonic()
-                    self._rest_until = now + _REST * (now - begun)
-                self._pool.submit(self._serve)
+                    self._next_long_call = now + _PAUSE_PER_LONG_CALL * (now - begun)
+                self._pool.submit(self._run_next)
 
-    def _choose(self) -> tuple[_Task, Priority] | None:
-        for rank in Priority:
-            if rank is Priority.TILE and self._puts_off_tiles:
-                continue
-            if rank is Priority.WHOLE and not self._has_room_for_whole_ones():
-                continue
-            for owner, tasks in self._waiting.items():
-                for task in tasks:
-                    if task.line.rank() is rank:
-                        self._take_out(task)
-                        if owner in self._waiting:
-                            self._waiting.move_to_end(owner)
-                        self._whole_ones += rank is Priority.WHOLE
-                        return task, rank
+    def _take_next(self) -> tuple[_Call, Priority] | None:
+        for priority in filter(self._may_start, Priority):
+            for client, calls in self._pending.items():
+                for call in calls:
+                    if call.executor.priority() is priority:
+                        self._remove(call)
+                        if client in self._pending:
+                            self._pending.move_to_end(client)
+                        self._running_long_calls += priority is Priority.LONG_CALL
+                        return call, priority
         return None
 
-    def _has_room_for_whole_ones(self) -> bool:
-        if self._puts_off_tiles:
-            return self._whole_ones == 0 and time.monotonic() >= self._rest_until
-        return self._whole_ones < max(self.threads - 1, 1)
+    def _may_start(self, priority: Priority) -> bool:
+        if priority is Priority.FIRST_FRAME:
+            return True
+        if priority is Priority.BACKGROUND:
+            return not self._background_paused
+        if self._background_paused:
+            return self._running_long_calls == 0 and time.monotonic() >= self._next_long_call
+        return self._running_long_calls < max(self.threads - 1, 1)
 
-    def _take_out(self, task: _Task) -> None:
-        tasks = self._waiting[task.line.owner]
-        tasks.remove(task)
-        if not tasks:
-            del self._waiting[task.line.owner]
+    def _remove(self, call: _Call) -> None:
+        client = call.executor.client
+        self._pending[client].remove(call)
+        if not self._pending[client]:
+            del self._pending[client]
 
 
-class Line(Executor):
-    """An executor whose calls wait for their turn in a `FairScheduler`."""
+class QueueExecutor(Executor):
+    """Executor whose calls are queued in a `FairScheduler`."""
 
-    def __init__(self, pool: FairScheduler, owner: Hashable, rank: Callable[[], Priority]) -> None:
-        self._fair_pool = pool
-        self.owner = owner
-        self.rank = rank
-
-    def drop(self) -> None:
-        """Cancel those calls that no thread has taken up."""
-        self._fair_pool.drop(self)
+    def __init__(self, scheduler: FairScheduler, client: Hashable, priority: Callable[[], Priority]) -> None:
+        self._scheduler = scheduler
+        self.client = client
+        self.priority = priority
 
     @property
     def _max_workers(self) -> int:
-        """As executors say how many calls they run at once."""
-        return self._fair_pool.threads
+        """Number of threads, read by `engine.execution.count_workers`."""
+        return self._scheduler.threads
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """The future of a call that waits for its turn."""
+        """Queue a call and return its future."""
         future: Future[Any] = Future()
-        self._fair_pool._take_in(_Task(self, future, lambda: fn(*args, **kwargs)))
+        self._scheduler.add(_Call(self, future, lambda: fn(*args, **kwargs)))
         return future
 
-
-def _carry_out(task: _Task) -> None:
-    if not task.future.set_running_or_notify_cancel():
-        return
-    try:
-        result = task.call()
-    except BaseException as error:
-        task.future.set_exception(error)
-    else:
-        task.future.set_result(result)
+    def cancel_futures(self) -> None:
+        """Cancel the calls that no thread has started."""
+        self._scheduler.cancel_futures(self)

@@ -1,4 +1,4 @@
-"""What a process' jobs come to, in numbers."""
+"""Statistics of a job manager."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class JobStats:
-    """How busy `Jobs` is.
+    """Load, totals and memory of `Jobs`.
 
     Attributes
     ----------
     in_flight
-        Jobs that somebody waits for.
+        Running and queued jobs.
     calls_waiting
-        Parts of them that no thread has taken up yet; 0 where the computing is not done by the threads of this process.
+        Calls of these jobs that no thread has started; 0 when `Jobs` was given an executor of its own.
     done, failed, cancelled
-        Jobs that have ended so far, by how.
+        Jobs that ended so far, by outcome.
     cache_bytes, cache_limit
-        Memory that kept results hold, and may hold.
+        Size of the cached results and its limit, in bytes.
     orbits_held, orbits_limit
-        Orbits of large jobs under way, and how many there may be.
+        Orbits of large running jobs and their limit.
     threads
-        That compute.
+        Worker threads.
     """
 
     in_flight: int

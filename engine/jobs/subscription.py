@@ -1,4 +1,4 @@
-"""What somebody who waits for a job holds."""
+"""Subscriptions: how the results of a job reach a caller."""
 
 from __future__ import annotations
 
@@ -11,7 +11,17 @@ log = logging.getLogger(__name__)
 
 
 class Subscription:
-    """One person's claim on a job. Cancelling it stops the job when nobody else waits for it."""
+    """One caller's interest in a job. The job is cancelled together with its last subscription.
+
+    Parameters
+    ----------
+    release
+        Called with the subscription when it is cancelled.
+    on_result
+        Called with each partial result and with the final one, from any thread but never concurrently.
+    on_error
+        Called with the exception if the job fails.
+    """
 
     def __init__(
         self, release: Callable[[Subscription], None], on_result: Callable[[Any], None], on_error: Callable[[Exception], None]
@@ -19,31 +29,31 @@ class Subscription:
         self._release = release
         self._on_result = on_result
         self._on_error = on_error
-        # An earlier frame that another thread hands over must not come after the last one.
-        self._handing_over = threading.RLock()
+        # Serializes the callbacks: a partial result from another thread must not follow the final one.
+        self._delivery_lock = threading.RLock()
         self.open = True
-        """Whether anything is still to come."""
+        """Whether more results, or an error, may follow."""
 
     def cancel(self) -> None:
-        """Hear no more of it; at once, and as often as you like."""
+        """Receive nothing more. Returns at once; may be called repeatedly."""
         self.open = False
         self._release(self)
 
     def deliver(self, result: Any, *, last: bool) -> None:
-        """Hand a frame or a result over, unless cancelled."""
+        """Pass a partial or final result to the caller, unless the subscription is closed."""
         self._call(self._on_result, result, last)
 
     def fail(self, error: Exception) -> None:
-        """Hand over what went wrong, unless cancelled."""
+        """Pass an exception to the caller, unless the subscription is closed."""
         self._call(self._on_error, error, True)
 
-    def _call(self, receive: Callable[[Any], None], what: Any, last: bool) -> None:
-        with self._handing_over:
+    def _call(self, callback: Callable[[Any], None], value: Any, last: bool) -> None:
+        with self._delivery_lock:
             if not self.open:
                 return
             self.open = not last
             try:
-                receive(what)
+                callback(value)
             except Exception:
-                # One listener's fault is no other listener's.
-                log.exception("a listener failed")
+                # An exception in one subscriber must not affect the others.
+                log.exception("a callback of a job failed")

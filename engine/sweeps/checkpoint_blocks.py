@@ -1,4 +1,4 @@
-"""The finished bands of a map that is under way: files that are there whole or not at all, until the map is."""
+"""Checkpoint of a map: its finished row blocks in files, each of which is written atomically."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 
 
-class KeptBands:
-    """Bands of one map in a folder of their own, which is made when the first is kept.
+class CheckpointBlocks:
+    """Finished row blocks of one map, one file each.
 
     Parameters
     ----------
     folder
-        Where.
+        Folder of the files; created with the first block.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -25,13 +25,13 @@ class KeptBands:
     def __contains__(self, number: int) -> bool:
         return self._file(number).exists()
 
-    def keep(self, number: int, images: Mapping[str, np.ndarray]) -> None:
-        """Keep the arrays of a band; its file gets its name once all of it is on the disk, so that a name is a mark.
+    def write(self, number: int, images: Mapping[str, np.ndarray]) -> None:
+        """Write the arrays of a block; its file is renamed to its final name once it is on the disk.
 
         Raises
         ------
         OSError
-            When the disk is full or cannot be written to; the band is not there then.
+            When the file cannot be written, as on a full disk; the block is then missing.
         """
         self._folder.mkdir(parents=True, exist_ok=True)
         unfinished = self._folder / f"{number}.partial"
@@ -42,13 +42,13 @@ class KeptBands:
         os.replace(unfinished, self._file(number))
 
     def read(self, number: int, name: str) -> np.ndarray:
-        """One array of a band."""
+        """Return one array of a block."""
         with np.load(self._file(number), allow_pickle=False) as images:
             array: np.ndarray = images[name]
         return array
 
-    def discard(self) -> None:
-        """Delete all of them."""
+    def delete(self) -> None:
+        """Delete all blocks."""
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _file(self, number: int) -> Path:

@@ -1,10 +1,10 @@
-"""Who leaves after how many crossings of y = 0, against energy: the statistics of Zotos (2014), section 5, in one table."""
+"""Escape statistics against energy and number of crossings of y = 0 (Zotos 2014, section 5)."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,6 +18,7 @@ from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
+from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_curves import EnergyCurvesSpec
 
 _WINDOW = tuple(Window.__dataclass_fields__)
@@ -37,36 +38,36 @@ def compute_crossing_statistics(
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
 ) -> xr.Dataset:
-    """Compute a map at each energy and count what leaves, and after how many crossings.
+    """Compute a map at each energy and tabulate how many orbits escape after how many crossings.
 
-    One map is held at a time.
+    One map at a time is in memory.
 
     Parameters
     ----------
     potential
         The `Potential`.
     plane
-        (x, y) or (x, px). The paper's statistics are on (x, px), where all starts lie on y = 0.
+        (x, y) or (x, px). The statistics of the paper are on (x, px), where all starts lie on y = 0.
     energies
         h, finite, dimensionless, 1 to 1000 of them; sorted and made unique.
     resolution
         (columns, rows) of each map.
     t_max
-        How long orbits are followed, 0 < t_max ≤ 1e8.
+        Integration time, dimensionless, 0 < t_max ≤ 1e8.
     window
-        One for all energies; None for the whole interior of each.
+        Window of all maps; None for the default window of each energy.
     count_outside, most_crossings
-        As of `tabulate_crossing_statistics`.
+        As in `tabulate_crossing_statistics`.
     on_progress
-        Called in this thread with the share of the work that is done, 0 to 1.
+        Called in this thread with the fraction of the work that is finished, 0 to 1.
     cancel
-        When set, the work stops within about 0.1 s.
+        When set, the computation stops within about 0.1 s.
     executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
+        Any `concurrent.futures.Executor`; None for the default pool of this process.
 
     Returns
     -------
-    As of `tabulate_crossing_statistics`.
+    As `tabulate_crossing_statistics`.
 
     Raises
     ------
@@ -85,42 +86,43 @@ def compute_crossing_statistics(
 def tabulate_crossing_statistics(
     maps: Iterable[EscapeMap], *, count_outside: bool = False, most_crossings: int | None = None
 ) -> xr.Dataset:
-    """Count what leaves in maps of rising energy, and after how many upward crossings of y = 0.
+    """Tabulate how many orbits escape after how many upward crossings of y = 0, from maps of ascending energy.
 
-    N0 are the starts, Ne those that escape, Nde those that do so directly, without a crossing, dN_n those that escape after
-    exactly n crossings, N_n those not yet escaped before the n-th, and p_n = dN_n / N_n (Zotos 2014, section 5, after
-    Contopoulos, Harsoula & Lukes-Gerakopoulos 2012). The start itself is no crossing, and only crossings before the exit count.
+    N0 is the number of starts, Ne that of escaping orbits, Nde that of direct escapes (without a crossing), dN_n that of escapes
+    after exactly n crossings, N_n that of orbits that have not escaped before the n-th crossing, and p_n = dN_n / N_n (Zotos
+    2014, section 5, after Contopoulos, Harsoula & Lukes-Gerakopoulos 2012). The start itself is not a crossing, and only
+    crossings before the escape count.
 
     Parameters
     ----------
     maps
-        Complete, on (x, y) or (x, px), alike in all but energy and window, energies rising; taken one by one.
+        Complete maps on (x, y) or (x, px) that differ only in energy and window, by ascending energy; consumed one by one.
     count_outside
-        Whether starts outside belong to N0, as orbits that escape at t = 0 through the channel they lie in, without a crossing.
-        The percentages of the paper are of this kind. They depend on the windows; the interior alone does not.
+        Whether to include starts outside in N0, as escapes at t = 0 through the channel they lie in, without a crossing. The
+        percentages of the paper are of this kind. They depend on the windows; those of the interior do not.
     most_crossings
-        The table ends at this n, 0 or more, though some leave later; None for as many as there are, often thousands.
+        Largest n of the table, 0 or more; None for the largest that occurs, often thousands.
 
     Returns
     -------
-    A dataset, dimensionless throughout, against `h` (m,), `n` (0, 1, …) and `fate` (bounded, then channels 1, 2, …):
+    Dataset, dimensionless throughout, with coordinates `h` (m,), `n` (0, 1, …) and `fate` (bounded, then channels 1, 2, …):
 
-    - `starts`, `escaped`, `direct`, `failed` (h): N0, Ne, Nde and those no step could be found for, int64.
-    - `escaped_share`, `direct_share` (h): Ne/N0, Nde/N0; NaN where there are no starts.
-    - `share` (h, fate): of N0; the sum is 1 when none failed.
-    - `crossing_count`, `crossing_share` (h, n): dN_n and dN_n/N0; 0 where nothing leaves.
-    - `remaining` (h, n): N_n, failed ones left out, so that it ends at the number of bounded ones.
-    - `escape_probability` (h, n): p_n; NaN where nobody remains, 0 where all that remain are bounded.
-    - `mean_escape_time`, `median_escape_time` (h): of those that leave, NaN when none does.
+    - `starts`, `escaped`, `direct`, `failed` (h): N0, Ne, Nde and the orbits whose integration failed, int64.
+    - `escaped_share`, `direct_share` (h): Ne/N0, Nde/N0; NaN if N0 is 0.
+    - `share` (h, fate): shares of N0; their sum is 1 if none failed.
+    - `crossing_count`, `crossing_share` (h, n): dN_n and dN_n/N0.
+    - `remaining` (h, n): N_n without failed orbits, so that it tends to the number of bounded ones.
+    - `escape_probability` (h, n): p_n; NaN if N_n is 0.
+    - `mean_escape_time`, `median_escape_time` (h): over the escaping orbits; NaN if there are none.
     - `worst_energy_error` (h), and `window` (h, edge).
 
-    Attributes tell what made the maps.
+    Its attributes are the provenance of the maps.
 
     Raises
     ------
     ValueError
-        When there are no maps, one is not complete, is on (x, h) or unlike the first, energies do not rise, or
-        `most_crossings` is negative.
+        When there are no maps, one is incomplete, is on (x, h) or differs from the first in more than energy and window, energies
+        do not ascend, or `most_crossings` is negative.
     """
     _check_most_crossings(most_crossings)
     rows: list[_Row] = []
@@ -134,7 +136,7 @@ def tabulate_crossing_statistics(
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """What is counted in one map."""
+    """Statistics of one map."""
 
     spec: MapSpec
     statistics: EscapeStatistics
@@ -147,16 +149,13 @@ def _compute_maps(
     cancel: threading.Event | None,
     executor: Executor | None,
 ) -> Iterator[EscapeMap]:
-    for place, spec in enumerate(specs):
+    for index, spec in enumerate(specs):
 
-        def report(frame: EscapeMap, done: int = place) -> None:
+        def report(frame: EscapeMap, finished: int = index) -> None:
             if on_progress is not None:
-                on_progress((done + frame.progress) / len(specs))
+                on_progress((finished + frame.progress) / len(specs))
 
-        result = compute_map(spec, report if on_progress is not None else None, cancel, executor)
-        if not result.complete:
-            raise CancelledError
-        yield result
+        yield require_complete(compute_map(spec, report if on_progress is not None else None, cancel, executor))
 
 
 def _check_most_crossings(most_crossings: int | None) -> None:
@@ -167,16 +166,16 @@ def _check_most_crossings(most_crossings: int | None) -> None:
 def _check_next(frame: EscapeMap, last: MapSpec | None) -> None:
     spec = frame.spec
     if isinstance(spec.energy, tuple):
-        raise ValueError(f"maps: one is on {spec.plane.value}; each must have one energy")
+        raise ValueError(f"maps: one is on {spec.plane.value}; must be on (x, y) or (x, px)")
     if not frame.complete:
-        raise ValueError(f"maps: that at h={spec.energy} is not complete, {frame.undecided:.2%} of its starts are undecided")
+        raise ValueError(f"maps: the map at h={spec.energy} is not complete, {frame.undecided:.2%} of its starts are undecided")
     if last is None:
         return
     assert not isinstance(last.energy, tuple)
     if replace(spec, energy=last.energy, window=last.window) != last:
-        raise ValueError(f"maps: {spec} is unlike {last}; all but energy and window must be equal")
+        raise ValueError(f"maps: {spec} differs from {last}; all but energy and window must be equal")
     if spec.energy <= last.energy:
-        raise ValueError(f"maps: h={spec.energy} follows h={last.energy}; energies must rise")
+        raise ValueError(f"maps: h={spec.energy} follows h={last.energy}; energies must ascend")
 
 
 def _count(frame: EscapeMap, count_outside: bool) -> _Row:
@@ -193,16 +192,16 @@ def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
         np.array([getattr(counts, name) for counts in statistics], np.int64)
         for name in ("starts", "escaped", "direct", "failed", "decided")
     )
-    leaving = _pad([counts.crossing_counts for counts in statistics], most_crossings)
-    remaining = decided[:, None] - np.cumsum(leaving, axis=1) + leaving
+    escapes = _pad([counts.crossing_counts for counts in statistics], most_crossings)
+    remaining = decided[:, None] - np.cumsum(escapes, axis=1) + escapes
     codes = (int(Fate.BOUNDED), *range(1, spec.potential.channels + 1))
     by_fate = np.array([[counts.bounded, *counts.channel_counts] for counts in statistics], np.int64)
     columns = {
         "starts": starts, "escaped": escaped, "direct": direct, "failed": failed,
         "escaped_share": _ratio(escaped, starts), "direct_share": _ratio(direct, starts),
         "share": _ratio(by_fate, starts[:, None]),
-        "crossing_count": leaving, "crossing_share": _ratio(leaving, starts[:, None]),
-        "remaining": remaining, "escape_probability": _ratio(leaving, remaining),
+        "crossing_count": escapes, "crossing_share": _ratio(escapes, starts[:, None]),
+        "remaining": remaining, "escape_probability": _ratio(escapes, remaining),
         "mean_escape_time": np.array([counts.mean_escape_time for counts in statistics]),
         "median_escape_time": np.array([counts.median_escape_time for counts in statistics]),
         "worst_energy_error": np.array([row.worst_energy_error for row in rows]),
@@ -210,7 +209,7 @@ def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
     }  # fmt: skip
     coordinates = {
         "h": ("h", np.array([row.spec.energy for row in rows], float), {"long_name": "energy h", "units": "1"}),
-        "n": ("n", np.arange(leaving.shape[1]), {"long_name": "upward crossings of y = 0", "units": "1"}),
+        "n": ("n", np.arange(escapes.shape[1]), {"long_name": "upward crossings of y = 0", "units": "1"}),
         "fate": ("fate", np.array(codes, np.int8), {"long_name": "exit channel (k >= 1) or bounded (0)", **describe_codes(Fate)}),
         "edge": ("edge", list(_WINDOW)),
     }
@@ -218,31 +217,31 @@ def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
 
 
 def _pad(counts: Sequence[np.ndarray], most_crossings: int | None) -> np.ndarray:
-    """(h, n) int64: rows of any length, filled up with 0 or cut off."""
+    """(h, n) int64: rows of any length, padded with 0 or cut off."""
     longest = max(1, *(row.size for row in counts))
     width = longest if most_crossings is None else most_crossings + 1
     table = np.zeros((len(counts), width), np.int64)
-    for place, row in enumerate(counts):
-        table[place, : row.size] = row[:width]
+    for index, row in enumerate(counts):
+        table[index, : row.size] = row[:width]
     return table
 
 
 def _ratio(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """part / whole; NaN where the whole is 0."""
+    """part / whole; NaN where whole is 0."""
     result: np.ndarray = np.divide(part, whole, out=np.full(part.shape, np.nan), where=whole > 0)
     return result
 
 
 @dataclass(frozen=True)
 class _Variable:
-    """A column of the table: what it is against, what it is, and where it is defined."""
+    """Metadata of a variable: dimensions, description and its symbol in the paper."""
 
     dims: tuple[str, ...]
     long_name: str
     source: str = ""
 
     def with_values(self, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, dict[str, str]]:
-        """The form in which xarray takes it."""
+        """The variable as xarray accepts it."""
         source = {"references": f"Zotos (2014), section 5, {self.source}"} if self.source else {}
         return self.dims, values, {"long_name": self.long_name, "units": "1", **source}
 
@@ -251,22 +250,22 @@ _VARIABLES = {
     "starts": _Variable(("h",), "N0, starts", "N_0"),
     "escaped": _Variable(("h",), "Ne, starts that escape", "N_e"),
     "direct": _Variable(("h",), "Nde, starts that escape without an upward crossing of y = 0", "N_de"),
-    "failed": _Variable(("h",), "starts whose orbit could not be followed"),
+    "failed": _Variable(("h",), "starts whose integration failed"),
     "escaped_share": _Variable(("h",), "Ne/N0, share that escapes", "N_e/N_0(h)"),
     "direct_share": _Variable(("h",), "Nde/N0, share that escapes directly", "N_de/N_0(h)"),
-    "share": _Variable(("h", "fate"), "share of N0 that is bounded or leaves by each channel", "percentages against h"),
+    "share": _Variable(("h", "fate"), "share of N0 that is bounded or escapes through each channel", "percentages against h"),
     "crossing_count": _Variable(("h", "n"), "dN_n, starts that escape after exactly n crossings", "dN_n"),
     "crossing_share": _Variable(("h", "n"), "dN_n/N0, share that escapes after exactly n crossings", "dN_n/N_0"),
     "remaining": _Variable(("h", "n"), "N_n, starts that have not escaped before the n-th crossing", "N_n"),
     "escape_probability": _Variable(("h", "n"), "p_n, probability of escape after n crossings", "p_n = dN_n/N_n"),
-    "mean_escape_time": _Variable(("h",), "mean escape time of those that escape"),
-    "median_escape_time": _Variable(("h",), "median escape time of those that escape"),
+    "mean_escape_time": _Variable(("h",), "mean escape time"),
+    "median_escape_time": _Variable(("h",), "median escape time"),
     "worst_energy_error": _Variable(("h",), "largest relative energy error of any orbit"),
     "window": _Variable(("h", "edge"), "window of the starts"),
 }
 
 
 def _provenance(spec: MapSpec, count_outside: bool) -> dict[str, Any]:
-    """What is the same at all energies."""
-    made_by: dict[str, Any] = {name: value for name, value in spec.provenance().items() if name not in ("energy", "window")}
-    return {**made_by, "count_outside": int(count_outside)}
+    """Provenance without energy and window, which differ between the maps."""
+    common: dict[str, Any] = {name: value for name, value in spec.provenance().items() if name not in ("energy", "window")}
+    return {**common, "count_outside": int(count_outside)}

@@ -1,20 +1,20 @@
-"""Against energy: shares of the exits, basin entropies, uncertainty exponent and escape times over many values of h."""
+"""Curves against energy: shares of the exits, basin entropies, uncertainty exponent and escape times."""
 
 from __future__ import annotations
 
 import math
 import threading
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import xarray as xr
 
 from engine.basins.basin_entropy import compute_basin_entropy
 from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
-from engine.basins.uncertainty_exponent import WORK, UncertaintyExponent, compute_uncertainty_exponent
+from engine.basins.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Plane
 from engine.maps.compute import compute_map
@@ -22,18 +22,27 @@ from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.statistics.escape_statistics import compute_statistics
+from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_grid import checked_sweep
 
 MOST_ENERGIES = 1000
 """Most energies of one sweep."""
 
-# A tenth of what a single map is worth: some ten times faster, with intervals up to three times as wide.
+# A tenth of the work for a single map: about ten times faster, with intervals up to three times as wide.
 _WORK = 0.1 * WORK
 
 
 @dataclass(frozen=True)
 class EnergyPointSpec:
-    """What is measured at one energy: `map_spec`, and whether the uncertainty exponent, which takes longest, is among it."""
+    """The measurement at one energy.
+
+    Attributes
+    ----------
+    map_spec
+        The map to evaluate.
+    exponent
+        Whether to compute the uncertainty exponent, which takes longest.
+    """
 
     map_spec: MapSpec
     exponent: bool
@@ -41,7 +50,7 @@ class EnergyPointSpec:
 
 @dataclass(frozen=True)
 class EnergyCurvesSpec:
-    """A sweep over energies on one plane, each energy with the window that shows its whole interior.
+    """A sweep over energies on one plane; the map at each energy has the default window, which contains the whole interior.
 
     Parameters
     ----------
@@ -54,9 +63,9 @@ class EnergyCurvesSpec:
     resolution
         (columns, rows) of the map at each energy.
     t_max
-        How long orbits are followed, 0 < t_max ≤ 1e8.
+        Integration time, dimensionless, 0 < t_max ≤ 1e8.
     exponent
-        Whether to measure the uncertainty exponent, too.
+        Whether to compute the uncertainty exponent.
 
     Raises
     ------
@@ -75,33 +84,34 @@ class EnergyCurvesSpec:
         plane, energies = checked_sweep(self.plane, self.energies, MOST_ENERGIES)
         object.__setattr__(self, "plane", plane)
         object.__setattr__(self, "energies", energies)
-        # Says what is wrong with the rest before anything is computed.
+        # Validates the other parameters.
         MapSpec(self.potential, self.plane, energies[0], self.resolution, t_max=self.t_max)
 
     def point(self, energy: float) -> EnergyPointSpec:
-        """The part of it at one energy."""
+        """The measurement at one energy."""
         return EnergyPointSpec(MapSpec(self.potential, self.plane, energy, self.resolution, t_max=self.t_max), self.exponent)
 
 
 @dataclass(frozen=True)
 class EnergyPoint:
-    """What was measured at one energy; dimensionless.
+    """Measured values at one energy, dimensionless.
 
     Attributes
     ----------
     energy
         h.
     shares
-        (channels + 1,) of the interior starts: bounded, then channel 1, 2, ….
+        (channels + 1,) shares of the interior starts: bounded, then those that escape through channel 1, 2, ….
     direct_share
-        Of the interior starts, those that leave without crossing y = 0 upward.
+        Share of the interior starts that escape without an upward crossing of y = 0.
     mean_escape_time, median_escape_time
-        Of those that leave; NaN when none does.
+        Over the escaping orbits; NaN if there are none.
     s_b, s_bb
-        Basin entropy and boundary entropy, `compute_basin_entropy`.
+        Basin entropy and boundary basin entropy; see `compute_basin_entropy`.
     exponent, exponent_low, exponent_high
-        Uncertainty exponent with its 95 % interval, `compute_uncertainty_exponent`; NaN where it is not determined, or was not
-        asked for.
+        Uncertainty exponent and its 95 % interval; see `compute_uncertainty_exponent`. NaN if undetermined or not requested.
+    nbytes
+        Approximate size in bytes, including the request.
     """
 
     energy: float
@@ -114,47 +124,46 @@ class EnergyPoint:
     exponent: float = math.nan
     exponent_low: float = math.nan
     exponent_high: float = math.nan
-    nbytes: int = 1024
-    """About what it takes together with its request."""
+    nbytes: ClassVar[int] = 1024
 
 
-_CURVES = tuple(field.name for field in fields(EnergyPoint) if field.name not in ("energy", "shares", "nbytes"))
+_CURVES = tuple(field.name for field in fields(EnergyPoint) if field.name not in ("energy", "shares"))
 
 
 @dataclass(frozen=True, eq=False)
 class EnergyCurves:
-    """A sweep, finished or on its way: what is known so far, by rising energy."""
+    """The points of a sweep measured so far, by ascending energy."""
 
     spec: EnergyCurvesSpec
     points: tuple[EnergyPoint, ...]
 
     @property
     def complete(self) -> bool:
-        """Whether every energy is measured."""
+        """Whether all energies have been measured."""
         return len(self.points) == len(self.spec.energies)
 
     @property
     def nbytes(self) -> int:
-        """Bytes held."""
+        """Approximate size in bytes."""
         return sum(point.nbytes for point in self.points)
 
     @property
     def energies(self) -> np.ndarray:
-        """(n,) h of the points."""
+        """(n,) energies h of the points."""
         return np.array([point.energy for point in self.points])
 
     @property
     def shares(self) -> np.ndarray:
-        """(n, channels + 1) shares of bounded starts and of each channel."""
+        """(n, channels + 1) share of bounded orbits, then of each channel."""
         channels = self.spec.potential.channels
         return np.array([point.shares for point in self.points]).reshape(-1, channels + 1)
 
     def curve(self, name: str) -> np.ndarray:
-        """(n,) any other attribute of `EnergyPoint` against energy."""
+        """(n,) any other attribute of `EnergyPoint`, by its name."""
         return np.array([getattr(point, name) for point in self.points], dtype=float)
 
     def to_xarray(self) -> xr.Dataset:
-        """All curves with named axes and what made them."""
+        """All curves as a dataset with coordinates and provenance."""
         variables: dict[str, Any] = {"share": (("h", "fate"), self.shares)}
         variables |= {name: ("h", self.curve(name)) for name in _CURVES}
         coordinates = {"h": self.energies, "fate": np.arange(self.spec.potential.channels + 1)}
@@ -170,20 +179,20 @@ def compute_energy_curves(
     *,
     measure: Callable[[EnergyPointSpec], EnergyPoint] | None = None,
 ) -> EnergyCurves:
-    """Measure the exits at many energies, coarsely spread ones first.
+    """Measure exits and basins at many energies, in an order from coarse to fine.
 
     Parameters
     ----------
     spec
         The request.
     on_frame
-        Called in this thread with what is known so far, after each energy.
+        Called in this thread after each energy with the points so far.
     cancel
-        When set, the work stops within about 0.2 s.
+        When set, the computation stops within about 0.2 s.
     executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
+        Any `concurrent.futures.Executor`; None for the default pool of this process.
     measure
-        How a single energy is measured, to look it up where it is kept; None to compute all of them.
+        Replaces `compute_energy_point`, for example to use a cache; None to compute all energies.
 
     Raises
     ------
@@ -192,11 +201,11 @@ def compute_energy_curves(
     ValueError
         When no exit is defined at one of the energies.
     """
-    found: list[EnergyPoint] = []
-    for place in _coarse_to_fine(len(spec.energies)):
-        point_spec = spec.point(spec.energies[place])
-        found.append(measure(point_spec) if measure is not None else compute_energy_point(point_spec, cancel, executor))
-        curves = EnergyCurves(spec, tuple(sorted(found, key=lambda point: point.energy)))
+    points: list[EnergyPoint] = []
+    for index in _coarse_to_fine(len(spec.energies)):
+        point_spec = spec.point(spec.energies[index])
+        points.append(measure(point_spec) if measure is not None else compute_energy_point(point_spec, cancel, executor))
+        curves = EnergyCurves(spec, tuple(sorted(points, key=lambda point: point.energy)))
         if on_frame is not None:
             on_frame(curves)
     return curves
@@ -207,31 +216,35 @@ def compute_energy_point(
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
     *,
-    whole_map: EscapeMap | None = None,
+    frame: EscapeMap | None = None,
 ) -> EnergyPoint:
-    """What is to be known of one energy.
+    """Measure one energy.
 
     Parameters
     ----------
     spec
         The request.
     cancel, executor
-        As of `compute_energy_curves`.
-    whole_map
-        The complete map of `spec.map_spec`, where there is one already.
+        As in `compute_energy_curves`.
+    frame
+        The complete map of `spec.map_spec`; None to compute it.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        When cancelled.
     """
-    frame = compute_map(spec.map_spec, None, cancel, executor) if whole_map is None else whole_map
-    if not frame.complete:
-        raise CancelledError
-    point = _read_map(frame)
+    if frame is None:
+        frame = compute_map(spec.map_spec, None, cancel, executor)
+    point = _evaluate_map(require_complete(frame))
     open_channels = spec.map_spec.potential.open_channels(point.energy)
     if not (spec.exponent and open_channels):
         return point
     found = compute_uncertainty_exponent(spec.map_spec, work=_WORK, executor=executor, cancel=cancel)
-    return _with_exponent(point, found)
+    return replace(point, exponent=found.exponent, exponent_low=found.low, exponent_high=found.high)
 
 
-def _read_map(frame: EscapeMap) -> EnergyPoint:
+def _evaluate_map(frame: EscapeMap) -> EnergyPoint:
     assert not isinstance(frame.spec.energy, tuple)
     statistics = compute_statistics(frame)
     shares = statistics.shares
@@ -247,12 +260,8 @@ def _read_map(frame: EscapeMap) -> EnergyPoint:
     )
 
 
-def _with_exponent(point: EnergyPoint, found: UncertaintyExponent) -> EnergyPoint:
-    return replace(point, exponent=found.exponent, exponent_low=found.low, exponent_high=found.high)
-
-
 def _coarse_to_fine(count: int) -> list[int]:
-    """All places from 0 to count − 1, each time between those before: the curves are seen early."""
+    """0 to count − 1, ends first and then repeatedly the midpoints, so that the curves take shape early."""
     order, step = [0, count - 1] if count > 1 else [0], 1 << (count - 1).bit_length()
     while step > 1:
         step //= 2

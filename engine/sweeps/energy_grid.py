@@ -1,4 +1,4 @@
-"""What energies may be swept, and on which planes."""
+"""Validation of the plane and the energies of a sweep."""
 
 from __future__ import annotations
 
@@ -7,18 +7,33 @@ from typing import Any
 import numpy as np
 
 from engine.dynamics.planes import Plane
-from engine.validation import LARGEST_NUMBER, shown
+from engine.validation import LARGEST_NUMBER, short_repr
 
 
 def checked_sweep(plane: Any, energies: Any, most: int) -> tuple[Plane, tuple[float, ...]]:
-    """The plane, and the energies sorted and made unique; ValueError unless they can be swept, at most so many of them."""
+    """The plane, and the energies sorted and made unique.
+
+    Parameters
+    ----------
+    plane
+        (x, y) or (x, px).
+    energies
+        Finite numbers, 1 to `most` different ones.
+    most
+        Largest number of energies.
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter, its value and what is legal.
+    """
     checked_plane = Plane(plane)
     if checked_plane is Plane.X_H:
-        raise ValueError(f"plane={checked_plane.value}: energies are swept on (x, y) or (x, px); (x, h) holds all of them")
+        raise ValueError(f"plane={checked_plane.value}: must be (x, y) or (x, px); (x, h) already contains all energies")
     try:
         checked = tuple(sorted({float(h) for h in energies}))
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"energies={shown(energies)}: must be finite numbers") from None
+        raise ValueError(f"energies={short_repr(energies)}: must be finite numbers") from None
     if not 1 <= len(checked) <= most or not np.all(np.abs(checked) <= LARGEST_NUMBER):
         raise ValueError(f"energies: {len(checked)} different ones; must be 1 to {most} finite numbers")
     return checked_plane, checked

@@ -1,4 +1,4 @@
-"""The request for a sweep: maps at many energies on one plane and in one window, frozen and validated."""
+"""The request for a stored sweep: maps at many energies on one plane and in one window."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from engine.potentials.potential import Potential
 from engine.sweeps.energy_grid import checked_sweep
 
 MOST_SWEPT_ENERGIES = 10_000
-"""Most energies of a stored sweep: each is some files in every array's folder."""
+"""Most energies of a stored sweep; each takes several files per array."""
 
 
 @dataclass(frozen=True)
 class SweepSpec:
-    """A sweep of maps over energies on one plane and in one window, so that all of it is one labelled block.
+    """A sweep of maps over energies on one plane and in one window, so that its result is one array per variable.
 
     Parameters
     ----------
@@ -33,18 +33,18 @@ class SweepSpec:
     resolution
         (columns, rows) of the map at each energy, each 1 to 4096.
     window
-        As of `MapSpec`, for all energies; None for the default window of the highest one. The interior grows with h on both
-        planes of the three cases, so that this window contains those of the other energies.
+        As in `MapSpec`, for all energies; None for the default window of the highest energy. In the three cases the interior
+        grows with h on both planes, so that this window contains the default windows of all other energies.
     t_max
-        How long orbits are followed, 0 < t_max ≤ 1e8.
+        Integration time, dimensionless, 0 < t_max ≤ 1e8.
     certify
-        As of `MapSpec`.
+        As in `MapSpec`.
     piece
-        Most starts that are computed, kept and, by a kill, lost together, 1 to 1 048 576; None for the most, with which each map
-        is that of `compute_map` to the bit. Larger maps are cut into bands of rows. Smaller pieces leave fates, escape times and
-        the crossings of what escapes as they are, unless a certificate errs, which is rare (docs/long-runs.md). Which certificate
-        a bounded orbit has may change, as invariant curves enclose orbits of their own band only, and with it the crossings and
-        the energy error, which count as far as it was followed.
+        Largest number of starts per row block, 1 to 1 048 576. A block is computed and stored as a whole, and is what a killed
+        run loses. None for the largest, with which each map is bit-identical to `compute_map`. Smaller blocks leave fates, escape
+        times and the crossings of escaping orbits unchanged, unless a certificate errs, which is rare (docs/long-runs.md). The
+        certificate of a bounded orbit may change, because invariant curves are only compared with orbits of their own block, and
+        with it its crossings and energy error, which are those up to the time it was integrated.
 
     Raises
     ------
@@ -73,23 +73,23 @@ class SweepSpec:
             object.__setattr__(self, name, getattr(highest, name))
 
     def map_spec(self, energy: float) -> MapSpec:
-        """The request for the map at one energy."""
+        """The spec of the map at one energy."""
         assert self.window is not None
         return MapSpec(self.potential, self.plane, energy, self.resolution, self.window, self.t_max, self.certify)
 
     def provenance(self) -> dict[str, Any]:
-        """What all maps have in common, in plain values; see `MapSpec.provenance`."""
+        """The request as plain values, without the energies; see `MapSpec.provenance`."""
         common = self.map_spec(self.energies[-1]).provenance()
         return {**{name: value for name, value in common.items() if name != "energy"}, "piece": self.piece or LARGEST_RUN}
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """h (energies,), y or px (rows,), x (columns,): the dimensions of the block."""
+        """h (energies,), y or px (rows,), x (columns,): the coordinates of the arrays, in order."""
         x, ordinate = self.map_spec(self.energies[-1]).pixel_centres()
         return {"h": np.array(self.energies), self.plane.ordinate: ordinate, "x": x}
 
     @property
     def orbits(self) -> int:
-        """How many starts there are at all energies together, forbidden and outside ones included."""
+        """Number of starts at all energies, including forbidden ones and those outside."""
         return len(self.energies) * self.resolution[0] * self.resolution[1]
 
 
@@ -101,5 +101,5 @@ def _checked_piece(piece: Any) -> int | None:
     except TypeError:
         checked = 0
     if not 1 <= checked <= LARGEST_RUN:
-        raise ValueError(f"piece={piece!r}: must be a number of starts from 1 to {LARGEST_RUN}, or None")
+        raise ValueError(f"piece={piece!r}: must be an integer from 1 to {LARGEST_RUN}, or None")
     return checked

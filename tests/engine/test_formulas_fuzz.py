@@ -1,4 +1,4 @@
-"""Arbitrary and hostile text: it is read as SymPy would expand it, or refused with a ValueError; nothing else ever happens."""
+"""Fuzz tests of the formula parser: any text is parsed as SymPy expands it, or refused with a ValueError."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ PIECES = (
 LONGEST_SECONDS = 1.0
 
 
-def trees(depth: int, rng: random.Random) -> tuple[str, sympy.Expr]:
-    """A formula as text, and what SymPy takes it for."""
+def random_formula(depth: int, rng: random.Random) -> tuple[str, sympy.Expr]:
+    """A random formula as text and as a SymPy expression."""
     if depth == 0 or rng.random() < 0.2:
         number = rng.randint(1, 9)
         return rng.choice([("x", X), ("y", Y), (str(number), sympy.Integer(number)), ("0.25", sympy.Rational(1, 4))])
-    left, a = trees(depth - 1, rng)
-    right, b = trees(depth - 1, rng)
+    left, a = random_formula(depth - 1, rng)
+    right, b = random_formula(depth - 1, rng)
     power = rng.randint(0, 3)
     return rng.choice(
         [
@@ -60,7 +60,7 @@ def trees(depth: int, rng: random.Random) -> tuple[str, sympy.Expr]:
     )
 
 
-def read(text: str) -> Potential | None:
+def try_parse(text: str) -> Potential | None:
     begin = time.process_time()
     try:
         return parse_formula(text)
@@ -71,19 +71,19 @@ def read(text: str) -> Potential | None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_hundred_sums_of_hostile_pieces_are_read_or_refused(seed: int) -> None:
+def test_random_hostile_text_is_parsed_or_refused(seed: int) -> None:
     rng = random.Random(seed)
     for _ in range(100):
-        read("".join(rng.choice(PIECES) for _ in range(rng.randint(1, 60))))
+        try_parse("".join(rng.choice(PIECES) for _ in range(rng.randint(1, 60))))
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_well_formed_formulas_are_what_sympy_expands_them_to(seed: int) -> None:
+def test_valid_formulas_agree_with_sympy(seed: int) -> None:
     rng = random.Random(seed)
     compared = 0
     for _ in range(50):
-        text, expression = trees(4, rng)
-        potential = read(text)
+        text, expression = random_formula(4, rng)
+        potential = try_parse(text)
         if potential is None:
             continue
         exact = sympy.Poly(expression, X, Y, domain="QQ")
@@ -94,11 +94,11 @@ def test_well_formed_formulas_are_what_sympy_expands_them_to(seed: int) -> None:
 
 @settings(max_examples=400)
 @given(st.text(max_size=600))
-def test_any_text_is_read_or_refused(text: str) -> None:
-    read(text)
+def test_arbitrary_text_is_parsed_or_refused(text: str) -> None:
+    try_parse(text)
 
 
 @settings(max_examples=400)
 @given(st.text("xyr0123456789.^*/+-()²³½ −e", max_size=80))
-def test_any_text_of_legal_characters_is_read_or_refused(text: str) -> None:
-    read(text)
+def test_text_of_legal_characters_is_parsed_or_refused(text: str) -> None:
+    try_parse(text)

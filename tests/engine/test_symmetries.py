@@ -1,4 +1,4 @@
-"""What the symmetry of each potential demands of whole maps."""
+"""Consequences of the symmetries of the potentials for orbits and maps."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def starts(plane: Plane, energy: float) -> np.ndarray:
     return states[np.isfinite(states).all(axis=1)]
 
 
-# Even powers only: a change of sign leaves every product unchanged in floating point, and the exits are exact images.
+# V has only even powers: sign changes are exact in floating point, and the exits are exact images of each other.
 @pytest.mark.parametrize("energy", [0.3, 0.5, 0.8])
 @pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_Y])
-def test_orbits_of_case_3_and_their_mirror_images_fare_alike_to_the_bit(plane: Plane, energy: float) -> None:
+def test_mirror_images_of_case_3_have_bit_identical_outcomes(plane: Plane, energy: float) -> None:
     states = starts(plane, energy)
     one = classify_orbits(CASES["III"], energy, states, 100.0)
     other = classify_orbits(CASES["III"], energy, states * [-1.0, 1.0, -1.0, 1.0], 100.0)
@@ -35,19 +35,19 @@ def test_orbits_of_case_3_and_their_mirror_images_fare_alike_to_the_bit(plane: P
 
 @pytest.mark.parametrize("resolution", [(60, 60), (61, 61), (60, 61), (225, 224)])
 @pytest.mark.parametrize("plane", Plane)
-def test_a_map_of_which_half_is_mirrored_holds_what_single_orbits_do(plane: Plane, resolution: tuple[int, int]) -> None:
+def test_mirrored_half_of_a_map_agrees_with_single_orbits(plane: Plane, resolution: tuple[int, int]) -> None:
     energy = (0.5, 1.0) if plane is Plane.X_H else 0.5
     result = compute_map(MapSpec(CASES["III"], plane, energy, resolution, None, t_max=100.0))
     row = int(np.argmax(np.sum(result.fate >= 1, axis=1)))
     x, ordinate = result.x, np.full(result.x.size, result.ordinate[row])
     h = float(result.ordinate[row]) if plane is Plane.X_H else 0.5
     states = start_states(CASES["III"], plane, h, x, ordinate)
-    there = (result.fate[row] >= 1) & np.isfinite(states).all(axis=1)
-    outcome = classify_orbits(CASES["III"], h, states[there], 100.0)
-    assert there.sum() > 10
-    np.testing.assert_array_equal(outcome.fate, result.fate[row][there])
-    np.testing.assert_array_equal(outcome.escape_time, result.escape_time[row][there])
-    np.testing.assert_array_equal(outcome.crossings, result.crossings[row][there])
+    escaped = (result.fate[row] >= 1) & np.isfinite(states).all(axis=1)
+    outcome = classify_orbits(CASES["III"], h, states[escaped], 100.0)
+    assert escaped.sum() > 10
+    np.testing.assert_array_equal(outcome.fate, result.fate[row][escaped])
+    np.testing.assert_array_equal(outcome.escape_time, result.escape_time[row][escaped])
+    np.testing.assert_array_equal(outcome.crossings, result.crossings[row][escaped])
 
 
 def outcomes_of(name: str, energy: float, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -56,38 +56,38 @@ def outcomes_of(name: str, energy: float, states: np.ndarray) -> tuple[np.ndarra
 
 
 @pytest.fixture(params=[("I", 0.2), ("I", 0.5), ("II", 0.22), ("II", 0.5), ("III", 0.5)], ids=str)
-def any_direction(request: pytest.FixtureRequest) -> tuple[str, float, np.ndarray]:
-    """Starts anywhere inside, in any direction."""
+def random_starts(request: pytest.FixtureRequest) -> tuple[str, float, np.ndarray]:
+    """Random starts in the interior with random directions."""
     name, energy = request.param
     x, y, angle = np.random.default_rng(8).uniform([-0.4, -0.4, 0], [0.4, 0.4, 2 * np.pi], (200, 3)).T
     speed = np.sqrt(2 * (energy - CASES[name].value(x, y)))
     return name, energy, np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)])
 
 
-def assert_images_fare_alike(name: str, energy: float, states: np.ndarray, images: np.ndarray, image_of: dict[int, int]) -> None:
+def assert_same_outcomes(name: str, energy: float, states: np.ndarray, images: np.ndarray, image_of: dict[int, int]) -> None:
     fate, time = outcomes_of(name, energy, states)
     image_fate, image_time = outcomes_of(name, energy, images)
-    # Rounding differs between the images: an orbit that wanders may end elsewhere, one that leaves soon may not.
-    soon = (fate >= 1) & (time < 30)
-    assert soon.mean() > 0.3
-    np.testing.assert_array_equal(image_fate[soon], [image_of[k] for k in fate[soon]])
-    np.testing.assert_allclose(image_time[soon], time[soon], rtol=1e-6)
+    # Rounding errors differ between the images, so only early escapes have equal outcomes.
+    early = (fate >= 1) & (time < 30)
+    assert early.mean() > 0.3
+    np.testing.assert_array_equal(image_fate[early], [image_of[k] for k in fate[early]])
+    np.testing.assert_allclose(image_time[early], time[early], rtol=1e-6)
 
 
-def test_mirrored_in_the_x_axis(any_direction: tuple[str, float, np.ndarray]) -> None:
-    name, energy, states = any_direction
+def test_mirror_images_in_the_x_axis(random_starts: tuple[str, float, np.ndarray]) -> None:
+    name, energy, states = random_starts
     image_of = {"I": {1: 2, 2: 1}, "II": {1: 1, 2: 3, 3: 2}, "III": {1: 4, 2: 3, 3: 2, 4: 1}}[name]
-    assert_images_fare_alike(name, energy, states, states * [1, -1, 1, -1], image_of)
+    assert_same_outcomes(name, energy, states, states * [1, -1, 1, -1], image_of)
 
 
 @pytest.mark.parametrize("energy", [0.22, 0.5])
-def test_case_2_turned_by_a_third(energy: float) -> None:
+def test_rotation_of_case_2_by_120_degrees(energy: float) -> None:
     x, y, angle = np.random.default_rng(9).uniform([-0.3, -0.3, 0], [0.3, 0.3, 2 * np.pi], (200, 3)).T
     speed = np.sqrt(2 * (energy - CASES["II"].value(x, y)))
     states = np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)])
     cos, sin = np.cos(2 * np.pi / 3), np.sin(2 * np.pi / 3)
-    turn = np.kron(np.eye(2), np.array([[cos, -sin], [sin, cos]]))
-    assert_images_fare_alike("II", energy, states, states @ turn.T, {1: 2, 2: 3, 3: 1})
+    rotation = np.kron(np.eye(2), np.array([[cos, -sin], [sin, cos]]))
+    assert_same_outcomes("II", energy, states, states @ rotation.T, {1: 2, 2: 3, 3: 1})
 
 
 def test_fate_codes_below_one_have_no_mirror_image() -> None:
@@ -95,7 +95,7 @@ def test_fate_codes_below_one_have_no_mirror_image() -> None:
     np.testing.assert_array_equal(swapped(codes, {1: 2}), codes)
 
 
-def test_case_3_shares_come_in_pairs() -> None:
+def test_case_3_shares_are_equal_in_pairs() -> None:
     def shares(result: EscapeMap) -> dict[int, float]:
         return result.fractions()
 

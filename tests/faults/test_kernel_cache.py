@@ -1,4 +1,4 @@
-"""Compiled kernels on disk: whatever became of them, the next start computes the same."""
+"""Kernel cache on disk: damaged files, unusable folders and concurrent processes do not change results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ print(scaled(float(sys.argv[1])))
 
 
 def fresh_kernel() -> Callable[[float], float]:
-    """The same function, as a new process would see it."""
+    """The same kernel, not loaded yet, as in a new process."""
 
     @kernel
     def scaled(x: float) -> float:
@@ -51,19 +51,19 @@ def hits(compiled: Any) -> int:
     return sum(compiled.stats.cache_hits.values())
 
 
-def said(caplog: pytest.LogCaptureFixture) -> list[str]:
+def warnings(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
 
 
-def test_a_kernel_is_compiled_once_and_loaded_from_then_on(folder: Path) -> None:
+def test_kernel_is_compiled_once_and_then_loaded(folder: Path) -> None:
     assert fresh_kernel()(2.0) == 6.0
-    (kept,) = folder.iterdir()
-    assert kept.suffix == ENDING
-    written = kept.stat().st_mtime_ns
+    (file,) = folder.iterdir()
+    assert file.suffix == ENDING
+    written = file.stat().st_mtime_ns
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1
-    assert kept.stat().st_mtime_ns == written
+    assert file.stat().st_mtime_ns == written
 
 
 @pytest.mark.parametrize(
@@ -78,33 +78,33 @@ def test_a_kernel_is_compiled_once_and_loaded_from_then_on(folder: Path) -> None
     ],
     ids=["empty", "half", "one byte short", "garbage", "one bit", "longer"],
 )
-def test_a_damaged_file_is_noticed_and_replaced(
+def test_damaged_file_is_detected_and_replaced(
     damage: Callable[[bytes], bytes], folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     fresh_kernel()(2.0)
-    (kept,) = folder.iterdir()
-    whole = kept.read_bytes()
-    kept.write_bytes(damage(whole))
+    (file,) = folder.iterdir()
+    whole = file.read_bytes()
+    file.write_bytes(damage(whole))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 0
-    (sentence,) = said(caplog)
-    assert str(kept) in sentence
+    (message,) = warnings(caplog)
+    assert str(file) in message
     after = fresh_kernel()
     assert after(2.0) == 6.0
     assert hits(after) == 1
 
 
-def test_a_folder_in_the_place_of_a_file_is_no_obstacle(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_folder_in_place_of_a_file_is_ignored(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
     fresh_kernel()(2.0)
-    (kept,) = folder.iterdir()
-    kept.unlink()
-    kept.mkdir()
+    (file,) = folder.iterdir()
+    file.unlink()
+    file.mkdir()
     assert fresh_kernel()(2.0) == 6.0
-    assert said(caplog)
+    assert warnings(caplog)
 
 
-def test_a_cache_that_cannot_be_a_folder_is_done_without(
+def test_cache_path_that_is_a_file_disables_the_cache(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     obstacle = tmp_path / "file"
@@ -112,12 +112,12 @@ def test_a_cache_that_cannot_be_a_folder_is_done_without(
     monkeypatch.setenv(CACHE_VARIABLE, str(obstacle))
     disk_cache._warn_once.cache_clear()
     assert [fresh_kernel()(2.0), fresh_kernel()(2.0)] == [6.0, 6.0]
-    assert len([sentence for sentence in said(caplog) if "cannot be kept" in sentence]) == 1
+    assert len([message for message in warnings(caplog) if str(obstacle) in message and ENDING not in message]) == 1
     assert obstacle.read_text() == ""
 
 
 @pytest.mark.parametrize("reason", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EDQUOT])
-def test_a_disk_that_takes_nothing_is_done_without(
+def test_write_errors_disable_the_cache(
     reason: int, folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def refuse(*arguments: Any) -> None:
@@ -125,20 +125,20 @@ def test_a_disk_that_takes_nothing_is_done_without(
 
     monkeypatch.setattr(disk_cache.os, "replace", refuse)
     assert fresh_kernel()(2.0) == 6.0
-    (sentence,) = said(caplog)
-    assert os.strerror(reason) in sentence
+    (message,) = warnings(caplog)
+    assert os.strerror(reason) in message
     assert not any(folder.iterdir())
 
 
-def test_a_cache_that_can_only_be_read_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh_kernel()(2.0)
-    monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
+    monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("the cache was written to"))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1
 
 
-def test_programs_that_compile_at_once_do_not_harm_each_other(folder: Path, tmp_path: Path) -> None:
+def test_concurrent_processes_share_the_cache(folder: Path, tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text(_PROGRAM)
     root = Path(__file__).parents[2]
@@ -148,14 +148,13 @@ def test_programs_that_compile_at_once_do_not_harm_each_other(folder: Path, tmp_
         subprocess.Popen([*command, str(x)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         for x in (1.0, 2.0, 4.0)
     ]
-    answers = [process.communicate(timeout=120) for process in started]
-    assert answers == [("3.0\n", ""), ("6.0\n", ""), ("12.0\n", "")]
-    (kept,) = folder.iterdir()
-    assert kept.suffix == ENDING
+    outputs = [process.communicate(timeout=120) for process in started]
+    assert outputs == [("3.0\n", ""), ("6.0\n", ""), ("12.0\n", "")]
+    (file,) = folder.iterdir()
+    assert file.suffix == ENDING
 
 
-def test_other_source_is_another_file(folder: Path) -> None:
-    """Else a function would be what it was before it was edited."""
+def test_changed_source_gets_another_file(folder: Path) -> None:
     fresh_kernel()(2.0)
 
     @kernel

@@ -1,28 +1,47 @@
-"""The cache keeps what was used last, below its limit."""
+"""Result cache: least-recently-used eviction within a memory limit."""
 
 from __future__ import annotations
+
+from types import SimpleNamespace
 
 from engine.jobs.cache import ResultCache
 
 
-class Weight:
-    """A result of a given size."""
-
-    def __init__(self, nbytes: int) -> None:
-        self.nbytes = nbytes
+def sized(nbytes: int) -> SimpleNamespace:
+    return SimpleNamespace(nbytes=nbytes)
 
 
-def test_the_cache_stays_below_its_limit_and_drops_what_was_not_used() -> None:
+def test_least_recently_used_results_are_evicted() -> None:
     cache = ResultCache(100)
     for key in ("a", "b", "c"):
-        cache.put(key, Weight(40))
+        cache.put(key, sized(40))
         cache.get("a")
     assert cache.nbytes == 80
     assert set(cache) == {"a", "c"}
 
 
-def test_a_result_larger_than_the_cache_is_not_kept() -> None:
+def test_iteration_does_not_count_as_use() -> None:
     cache = ResultCache(100)
-    cache.put("a", Weight(40))
-    cache.put("b", Weight(101))
+    for key in ("a", "b", "c"):
+        cache.put(key, sized(40))
+        list(cache)
+    assert set(cache) == {"b", "c"}
+
+
+def test_result_larger_than_the_cache_is_not_stored() -> None:
+    cache = ResultCache(100)
+    cache.put("a", sized(40))
+    cache.put("b", sized(101))
     assert list(cache) == ["a"]
+    cache.put("a", sized(101))
+    assert list(cache) == []
+    assert cache.nbytes == 0
+
+
+def test_replacing_a_result_updates_the_size() -> None:
+    cache = ResultCache(100)
+    larger = sized(70)
+    cache.put("a", sized(40))
+    cache.put("a", larger)
+    assert cache.get("a") is larger
+    assert (cache.nbytes, cache.limit) == (70, 100)

@@ -1,4 +1,4 @@
-"""OrbitSemaphore for large jobs: bounded, waited for, and given back."""
+"""Orbit semaphore: limit, waiting, release and cancellation."""
 
 from __future__ import annotations
 
@@ -7,42 +7,42 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 
 import pytest
 
-from engine.jobs.orbit_semaphore import SMALL, OrbitSemaphore
+from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
 
-LARGE = 4 * SMALL
+LARGE = 4 * SMALL_JOB
 
 
 def test_small_jobs_never_wait() -> None:
-    room, nobody_cancels = OrbitSemaphore(LARGE), threading.Event()
-    with room.hold(LARGE, nobody_cancels), room.hold(SMALL, nobody_cancels):
-        assert room.taken == LARGE
+    semaphore, cancel = OrbitSemaphore(LARGE), threading.Event()
+    with semaphore.acquire(LARGE, cancel), semaphore.acquire(SMALL_JOB, cancel):
+        assert semaphore.held == LARGE
 
 
-def test_a_large_job_waits_until_there_is_room() -> None:
-    room, go_on = OrbitSemaphore(LARGE), threading.Event()
+def test_large_job_waits_for_the_release_of_another() -> None:
+    semaphore, released = OrbitSemaphore(LARGE), threading.Event()
 
     def second() -> bool:
-        with room.hold(LARGE, threading.Event()):
-            return go_on.is_set()
+        with semaphore.acquire(LARGE, threading.Event()):
+            return released.is_set()
 
     with ThreadPoolExecutor(1) as threads:
-        with room.hold(LARGE, threading.Event()):
+        with semaphore.acquire(LARGE, threading.Event()):
             waiting = threads.submit(second)
             assert not waiting.done()
-            go_on.set()
+            released.set()
         assert waiting.result(10)
-    assert room.taken == 0
+    assert semaphore.held == 0
 
 
-def test_one_larger_than_the_room_has_it_to_itself() -> None:
-    room = OrbitSemaphore(LARGE)
-    with room.hold(3 * LARGE, threading.Event()):
-        assert room.taken == 3 * LARGE
+def test_job_above_the_limit_runs_alone() -> None:
+    semaphore = OrbitSemaphore(LARGE)
+    with semaphore.acquire(3 * LARGE, threading.Event()):
+        assert semaphore.held == 3 * LARGE
 
 
-def test_who_gives_up_stops_waiting() -> None:
-    room, cancel = OrbitSemaphore(LARGE), threading.Event()
+def test_cancel_ends_the_wait() -> None:
+    semaphore, cancel = OrbitSemaphore(LARGE), threading.Event()
     cancel.set()
-    with room.hold(LARGE, threading.Event()), pytest.raises(CancelledError), room.hold(LARGE, cancel):
+    with semaphore.acquire(LARGE, threading.Event()), pytest.raises(CancelledError), semaphore.acquire(LARGE, cancel):
         pass
-    assert room.taken == 0
+    assert semaphore.held == 0

@@ -1,4 +1,4 @@
-"""One pool for many: first looks first, then turns, and never all threads on calls that last."""
+"""Fair scheduler: priorities, round-robin among clients, and a free thread beside long calls."""
 
 from __future__ import annotations
 
@@ -9,138 +9,146 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 import pytest
 
 from engine.execution import count_workers
-from engine.jobs.scheduler import FairScheduler, Line, Priority
+from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 
 SECONDS = 10.0
 
 
-class Stage:
-    """A pool of so many threads, all held up until the curtain rises; then it notes in which order calls are made."""
+class Recorder:
+    """A scheduler whose threads are blocked until `run`, so that the order of the queued calls can be recorded."""
 
     def __init__(self, threads: int = 1) -> None:
-        self.pool = FairScheduler(ThreadPoolExecutor(threads))
-        self.curtain = threading.Event()
+        self.scheduler = FairScheduler(ThreadPoolExecutor(threads))
+        self.released = threading.Event()
         self.order: list[str] = []
-        opening = self.pool.line("nobody", lambda: Priority.TILE)
-        self.held = [opening.submit(self.curtain.wait, SECONDS) for _ in range(threads)]
+        blocker = self.executor("blocker")
+        for _ in range(threads):
+            blocker.submit(self.released.wait, SECONDS)
 
-    def line(self, owner: str, rank: Callable[[], Priority] = lambda: Priority.TILE) -> Line:
-        return self.pool.line(owner, rank)
+    def executor(self, client: str, priority: Callable[[], Priority] = lambda: Priority.BACKGROUND) -> QueueExecutor:
+        return self.scheduler.executor(client, priority)
 
-    def ask(self, line: Line, *names: str) -> list[Future[None]]:
-        return [line.submit(self.order.append, name) for name in names]
+    def submit(self, executor: QueueExecutor, *names: str) -> list[Future[None]]:
+        return [executor.submit(self.order.append, name) for name in names]
 
-    def play(self, *futures: Future[None]) -> list[str]:
-        self.curtain.set()
+    def run(self, *futures: Future[None]) -> list[str]:
+        self.released.set()
         assert not wait(futures, SECONDS).not_done
         return self.order
 
 
-def test_owners_take_turns_whoever_came_first() -> None:
-    stage = Stage()
-    first = stage.ask(stage.line("a"), "a1", "a2", "a3")
-    second = stage.ask(stage.line("b"), "b1", "b2")
-    assert stage.play(*first, *second) == ["a1", "b1", "a2", "b2", "a3"]
+def first_frame() -> Priority:
+    return Priority.FIRST_FRAME
 
 
-def test_two_jobs_of_one_owner_share_a_turn() -> None:
-    stage = Stage()
-    jobs = [*stage.ask(stage.line("a"), "a1"), *stage.ask(stage.line("a"), "a2"), *stage.ask(stage.line("b"), "b1")]
-    assert stage.play(*jobs) == ["a1", "b1", "a2"]
+def long_call() -> Priority:
+    return Priority.LONG_CALL
 
 
-def test_first_looks_come_before_everything_else() -> None:
-    stage = Stage()
-    others = stage.ask(stage.line("a"), "a1", "a2")
-    looks = stage.ask(stage.line("b", lambda: Priority.FIRST_LOOK), "b1", "b2")
-    assert stage.play(*others, *looks) == ["b1", "b2", "a1", "a2"]
+def test_clients_are_served_round_robin() -> None:
+    recorder = Recorder()
+    first = recorder.submit(recorder.executor("a"), "a1", "a2", "a3")
+    second = recorder.submit(recorder.executor("b"), "b1", "b2")
+    assert recorder.run(*first, *second) == ["a1", "b1", "a2", "b2", "a3"]
 
 
-def test_a_job_falls_back_as_soon_as_it_has_shown_something() -> None:
-    stage, shown = Stage(), threading.Event()
-    line = stage.line("b", lambda: Priority.TILE if shown.is_set() else Priority.FIRST_LOOK)
-    calls = [line.submit(lambda: (stage.order.append("b1"), shown.set())), *stage.ask(line, "b2")]
-    calls += stage.ask(stage.line("a", lambda: Priority.FIRST_LOOK), "a1", "a2")
-    stage.play(*calls)
-    assert stage.order == ["b1", "a1", "a2", "b2"]
+def test_executors_of_one_client_share_its_turn() -> None:
+    recorder = Recorder()
+    calls = [future for name in ("a1", "a2", "b1") for future in recorder.submit(recorder.executor(name[0]), name)]
+    assert recorder.run(*calls) == ["a1", "b1", "a2"]
 
 
-def test_calls_that_last_leave_one_thread_to_the_others() -> None:
-    stage, release = Stage(threads=2), threading.Event()
-    lasting = [stage.line(name, lambda: Priority.WHOLE).submit(release.wait, SECONDS) for name in "abc"]
-    quick = stage.ask(stage.line("d"), "d1")
-    assert stage.play(*quick) == ["d1"]
-    assert not any(call.done() for call in lasting)
+def test_first_frames_run_first() -> None:
+    recorder = Recorder()
+    others = recorder.submit(recorder.executor("a"), "a1", "a2")
+    frames = recorder.submit(recorder.executor("b", first_frame), "b1", "b2")
+    assert recorder.run(*others, *frames) == ["b1", "b2", "a1", "a2"]
+
+
+def test_long_calls_run_before_background_calls() -> None:
+    recorder = Recorder()
+    background = recorder.submit(recorder.executor("a"), "a1", "a2")
+    orbits = recorder.submit(recorder.executor("b", long_call), "b1")
+    assert recorder.run(*background, *orbits) == ["b1", "a1", "a2"]
+
+
+def test_priority_of_queued_calls_may_change() -> None:
+    recorder, shown = Recorder(), threading.Event()
+    executor = recorder.executor("b", lambda: Priority.BACKGROUND if shown.is_set() else Priority.FIRST_FRAME)
+    calls = [executor.submit(lambda: (recorder.order.append("b1"), shown.set())), *recorder.submit(executor, "b2")]
+    calls += recorder.submit(recorder.executor("a", first_frame), "a1", "a2")
+    recorder.run(*calls)
+    assert recorder.order == ["b1", "a1", "a2", "b2"]
+
+
+def test_long_calls_leave_one_thread_free() -> None:
+    recorder, release = Recorder(threads=2), threading.Event()
+    long_calls = [recorder.executor(name, long_call).submit(release.wait, SECONDS) for name in "abc"]
+    short = recorder.submit(recorder.executor("d"), "d1")
+    assert recorder.run(*short) == ["d1"]
+    assert not any(call.done() for call in long_calls)
     release.set()
-    assert not wait(lasting, SECONDS).not_done
+    assert not wait(long_calls, SECONDS).not_done
 
 
-def test_a_single_thread_does_calls_that_last_too() -> None:
-    stage = Stage()
-    lasting = stage.ask(stage.line("a", lambda: Priority.WHOLE), "a1", "a2")
-    assert stage.play(*lasting) == ["a1", "a2"]
+def test_single_thread_runs_long_calls_too() -> None:
+    recorder = Recorder()
+    long_calls = recorder.submit(recorder.executor("a", long_call), "a1", "a2")
+    assert recorder.run(*long_calls) == ["a1", "a2"]
 
 
-def test_an_error_reaches_the_one_who_asked_and_the_pool_goes_on() -> None:
-    stage = Stage()
+def test_exception_is_stored_in_the_future_and_the_pool_continues() -> None:
+    recorder = Recorder()
 
     def fail() -> None:
         raise RuntimeError("broken")
 
-    broken, following = stage.line("a").submit(fail), stage.ask(stage.line("a"), "a1")
-    assert stage.play(*following) == ["a1"]
+    failing, later = recorder.executor("a").submit(fail), recorder.submit(recorder.executor("a"), "a1")
+    assert recorder.run(*later) == ["a1"]
     with pytest.raises(RuntimeError, match="broken"):
-        broken.result(SECONDS)
+        failing.result(SECONDS)
 
 
-def test_a_call_given_up_is_not_made() -> None:
-    stage = Stage()
-    (given_up,), following = stage.ask(stage.line("a"), "a1"), stage.ask(stage.line("a"), "a2")
-    assert given_up.cancel()
-    assert stage.play(*following) == ["a2"]
+def test_cancelled_future_is_not_run() -> None:
+    recorder = Recorder()
+    (cancelled,), others = (recorder.submit(recorder.executor("a"), name) for name in ("a1", "a2"))
+    assert cancelled.cancel()
+    assert recorder.run(*others) == ["a2"]
 
 
-def test_a_line_has_as_many_workers_as_the_pool() -> None:
-    assert count_workers(Stage(threads=3).line("a")) == 3
+def test_pending_futures_of_one_executor_can_be_cancelled() -> None:
+    recorder = Recorder()
+    executor = recorder.executor("a")
+    cancelled, others = recorder.submit(executor, "a1", "a2"), recorder.submit(recorder.executor("a"), "a3")
+    executor.cancel_futures()
+    assert not wait(cancelled, SECONDS).not_done
+    assert all(future.cancelled() for future in cancelled)
+    assert recorder.run(*others) == ["a3"]
 
 
-def test_what_waits_is_counted() -> None:
-    stage = Stage()
-    stage.pool.line("a", lambda: Priority.TILE)
-    calls = stage.ask(stage.line("a"), "a1", "a2")
-    assert stage.pool.waiting >= 2
-    stage.play(*calls)
-    assert stage.pool.waiting == 0
+def test_executor_has_the_workers_of_the_pool() -> None:
+    assert count_workers(Recorder(threads=3).executor("a")) == 3
 
 
-def test_while_it_is_told_so_it_puts_off_tiles() -> None:
-    stage = Stage(threads=2)
-    stage.pool.put_off_tiles(True)
-    tiles = stage.ask(stage.line("a"), "a1", "a2")
+def test_pending_calls_are_counted() -> None:
+    recorder = Recorder()
+    calls = recorder.submit(recorder.executor("a"), "a1", "a2")
+    assert recorder.scheduler.pending_calls >= 2
+    recorder.run(*calls)
+    assert recorder.scheduler.pending_calls == 0
+
+
+def test_paused_background_calls_wait_and_others_run() -> None:
+    recorder = Recorder(threads=2)
+    recorder.scheduler.pause_background(True)
+    background = recorder.submit(recorder.executor("a"), "a1", "a2")
     others = [
-        *stage.ask(stage.line("b", lambda: Priority.FIRST_LOOK), "b1"),
-        *stage.ask(stage.line("c", lambda: Priority.WHOLE), "c1"),
+        *recorder.submit(recorder.executor("b", first_frame), "b1"),
+        *recorder.submit(recorder.executor("c", long_call), "c1"),
     ]
-    stage.curtain.set()
+    recorder.released.set()
     assert not wait(others, SECONDS).not_done
-    assert sorted(stage.order) == ["b1", "c1"]
-    assert not wait(tiles, 0.2).done
-    stage.pool.put_off_tiles(False)
-    assert not wait(tiles, SECONDS).not_done
-
-
-def test_what_was_clicked_comes_before_what_makes_pictures_finer() -> None:
-    stage = Stage()
-    tiles = stage.ask(stage.line("a"), "a1", "a2")
-    orbits = stage.ask(stage.line("b", lambda: Priority.WHOLE), "b1")
-    assert stage.play(*tiles, *orbits) == ["b1", "a1", "a2"]
-
-
-def test_calls_that_nobody_has_taken_up_can_be_dropped() -> None:
-    stage = Stage()
-    line = stage.line("a")
-    dropped, others = stage.ask(line, "a1", "a2"), stage.ask(stage.line("a"), "a3")
-    line.drop()
-    assert not wait(dropped, SECONDS).not_done
-    assert all(future.cancelled() for future in dropped)
-    assert stage.play(*others) == ["a3"]
+    assert sorted(recorder.order) == ["b1", "c1"]
+    assert not wait(background, 0.2).done
+    recorder.scheduler.pause_background(False)
+    assert not wait(background, SECONDS).not_done

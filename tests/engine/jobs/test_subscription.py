@@ -1,4 +1,4 @@
-"""What somebody hears of a job, whatever threads tell them."""
+"""Subscriptions: order and end of the delivered results."""
 
 from __future__ import annotations
 
@@ -7,47 +7,47 @@ import threading
 from engine.jobs.subscription import Subscription
 
 
-def nothing(_: object) -> None:
-    """Nobody listens."""
+def ignore(_: object) -> None:
+    """Callback that does nothing."""
 
 
-def test_the_last_result_waits_for_a_frame_that_is_being_handed_over() -> None:
-    handed_over: list[str] = []
-    begun, go_on = threading.Event(), threading.Event()
+def test_final_result_waits_for_a_partial_one_in_delivery() -> None:
+    delivered: list[str] = []
+    entered, proceed = threading.Event(), threading.Event()
 
-    def take(what: str) -> None:
-        if what == "frame":
-            begun.set()
-            assert go_on.wait(10)
-        handed_over.append(what)
+    def receive(result: str) -> None:
+        if result == "partial":
+            entered.set()
+            assert proceed.wait(10)
+        delivered.append(result)
 
-    ticket = Subscription(nothing, take, nothing)
-    frame = threading.Thread(target=ticket.deliver, args=("frame",), kwargs={"last": False})
-    whole = threading.Thread(target=ticket.deliver, args=("whole",), kwargs={"last": True})
-    frame.start()
-    assert begun.wait(10)
-    whole.start()
-    whole.join(0.1)
-    go_on.set()
-    frame.join(10)
-    whole.join(10)
-    assert handed_over == ["frame", "whole"]
-    assert not ticket.open
+    subscription = Subscription(ignore, receive, ignore)
+    partial = threading.Thread(target=subscription.deliver, args=("partial",), kwargs={"last": False})
+    final = threading.Thread(target=subscription.deliver, args=("final",), kwargs={"last": True})
+    partial.start()
+    assert entered.wait(10)
+    final.start()
+    final.join(0.1)
+    proceed.set()
+    partial.join(10)
+    final.join(10)
+    assert delivered == ["partial", "final"]
+    assert not subscription.open
 
 
-def test_nothing_comes_after_the_last_result_or_a_cancel() -> None:
-    handed_over: list[str] = []
-    for end in ("whole", "cancel"):
-        ticket = Subscription(nothing, handed_over.append, nothing)
-        if end == "whole":
-            ticket.deliver("whole", last=True)
+def test_nothing_is_delivered_after_the_final_result_or_cancel() -> None:
+    delivered: list[str] = []
+    for end in ("final", "cancel"):
+        subscription = Subscription(ignore, delivered.append, ignore)
+        if end == "final":
+            subscription.deliver("final", last=True)
         else:
-            ticket.cancel()
-        ticket.deliver("frame", last=False)
-    assert handed_over == ["whole"]
+            subscription.cancel()
+        subscription.deliver("partial", last=False)
+    assert delivered == ["final"]
 
 
-def test_a_listener_may_cancel_what_it_is_told() -> None:
-    ticket = Subscription(nothing, lambda frame: ticket.cancel(), nothing)
-    ticket.deliver("frame", last=False)
-    assert not ticket.open
+def test_callback_may_cancel_its_subscription() -> None:
+    subscription = Subscription(ignore, lambda _: subscription.cancel(), ignore)
+    subscription.deliver("partial", last=False)
+    assert not subscription.open

@@ -1,4 +1,4 @@
-"""The statistics of the paper's section 5, against counts made by hand."""
+"""Crossing statistics (Zotos 2014, section 5), compared with direct counts over maps."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from engine.statistics.published_fits import PAPER_FITS
 
 SIDE = 50
 T_MAX = 1000.0
-# The last window of the three reaches beyond the exits.
+# A window that extends beyond the exits.
 WIDE = Window(-1.5, 1.5, -1.5, 1.5)
 
 
@@ -52,33 +52,33 @@ def with_outside(maps: list[EscapeMap]) -> xr.Dataset:
 # Counts.
 
 
-def test_each_crossing_number_counts_the_pixels_that_leave_after_it(maps: list[EscapeMap], table: xr.Dataset) -> None:
-    for place, frame in enumerate(maps):
-        left = frame.fate >= 1
-        expected = [np.count_nonzero(left & (frame.crossings == n)) for n in table.n.values]
-        np.testing.assert_array_equal(table.crossing_count[place], expected)
+def test_crossing_counts(maps: list[EscapeMap], table: xr.Dataset) -> None:
+    for index, frame in enumerate(maps):
+        escaped = frame.fate >= 1
+        expected = [np.count_nonzero(escaped & (frame.crossings == n)) for n in table.n.values]
+        np.testing.assert_array_equal(table.crossing_count[index], expected)
 
 
-def test_starts_are_those_of_the_interior(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_starts_are_the_interior(maps: list[EscapeMap], table: xr.Dataset) -> None:
     np.testing.assert_array_equal(table.starts, [np.count_nonzero(frame.interior) for frame in maps])
 
 
-def test_shares_of_fates_are_the_fractions_of_the_map_and_sum_to_1(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_shares_equal_the_fractions_of_the_maps(maps: list[EscapeMap], table: xr.Dataset) -> None:
     expected = [[frame.fractions()[int(code)] for code in table.fate.values] for frame in maps]
     np.testing.assert_allclose(table.share, expected, rtol=1e-14)
     np.testing.assert_allclose(table.share.sum("fate"), 1.0, rtol=1e-14)
 
 
-def test_shares_of_crossing_numbers_and_of_the_bounded_sum_to_1(table: xr.Dataset) -> None:
+def test_crossing_shares_and_bounded_share_sum_to_1(table: xr.Dataset) -> None:
     np.testing.assert_allclose(table.crossing_share.sum("n") + table.share.sel(fate=Fate.BOUNDED), 1.0, rtol=1e-13)
 
 
-def test_direct_escapes_are_those_after_no_crossing(table: xr.Dataset) -> None:
+def test_direct_escapes_have_no_crossing(table: xr.Dataset) -> None:
     np.testing.assert_array_equal(table.direct, table.crossing_count.sel(n=0))
     np.testing.assert_allclose(table.direct_share, table.direct / table.starts, rtol=1e-15)
 
 
-def test_below_the_escape_energy_nothing_leaves(table: xr.Dataset) -> None:
+def test_no_escapes_below_the_escape_energy(table: xr.Dataset) -> None:
     lowest = table.isel(h=0)
     assert int(lowest.escaped) == 0
     assert float(lowest.share.sel(fate=Fate.BOUNDED)) == 1.0
@@ -86,87 +86,85 @@ def test_below_the_escape_energy_nothing_leaves(table: xr.Dataset) -> None:
     np.testing.assert_array_equal(lowest.escape_probability, 0.0)
 
 
-def test_times_are_those_of_the_orbits_that_leave(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_escape_times(maps: list[EscapeMap], table: xr.Dataset) -> None:
     times = maps[1].escape_time[maps[1].fate >= 1]
     assert float(table.mean_escape_time[1]) == pytest.approx(times.mean(), rel=1e-13)
     assert float(table.median_escape_time[1]) == np.median(times)
 
 
-# The probability of escape.
+# Escape probability.
 
 
-def test_what_remains_falls_by_what_leaves_and_ends_at_the_bounded(table: xr.Dataset) -> None:
-    remaining, leaving = table.remaining.values, table.crossing_count.values
+def test_remaining_decreases_by_the_escapes_to_the_bounded_orbits(table: xr.Dataset) -> None:
+    remaining, escapes = table.remaining.values, table.crossing_count.values
     np.testing.assert_array_equal(remaining[:, 0], table.starts)
-    np.testing.assert_array_equal(remaining[:, 1:], remaining[:, :-1] - leaving[:, :-1])
+    np.testing.assert_array_equal(remaining[:, 1:], remaining[:, :-1] - escapes[:, :-1])
     bounded = np.rint(table.share.sel(fate=Fate.BOUNDED) * table.starts)
-    np.testing.assert_array_equal(remaining[:, -1] - leaving[:, -1], bounded)
+    np.testing.assert_array_equal(remaining[:, -1] - escapes[:, -1], bounded)
 
 
-def test_the_product_of_all_chances_to_stay_is_the_bounded_share(table: xr.Dataset) -> None:
-    stay = np.nanprod(1.0 - table.escape_probability, axis=1)
-    np.testing.assert_allclose(stay, table.share.sel(fate=Fate.BOUNDED), rtol=1e-11, atol=1e-13)
+def test_product_of_survival_probabilities_is_the_bounded_share(table: xr.Dataset) -> None:
+    survival = np.nanprod(1.0 - table.escape_probability, axis=1)
+    np.testing.assert_allclose(survival, table.share.sel(fate=Fate.BOUNDED), rtol=1e-11, atol=1e-13)
 
 
-def test_probabilities_are_those_of_the_statistics_of_the_map(maps: list[EscapeMap], table: xr.Dataset) -> None:
-    for place, frame in enumerate(maps):
+def test_probabilities_equal_those_of_compute_statistics(maps: list[EscapeMap], table: xr.Dataset) -> None:
+    for index, frame in enumerate(maps):
         expected = compute_statistics(frame).escape_probabilities
-        np.testing.assert_allclose(table.escape_probability[place, : expected.size], expected, rtol=1e-14)
+        np.testing.assert_allclose(table.escape_probability[index, : expected.size], expected, rtol=1e-14)
 
 
-def test_where_nobody_remains_there_is_no_probability(table: xr.Dataset) -> None:
+def test_probability_is_nan_without_remaining_orbits(table: xr.Dataset) -> None:
     undefined = np.isnan(table.escape_probability)
     np.testing.assert_array_equal(undefined, table.remaining == 0)
     assert undefined.any()
 
 
-def test_a_table_may_end_before_the_last_escape(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_table_can_be_shorter(maps: list[EscapeMap], table: xr.Dataset) -> None:
     short = tabulate_crossing_statistics(maps, most_crossings=3)
     xr.testing.assert_identical(short, table.sel(n=slice(0, 3)))
 
 
-def test_a_table_may_go_on_after_the_last_escape(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_table_can_be_longer(maps: list[EscapeMap], table: xr.Dataset) -> None:
     beyond = tabulate_crossing_statistics(maps, most_crossings=table.sizes["n"])
     np.testing.assert_array_equal(beyond.crossing_count[:, -1], 0)
     np.testing.assert_array_equal(beyond.remaining[:, -1], table.starts - table.escaped)
 
 
-def test_failed_orbits_are_starts_that_never_leave(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_failed_orbits_count_as_starts_only(maps: list[EscapeMap], table: xr.Dataset) -> None:
     fate = maps[1].fate.copy()
     rows, columns = np.nonzero(fate == Fate.BOUNDED)
     fate[rows[0], columns[0]] = Fate.FAILED
-    spoilt = tabulate_crossing_statistics([replace(maps[1], fate=fate)])
-    assert int(spoilt.failed[0]) == 1
-    assert int(spoilt.starts[0]) == int(table.starts[1])
-    assert int(spoilt.remaining[0, 0]) == int(table.starts[1]) - 1
+    with_failure = tabulate_crossing_statistics([replace(maps[1], fate=fate)])
+    assert int(with_failure.failed[0]) == 1
+    assert int(with_failure.starts[0]) == int(table.starts[1])
+    assert int(with_failure.remaining[0, 0]) == int(table.starts[1]) - 1
 
 
 # Starts outside.
 
 
-def test_outside_starts_count_as_the_fractions_of_the_map_say(maps: list[EscapeMap], with_outside: xr.Dataset) -> None:
+def test_outside_starts_are_counted_as_in_fractions(maps: list[EscapeMap], with_outside: xr.Dataset) -> None:
     expected = [[frame.fractions(count_outside=True)[int(code)] for code in with_outside.fate.values] for frame in maps]
     np.testing.assert_allclose(with_outside.share, expected, rtol=1e-14)
 
 
-def test_outside_starts_leave_at_once_without_a_crossing(
-    maps: list[EscapeMap], table: xr.Dataset, with_outside: xr.Dataset
-) -> None:
+def test_outside_starts_escape_directly(maps: list[EscapeMap], table: xr.Dataset, with_outside: xr.Dataset) -> None:
     outside = [np.count_nonzero(frame.fate == Fate.OUTSIDE) for frame in maps]
     assert outside[-1] > 100
     np.testing.assert_array_equal(with_outside.direct - table.direct, outside)
     np.testing.assert_array_equal(with_outside.crossing_count[:, 1:], table.crossing_count[:, 1:])
 
 
-def test_the_time_of_outside_starts_is_0(maps: list[EscapeMap], table: xr.Dataset, with_outside: xr.Dataset) -> None:
+def test_escape_time_of_outside_starts_is_0(maps: list[EscapeMap], table: xr.Dataset, with_outside: xr.Dataset) -> None:
     total = (with_outside.mean_escape_time * with_outside.escaped)[1:]
     np.testing.assert_allclose(total, (table.mean_escape_time * table.escaped)[1:], rtol=1e-12)
 
 
-# What is said about the numbers.
+# Metadata.
 
 
-def test_every_variable_says_what_it_is_and_the_table_what_made_it(table: xr.Dataset) -> None:
+def test_variables_and_table_have_metadata(table: xr.Dataset) -> None:
     assert all({"long_name", "units"} <= table[name].attrs.keys() for name in table.data_vars)
     assert table.attrs["plane"] == "(x, px)"
     assert table.attrs["t_max"] == T_MAX
@@ -174,37 +172,37 @@ def test_every_variable_says_what_it_is_and_the_table_what_made_it(table: xr.Dat
     assert not {"energy", "window"} & table.attrs.keys()
 
 
-def test_windows_are_kept_beside_their_energies(table: xr.Dataset) -> None:
+def test_windows_are_stored_by_energy(table: xr.Dataset) -> None:
     assert table.window.sel(h=0.3).values.tolist() == [-1.5, 1.5, -1.5, 1.5]
 
 
-def test_a_table_survives_a_file(table: xr.Dataset, tmp_path: Path) -> None:
+def test_table_round_trips_through_netcdf(table: xr.Dataset, tmp_path: Path) -> None:
     table.to_netcdf(tmp_path / "table.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "table.nc", engine="h5netcdf") as read:
         xr.testing.assert_equal(read.load(), table)
 
 
-# Requests.
+# Computing.
 
 
-def test_a_request_gives_the_table_of_its_maps(maps: list[EscapeMap], table: xr.Dataset) -> None:
+def test_compute_equals_tabulate(maps: list[EscapeMap], table: xr.Dataset) -> None:
     computed = compute_crossing_statistics(CASES["II"], Plane.X_PX, (0.18, 0.1, 0.18), (SIDE, SIDE), T_MAX)
     xr.testing.assert_identical(computed, tabulate_crossing_statistics(maps[:2]))
 
 
-def test_a_request_with_a_window_uses_it_at_every_energy() -> None:
+def test_window_applies_to_all_energies() -> None:
     computed = compute_crossing_statistics(CASES["II"], Plane.X_PX, (0.3, 0.4), (9, 9), 10.0, window=WIDE)
     np.testing.assert_array_equal(computed.window, [[-1.5, 1.5, -1.5, 1.5]] * 2)
 
 
-def test_progress_rises_to_1() -> None:
-    seen: list[float] = []
-    compute_crossing_statistics(CASES["II"], Plane.X_PX, (0.3, 0.4), (20, 20), 100.0, on_progress=seen.append)
-    assert seen[-1] == 1.0
-    assert 0.5 in seen
+def test_progress_reaches_1() -> None:
+    reported: list[float] = []
+    compute_crossing_statistics(CASES["II"], Plane.X_PX, (0.3, 0.4), (20, 20), 100.0, on_progress=reported.append)
+    assert reported[-1] == 1.0
+    assert 0.5 in reported
 
 
-def test_cancelling_stops_a_request() -> None:
+def test_cancel_raises() -> None:
     cancel = threading.Event()
     with pytest.raises(CancelledError):
         compute_crossing_statistics(
@@ -212,16 +210,16 @@ def test_cancelling_stops_a_request() -> None:
         )
 
 
-# The paper's fits give 0.90, 0.85 and 0.92.
+# The fits of the paper give 0.90, 0.85 and 0.92.
 @pytest.mark.parametrize(("name", "energy", "expected"), [("I", 0.5, 0.885), ("II", 0.5, 0.851), ("III", 0.6, 0.930)])
-def test_most_orbits_leave_directly_at_high_energy(name: str, energy: float, expected: float) -> None:
+def test_direct_share_at_high_energy(name: str, energy: float, expected: float) -> None:
     computed = compute_crossing_statistics(CASES[name], Plane.X_PX, (energy,), (225, 225), 100.0, most_crossings=0)
     direct = float(computed.direct_share[0])
     assert direct == pytest.approx(expected, abs=0.005)
     assert direct == pytest.approx(float(PAPER_FITS[name].direct(energy)), abs=0.02)
 
 
-# What is refused.
+# Validation.
 
 
 def test_no_maps_are_refused() -> None:
@@ -229,28 +227,28 @@ def test_no_maps_are_refused() -> None:
         tabulate_crossing_statistics([])
 
 
-def test_energies_that_do_not_rise_are_refused(maps: list[EscapeMap]) -> None:
-    with pytest.raises(ValueError, match="must rise"):
+def test_energies_must_ascend(maps: list[EscapeMap]) -> None:
+    with pytest.raises(ValueError, match="must ascend"):
         tabulate_crossing_statistics(maps[::-1])
 
 
-def test_maps_that_are_not_alike_are_refused(maps: list[EscapeMap]) -> None:
+def test_maps_with_different_t_max_are_refused(maps: list[EscapeMap]) -> None:
     other = replace(maps[1], spec=replace(maps[1].spec, t_max=10.0))
-    with pytest.raises(ValueError, match="unlike"):
+    with pytest.raises(ValueError, match="differs"):
         tabulate_crossing_statistics([maps[0], other])
 
 
-def test_maps_under_way_are_refused(maps: list[EscapeMap]) -> None:
+def test_incomplete_maps_are_refused(maps: list[EscapeMap]) -> None:
     with pytest.raises(ValueError, match="not complete"):
         tabulate_crossing_statistics([replace(maps[0], complete=False)])
 
 
-def test_the_plane_of_all_energies_is_refused() -> None:
+def test_plane_x_h_is_refused() -> None:
     frame = compute_map(MapSpec(CASES["II"], Plane.X_H, (0.2, 0.3), (3, 3), t_max=1.0))
     with pytest.raises(ValueError, match=r"\(x, h\)"):
         tabulate_crossing_statistics([frame])
 
 
-def test_a_negative_crossing_number_is_refused_before_anything_is_computed() -> None:
+def test_negative_most_crossings_is_refused_before_computing() -> None:
     with pytest.raises(ValueError, match="most_crossings=-1"):
         compute_crossing_statistics(CASES["III"], Plane.X_PX, (0.26,), most_crossings=-1)

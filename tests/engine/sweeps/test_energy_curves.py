@@ -1,4 +1,4 @@
-"""Curves against energy are made of maps, one for each energy."""
+"""Curves against energy: values at each energy, order of computation, dataset and validation."""
 
 from __future__ import annotations
 
@@ -30,31 +30,31 @@ def curves() -> EnergyCurves:
     return compute_energy_curves(SPEC)
 
 
-def test_energies_are_sorted_and_each_is_measured_once(curves: EnergyCurves) -> None:
+def test_energies_are_sorted_and_unique(curves: EnergyCurves) -> None:
     np.testing.assert_array_equal(curves.energies, [0.1, 0.2, 0.25, 0.3])
     assert curves.complete
 
 
-def test_a_point_says_what_the_map_of_its_energy_says(curves: EnergyCurves) -> None:
+def test_point_equals_the_statistics_of_its_map(curves: EnergyCurves) -> None:
     frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (40, 40), t_max=500.0))
     statistics = compute_statistics(frame)
-    place = curves.energies.tolist().index(0.25)
-    np.testing.assert_allclose(curves.shares[place], [frame.fractions()[code] for code in range(4)], rtol=1e-12)
-    assert curves.curve("mean_escape_time")[place] == statistics.mean_escape_time
-    assert curves.curve("direct_share")[place] == statistics.direct_share
+    index = curves.energies.tolist().index(0.25)
+    np.testing.assert_allclose(curves.shares[index], [frame.fractions()[code] for code in range(4)], rtol=1e-12)
+    assert curves.curve("mean_escape_time")[index] == statistics.mean_escape_time
+    assert curves.curve("direct_share")[index] == statistics.direct_share
 
 
-def test_below_the_escape_energy_all_is_bounded_and_nothing_uncertain(curves: EnergyCurves) -> None:
+def test_below_the_escape_energy_all_orbits_are_bounded(curves: EnergyCurves) -> None:
     np.testing.assert_array_equal(curves.shares[0], [1.0, 0.0, 0.0, 0.0])
     assert curves.curve("s_b")[0] == 0.0
     assert np.isnan(curves.curve("mean_escape_time")[0])
 
 
-def test_the_higher_the_energy_the_sooner_orbits_leave(curves: EnergyCurves) -> None:
+def test_median_escape_time_decreases_with_energy(curves: EnergyCurves) -> None:
     assert np.all(np.diff(curves.curve("median_escape_time")[1:]) < 0)
 
 
-def test_what_is_known_comes_after_each_energy_from_coarse_to_fine() -> None:
+def test_frames_come_after_each_energy_from_coarse_to_fine() -> None:
     seen: list[list[float]] = []
 
     def measure(spec: EnergyPointSpec) -> EnergyPoint:
@@ -68,14 +68,14 @@ def test_what_is_known_comes_after_each_energy_from_coarse_to_fine() -> None:
     np.testing.assert_allclose(seen[4], [0.2, 0.25, 0.3, 0.35, 0.4])
 
 
-def test_the_exponent_is_measured_where_it_is_asked_for_and_something_is_open() -> None:
+def test_exponent_is_computed_where_exits_are_open() -> None:
     spec = EnergyCurvesSpec(CASES["III"], Plane.X_PX, (0.2, 0.6), (40, 40), 500.0)
     closed, opened = (compute_energy_point(spec.point(energy)) for energy in spec.energies)
     assert np.isnan(closed.exponent)
     assert opened.exponent_low < opened.exponent < opened.exponent_high
 
 
-def test_a_dataset_has_every_curve_against_h(curves: EnergyCurves) -> None:
+def test_dataset_has_all_curves(curves: EnergyCurves) -> None:
     dataset = curves.to_xarray()
     assert dataset["share"].dims == ("h", "fate")
     assert dataset["s_bb"].dims == ("h",)
@@ -84,17 +84,17 @@ def test_a_dataset_has_every_curve_against_h(curves: EnergyCurves) -> None:
 
 
 @pytest.mark.parametrize("energies", [(), (float("nan"),), tuple(range(2000))])
-def test_energies_that_cannot_be_swept_are_refused(energies: tuple[float, ...]) -> None:
+def test_invalid_energies_are_refused(energies: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="energies"):
         EnergyCurvesSpec(CASES["I"], Plane.X_PX, energies)
 
 
-def test_the_plane_that_holds_all_energies_is_refused() -> None:
+def test_plane_x_h_is_refused() -> None:
     with pytest.raises(ValueError, match="plane"):
         EnergyCurvesSpec(CASES["I"], Plane.X_H, (0.2,))
 
 
-def test_cancelling_stops_the_sweep() -> None:
+def test_cancel_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):

@@ -1,4 +1,4 @@
-"""Sweeps over energies: what is in the store, what survives a kill, and that a cluster makes the same numbers."""
+"""Sweeps over energies: contents of the store, resuming, row blocks, disk errors, clusters and plans."""
 
 from __future__ import annotations
 
@@ -23,33 +23,31 @@ import pytest
 import xarray as xr
 
 import engine.sweeps.run
-from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, SweepPlan, SweepSpec, Window, compute_map, plan_sweep, run_sweep
 from engine.dynamics.planes import default_window
 from engine.execution import SerialExecutor, count_workers
-from engine.sweeps.run import SweepPlan, SweepSpec, plan_sweep, run_sweep
 
+ROOT = Path(__file__).parents[3]
 ARRAYS = ("fate", "escape_time", "crossings", "certificate", "outside", "energy_error")
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0)
-# Long enough for certificates of every kind, and for a kill in between.
+# Long enough for all kinds of certificates, and to be killed midway.
 LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.34, 0.35, 0.36, 0.38, 0.4, 0.45), (20, 20), t_max=2e4)
 LONG_RUN = """
 import sys
 from pathlib import Path
-from engine import CASES, Plane
-from engine.sweeps.run import SweepSpec, run_sweep
+from engine import CASES, Plane, SweepSpec, run_sweep
 store, *energies = sys.argv[1:]
 run_sweep(SweepSpec(CASES["III"], Plane.X_PX, tuple(map(float, energies)), (20, 20), t_max=2e4), Path(store))
 """
-# In bands, with certificates: 5 bands at each of two energies.
-BANDED_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80)
-BANDED_RUN = """
+# With certificates, and 5 row blocks at each of two energies.
+BLOCK_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80)
+BLOCK_RUN = """
 import os, signal, sys, threading, time
 from pathlib import Path
 import engine.sweeps.run
-from engine import CASES, Plane
-from engine.sweeps.run import SweepSpec, run_sweep
+from engine import CASES, Plane, SweepSpec, run_sweep
 
-store, killed_in, compute_band, begun = Path(sys.argv[1]), int(sys.argv[2]), engine.sweeps.run._compute_band, 0
+store, killed_in, compute_block, begun = Path(sys.argv[1]), int(sys.argv[2]), engine.sweeps.run._compute_block, 0
 
 def counted(spec, rows, *arguments):
     global begun
@@ -57,45 +55,43 @@ def counted(spec, rows, *arguments):
     print(spec.energy, rows[0], flush=True)
     if begun == killed_in:
         threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGKILL)).start()
-        compute_band(spec, rows, *arguments)
+        compute_block(spec, rows, *arguments)
         time.sleep(60)
-    return compute_band(spec, rows, *arguments)
+    return compute_block(spec, rows, *arguments)
 
-engine.sweeps.run._compute_band = counted
+engine.sweeps.run._compute_block = counted
 run_sweep(SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80), store)
 """
 
 
-def run_banded_elsewhere(store: Path, killed_in: int = 0) -> tuple[int, list[str]]:
-    """Run `BANDED_SPEC` in a process that is killed while it computes that band; its exit code, and the bands that it began."""
-    root = Path(engine.sweeps.run.__file__).parents[1]
+def run_blocks_in_subprocess(store: Path, killed_in: int = 0) -> tuple[int, list[str]]:
+    """Run `BLOCK_SPEC` in a process that is killed during its n-th block; return its exit code and the blocks it started."""
     run = subprocess.run(
-        [sys.executable, "-c", BANDED_RUN, str(store), str(killed_in)],
-        env={**os.environ, "PYTHONPATH": str(root)}, stdout=subprocess.PIPE, text=True, timeout=300, check=False,
+        [sys.executable, "-c", BLOCK_RUN, str(store), str(killed_in)],
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, text=True, timeout=300, check=False,
     )  # fmt: skip
     return run.returncode, run.stdout.splitlines()
 
 
-def begin_elsewhere(store: Path, spec: SweepSpec) -> subprocess.Popen[bytes]:
-    """A run like that of `LONG_SPEC`, at the energies of `spec`, in a process of its own, which loads its kernels from the cache.
+def start_in_subprocess(store: Path, spec: SweepSpec) -> subprocess.Popen[bytes]:
+    """Start the sweep of `LONG_SPEC`, at the energies of `spec`, in a process of its own, which loads its kernels from the cache.
 
-    Runs to be compared to the bit take the same machine code: where this process has compiled a kernel itself, its scalar parts
-    may round the last bit of a state differently.
+    A bitwise comparison needs the same machine code in both runs: kernels that this process has compiled itself may differ in
+    rounding.
     """
-    root = Path(engine.sweeps.run.__file__).parents[1]
     command = [sys.executable, "-c", LONG_RUN, str(store), *map(repr, spec.energies)]
-    return subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(root)})
+    return subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(ROOT)})
 
 
-def run_elsewhere(store: Path, spec: SweepSpec) -> xr.Dataset:
-    with begin_elsewhere(store, spec) as run:
+def run_in_subprocess(store: Path, spec: SweepSpec) -> xr.Dataset:
+    with start_in_subprocess(store, spec) as run:
         assert run.wait(120) == 0
     return run_sweep(spec, store)
 
 
 @pytest.fixture
 def computed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The energies of the maps that a run computes, in order."""
+    """Energies of the computed maps, in order."""
     energies: list[float] = []
 
     def counted(spec: MapSpec, *arguments: Any) -> EscapeMap:
@@ -108,21 +104,21 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 
 
 @pytest.fixture
-def computed_bands(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
-    """Energy and first row of the bands that a run computes, in order."""
-    bands: list[tuple[float, int]] = []
-    compute_band = engine.sweeps.run._compute_band
+def computed_blocks(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
+    """Energy and first row of the computed row blocks, in order."""
+    blocks: list[tuple[float, int]] = []
+    compute_block = engine.sweeps.run._compute_block
 
     def counted(spec: MapSpec, rows: np.ndarray, *arguments: Any) -> EscapeMap:
         assert not isinstance(spec.energy, tuple)
-        bands.append((spec.energy, int(rows[0])))
-        return compute_band(spec, rows, *arguments)
+        blocks.append((spec.energy, int(rows[0])))
+        return compute_block(spec, rows, *arguments)
 
-    monkeypatch.setattr(engine.sweeps.run, "_compute_band", counted)
-    return bands
+    monkeypatch.setattr(engine.sweeps.run, "_compute_block", counted)
+    return blocks
 
 
-def kept_bands(store: Path) -> list[str]:
+def stored_blocks(store: Path) -> list[str]:
     return sorted(str(path.relative_to(store / "under_way")) for path in (store / "under_way").rglob("*.npz"))
 
 
@@ -138,13 +134,18 @@ def files_of(store: Path) -> dict[str, bytes]:
     return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
 
 
+def limit_block_size(monkeypatch: pytest.MonkeyPatch, starts: int) -> None:
+    for module in ("maps.compute", "sweeps.run"):
+        monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", starts)
+
+
 def stacked_maps(spec: SweepSpec) -> xr.Dataset:
     maps = [compute_map(spec.map_spec(h)).to_xarray() for h in spec.energies]
     return xr.concat(maps, xr.DataArray(list(spec.energies), dims="h", name="h"), combine_attrs="drop_conflicts", join="exact")
 
 
 def cancel_at(share: float) -> tuple[threading.Event, Callable[[float], None]]:
-    """A wish to stop, and what makes it once that much is done."""
+    """A cancel event, and a progress callback that sets it at the given fraction."""
     cancel = threading.Event()
     return cancel, lambda progress: cancel.set() if progress >= share else None
 
@@ -154,7 +155,7 @@ class TestRequest:
         assert replace(SPEC, energies=(0.5, 0.3, 0.4, 0.3)).energies == (0.3, 0.4, 0.5)
 
     @pytest.mark.parametrize(
-        ("change", "said"),
+        ("change", "message"),
         [
             ({"energies": ()}, "energies: 0 different"),
             ({"energies": (0.3, np.nan)}, "energies: 2 different"),
@@ -169,13 +170,13 @@ class TestRequest:
             ({"piece": 80.5}, "piece=80.5"),
         ],
     )
-    def test_what_is_not_legal_is_named(self, change: dict[str, Any], said: str) -> None:
-        with pytest.raises(ValueError, match=said):
+    def test_invalid_parameters_are_named(self, change: dict[str, Any], message: str) -> None:
+        with pytest.raises(ValueError, match=message):
             replace(SPEC, **change)
 
     @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
     @pytest.mark.parametrize(("case", "highest"), [("I", 0.5), ("II", 0.5), ("III", 1.0)])
-    def test_the_window_of_the_highest_energy_contains_those_of_the_others(self, case: str, highest: float, plane: Plane) -> None:
+    def test_window_of_the_highest_energy_contains_all_others(self, case: str, highest: float, plane: Plane) -> None:
         potential = CASES[case]
         energies = tuple(np.linspace(0.4 * potential.escape_energy, highest, 15))
         window = SweepSpec(potential, plane, energies).window
@@ -185,7 +186,7 @@ class TestRequest:
             assert window.x_low <= inner.x_low < inner.x_high <= window.x_high
             assert window.ordinate_low <= inner.ordinate_low < inner.ordinate_high <= window.ordinate_high
 
-    def test_an_energy_without_exits_is_refused_before_anything_is_written(self, tmp_path: Path) -> None:
+    def test_energy_without_exits_is_refused_before_writing(self, tmp_path: Path) -> None:
         spec = replace(SPEC, window=Window(-1.0, 1.0, -1.0, 1.0), energies=(0.3, 20.0))
         with pytest.raises(ValueError, match="no Lyapunov orbit"):
             run_sweep(spec, tmp_path / "store")
@@ -194,7 +195,7 @@ class TestRequest:
 
 class TestStore:
     @pytest.mark.parametrize("spec", [SPEC, SweepSpec(CASES["I"], Plane.X_Y, (0.1, 0.2), (9, 14), t_max=100.0)])
-    def test_its_netcdf_is_that_of_the_stacked_maps(self, tmp_path: Path, spec: SweepSpec) -> None:
+    def test_netcdf_equals_the_stacked_maps(self, tmp_path: Path, spec: SweepSpec) -> None:
         run_sweep(spec, tmp_path / "store").to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
         expected = stacked_maps(spec)
         with xr.open_dataset(tmp_path / "sweep.nc", engine="h5netcdf") as found:
@@ -206,26 +207,23 @@ class TestStore:
             for name in ARRAYS:
                 assert {**found[name].attrs} == {**expected[name].attrs}
 
-    def test_it_says_what_made_it(self, tmp_path: Path) -> None:
+    def test_attributes_hold_the_provenance(self, tmp_path: Path) -> None:
         attributes = run_sweep(SPEC, tmp_path / "store").attrs
         for name, value in SPEC.map_spec(0.5).provenance().items():
             if name != "energy":
                 assert attributes[name] == (list(value) if isinstance(value, tuple) else value)
         assert "energy" not in attributes
 
-    def test_nothing_is_read_before_it_is_looked_at(self, tmp_path: Path) -> None:
+    def test_arrays_are_read_lazily(self, tmp_path: Path) -> None:
         dataset = run_sweep(SPEC, tmp_path / "store")
         shutil.rmtree(tmp_path / "store" / "fate")
         assert not dataset["fate"]._in_memory
 
-    def test_a_chunk_is_a_band_of_rows_where_a_map_is_computed_in_bands(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> None:
+    def test_chunks_have_the_height_of_row_blocks(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         whole = bytes_of(run_sweep(SPEC, tmp_path / "whole"))
-        for module in ("maps", "sweeps"):
-            monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", 48)
-        assert bytes_of(run_sweep(SPEC, tmp_path / "banded")) == whole
-        assert len(list((tmp_path / "banded" / "fate" / "c" / "0").iterdir())) == 3
+        limit_block_size(monkeypatch, 48)
+        assert bytes_of(run_sweep(SPEC, tmp_path / "blocks")) == whole
+        assert len(list((tmp_path / "blocks" / "fate" / "c" / "0").iterdir())) == 3
 
     @pytest.mark.parametrize(
         ("change", "name"),
@@ -240,25 +238,25 @@ class TestStore:
             ({"energies": (0.3, 0.41, 0.5)}, "values of h"),
         ],
     )
-    def test_that_of_another_request_is_refused(self, tmp_path: Path, change: dict[str, Any], name: str) -> None:
+    def test_store_of_another_request_is_refused(self, tmp_path: Path, change: dict[str, Any], name: str) -> None:
         run_sweep(SPEC, tmp_path / "store")
         before = files_of(tmp_path / "store")
         with pytest.raises(ValueError, match=name):
             run_sweep(replace(SPEC, **change), tmp_path / "store")
         assert files_of(tmp_path / "store") == before
 
-    def test_a_folder_of_something_else_is_refused(self, tmp_path: Path) -> None:
+    def test_folder_with_other_files_is_refused(self, tmp_path: Path) -> None:
         (tmp_path / "thesis.tex").touch()
-        with pytest.raises(ValueError, match="holds something else"):
+        with pytest.raises(ValueError, match="holds other files"):
             run_sweep(SPEC, tmp_path)
 
-    def test_an_empty_folder_will_do(self, tmp_path: Path) -> None:
+    def test_empty_folder_is_accepted(self, tmp_path: Path) -> None:
         run_sweep(SPEC, tmp_path)
         assert len(marks(tmp_path)) == 3
 
 
 class TestResuming:
-    def test_a_finished_energy_is_never_computed_again(self, tmp_path: Path, computed: list[float]) -> None:
+    def test_finished_energies_are_not_recomputed(self, tmp_path: Path, computed: list[float]) -> None:
         cancel, on_progress = cancel_at(1 / 3)
         with pytest.raises(CancelledError):
             run_sweep(SPEC, tmp_path / "store", on_progress=on_progress, cancel=cancel)
@@ -268,7 +266,7 @@ class TestResuming:
         run_sweep(SPEC, tmp_path / "store")
         assert computed == [0.4, 0.5]
 
-    def test_a_cancelled_run_goes_on_to_the_same_bytes(self, tmp_path: Path) -> None:
+    def test_resumed_run_is_byte_identical(self, tmp_path: Path) -> None:
         cancel, on_progress = cancel_at(0.4)
         with pytest.raises(CancelledError):
             run_sweep(SPEC, tmp_path / "store", on_progress=on_progress, cancel=cancel)
@@ -276,7 +274,7 @@ class TestResuming:
         run_sweep(SPEC, tmp_path / "straight")
         assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
 
-    def test_arrays_without_a_mark_are_written_over(self, tmp_path: Path, computed: list[float]) -> None:
+    def test_unmarked_arrays_are_overwritten(self, tmp_path: Path, computed: list[float]) -> None:
         store = tmp_path / "store"
         run_sweep(SPEC, store)
         whole = files_of(store)
@@ -289,10 +287,10 @@ class TestResuming:
         assert computed == [0.4]
 
     @pytest.mark.slow
-    def test_a_killed_run_goes_on_to_the_same_bytes(self, tmp_path: Path) -> None:
-        straight = run_elsewhere(tmp_path / "straight", LONG_SPEC)
+    def test_killed_and_resumed_run_is_byte_identical(self, tmp_path: Path) -> None:
+        straight = run_in_subprocess(tmp_path / "straight", LONG_SPEC)
         store = tmp_path / "killed"
-        with begin_elsewhere(store, LONG_SPEC) as run:
+        with start_in_subprocess(store, LONG_SPEC) as run:
             deadline = time.monotonic() + 120.0
             while len(marks(store)) < 2 and run.poll() is None and time.monotonic() < deadline:
                 time.sleep(0.002)
@@ -300,11 +298,11 @@ class TestResuming:
         assert run.returncode == -signal.SIGKILL
         done = {mark: mark.stat().st_mtime_ns for mark in marks(store)}
         assert 2 <= len(done) < len(LONG_SPEC.energies)
-        resumed = run_elsewhere(store, LONG_SPEC)
+        resumed = run_in_subprocess(store, LONG_SPEC)
         assert {mark: mark.stat().st_mtime_ns for mark in done} == done
         assert bytes_of(resumed) == bytes_of(straight)
 
-    def test_progress_rises_to_the_whole(self, tmp_path: Path) -> None:
+    def test_progress_ascends_from_0_to_1(self, tmp_path: Path) -> None:
         seen: list[float] = []
         run_sweep(SPEC, tmp_path / "store", on_progress=seen.append)
         assert seen == sorted(seen)
@@ -312,21 +310,18 @@ class TestResuming:
         assert seen[-1] == 1.0
 
 
-class TestBands:
+class TestRowBlocks:
     @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
-    def test_they_hold_the_map_that_compute_map_makes_in_bands(
-        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, plane: Plane
-    ) -> None:
-        for module in ("maps", "sweeps"):
-            monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", 100)
+    def test_result_equals_compute_map_in_blocks(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, plane: Plane) -> None:
+        limit_block_size(monkeypatch, 100)
         spec = SweepSpec(CASES["III"], plane, (0.4,), (20, 19), t_max=2e4)
         found, expected = run_sweep(spec, tmp_path / "store"), stacked_maps(spec)
         for name in ARRAYS:
             np.testing.assert_array_equal(found[name], expected[name])
         assert np.unique(found["certificate"]).size >= 3
 
-    def test_smaller_pieces_change_nothing_of_what_escapes(self, tmp_path: Path) -> None:
-        found, expected = run_sweep(BANDED_SPEC, tmp_path / "store").load(), stacked_maps(replace(BANDED_SPEC, piece=None))
+    def test_smaller_blocks_do_not_change_escaping_orbits(self, tmp_path: Path) -> None:
+        found, expected = run_sweep(BLOCK_SPEC, tmp_path / "store").load(), stacked_maps(replace(BLOCK_SPEC, piece=None))
         for name in ("fate", "escape_time", "outside"):
             np.testing.assert_array_equal(found[name], expected[name])
         left = expected["fate"].to_numpy() >= 1
@@ -334,38 +329,36 @@ class TestBands:
         for name in ("crossings", "energy_error"):
             np.testing.assert_array_equal(found[name].to_numpy()[left], expected[name].to_numpy()[left])
 
-    def test_a_pieces_size_changes_nothing_where_nothing_is_certified(self, tmp_path: Path) -> None:
+    def test_block_size_has_no_effect_without_certificates(self, tmp_path: Path) -> None:
         whole = bytes_of(run_sweep(SPEC, tmp_path / "whole"))
         for piece in (1, 25, 119):
             assert bytes_of(run_sweep(replace(SPEC, piece=piece), tmp_path / str(piece))) == whole
 
-    def test_finished_bands_of_an_energy_under_way_are_never_computed_again(
-        self, tmp_path: Path, computed_bands: list[tuple[float, int]]
-    ) -> None:
+    def test_finished_blocks_are_not_recomputed(self, tmp_path: Path, computed_blocks: list[tuple[float, int]]) -> None:
         spec = replace(SPEC, piece=48)
         cancel, on_progress = cancel_at(0.5)
         with pytest.raises(CancelledError):
             run_sweep(spec, tmp_path / "store", on_progress=on_progress, cancel=cancel)
-        assert kept_bands(tmp_path / "store") == ["1/0.npz", "1/1.npz"]
-        del computed_bands[:]
+        assert stored_blocks(tmp_path / "store") == ["1/0.npz", "1/1.npz"]
+        del computed_blocks[:]
         run_sweep(spec, tmp_path / "store")
-        assert computed_bands == [(0.4, 4), (0.5, 0), (0.5, 2), (0.5, 4)]
+        assert computed_blocks == [(0.4, 4), (0.5, 0), (0.5, 2), (0.5, 4)]
         run_sweep(spec, tmp_path / "straight")
         assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
 
     @pytest.mark.slow
-    def test_a_run_killed_in_the_middle_of_an_energy_goes_on_to_the_same_bytes(self, tmp_path: Path) -> None:
+    def test_run_killed_during_an_energy_resumes_byte_identically(self, tmp_path: Path) -> None:
         store = tmp_path / "killed"
-        code, begun = run_banded_elsewhere(store, killed_in=3)
+        code, begun = run_blocks_in_subprocess(store, killed_in=3)
         assert (code, begun) == (-signal.SIGKILL, ["0.36 0", "0.36 2", "0.36 4"])
-        assert kept_bands(store) == ["0/0.npz", "0/1.npz"]
-        code, begun = run_banded_elsewhere(store)
+        assert stored_blocks(store) == ["0/0.npz", "0/1.npz"]
+        code, begun = run_blocks_in_subprocess(store)
         assert (code, begun) == (0, ["0.36 4", "0.36 6", "0.36 8", *(f"0.4 {row}" for row in range(0, 10, 2))])
-        assert run_banded_elsewhere(tmp_path / "straight")[0] == 0
+        assert run_blocks_in_subprocess(tmp_path / "straight")[0] == 0
         assert files_of(store) == files_of(tmp_path / "straight")
 
-    def test_a_run_killed_while_its_bands_are_put_together_computes_none_of_them_again(
-        self, tmp_path: Path, computed_bands: list[tuple[float, int]], monkeypatch: pytest.MonkeyPatch
+    def test_run_killed_while_joining_blocks_recomputes_none(
+        self, tmp_path: Path, computed_blocks: list[tuple[float, int]], monkeypatch: pytest.MonkeyPatch
     ) -> None:
         spec, store = replace(SPEC, energies=(0.4,), piece=48), tmp_path / "store"
 
@@ -375,36 +368,35 @@ class TestBands:
                 raise KeyboardInterrupt
 
         with monkeypatch.context() as patch:
-            patch.setattr("engine.sweeps.zarr_store.SweepStore._bring_to_disk", killed)
+            patch.setattr("engine.sweeps.zarr_store.SweepStore._sync_to_disk", killed)
             with pytest.raises(KeyboardInterrupt):
                 run_sweep(spec, store)
         assert not marks(store)
-        del computed_bands[:]
+        del computed_blocks[:]
         run_sweep(spec, store)
-        assert not computed_bands
+        assert not computed_blocks
         run_sweep(spec, tmp_path / "straight")
         assert files_of(store) == files_of(tmp_path / "straight")
 
-    def test_bands_that_a_kill_left_of_an_energy_that_is_done_are_deleted(self, tmp_path: Path) -> None:
+    def test_checkpoints_of_finished_energies_are_deleted(self, tmp_path: Path) -> None:
         spec, store = replace(SPEC, piece=48), tmp_path / "store"
         run_sweep(spec, store)
         whole = files_of(store)
         (store / "under_way" / "2").mkdir()
-        (store / "under_way" / "2" / "0.npz").write_bytes(b"kept")
+        (store / "under_way" / "2" / "0.npz").write_bytes(b"obsolete")
         run_sweep(spec, store)
         assert files_of(store) == whole
 
-    def test_a_store_with_bands_under_way_is_zarr_to_others(self, tmp_path: Path) -> None:
+    def test_store_with_checkpoints_is_valid_zarr(self, tmp_path: Path) -> None:
         cancel, on_progress = cancel_at(0.1)
         with pytest.raises(CancelledError):
             run_sweep(replace(SPEC, piece=48), tmp_path / "store", on_progress=on_progress, cancel=cancel)
-        assert kept_bands(tmp_path / "store") == ["0/0.npz"]
+        assert stored_blocks(tmp_path / "store") == ["0/0.npz"]
         with xr.open_zarr(tmp_path / "store", chunks=None, consolidated=False) as found:
             assert not found["done"].any()
 
-    def test_memory_is_bounded_by_a_band(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        for module in ("maps", "sweeps"):
-            monkeypatch.setattr(f"engine.{module}.LARGEST_RUN", 4000)
+    def test_memory_is_bounded_by_a_block(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        limit_block_size(monkeypatch, 4000)
         spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4,), (400, 400), t_max=0.5)
         run_sweep(replace(spec, resolution=(60, 60)), tmp_path / "first")
         tracemalloc.start()
@@ -416,35 +408,33 @@ class TestBands:
 
 class TestFailingDisk:
     @pytest.fixture
-    def no_room(self) -> Iterator[SimpleNamespace]:
-        """While `full` is called, no file of this process may grow beyond a few bytes."""
+    def small_files(self) -> Iterator[SimpleNamespace]:
+        """After `full` is called, writing more than 8 bytes to a file raises an OSError."""
         limits = resource.getrlimit(resource.RLIMIT_FSIZE)
         yield SimpleNamespace(full=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (8, limits[1])))
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
-    def test_finished_energies_outlive_a_disk_that_runs_full(
-        self, tmp_path: Path, no_room: SimpleNamespace, computed: list[float]
+    def test_finished_energies_survive_a_full_disk(
+        self, tmp_path: Path, small_files: SimpleNamespace, computed: list[float]
     ) -> None:
         straight = bytes_of(run_sweep(SPEC, tmp_path / "straight"))
         computed.clear()
         limits = resource.getrlimit(resource.RLIMIT_FSIZE)
         with pytest.raises(OSError, match="too large"):
-            run_sweep(SPEC, tmp_path / "store", on_progress=lambda share: no_room.full() if share > 1 / 3 else None)
+            run_sweep(SPEC, tmp_path / "store", on_progress=lambda share: small_files.full() if share > 1 / 3 else None)
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
         assert len(marks(tmp_path / "store")) == 1
         assert computed == [0.3, 0.4]
         assert bytes_of(run_sweep(SPEC, tmp_path / "store")) == straight
         assert computed == [0.3, 0.4, 0.4, 0.5]
 
-    def test_a_store_that_cannot_be_made_is_an_error_before_anything_is_computed(
-        self, tmp_path: Path, computed: list[float]
-    ) -> None:
+    def test_store_that_cannot_be_created_fails_before_computing(self, tmp_path: Path, computed: list[float]) -> None:
         (tmp_path / "file").touch()
         with pytest.raises(OSError, match="file"):
             run_sweep(SPEC, tmp_path / "file" / "store")
         assert not computed
 
-    def test_a_store_that_cannot_be_written_to_is_an_error_before_anything_is_computed(
+    def test_read_only_store_fails_before_computing(
         self, tmp_path: Path, computed: list[float], monkeypatch: pytest.MonkeyPatch
     ) -> None:
         run_sweep(SPEC, tmp_path / "store")
@@ -461,14 +451,14 @@ class TestFailingDisk:
 
 
 class TestCluster:
-    def test_workers_of_a_dask_client_are_counted(self) -> None:
+    def test_dask_workers_are_counted(self) -> None:
         client = SimpleNamespace(nthreads=lambda: {"tcp://a": 3, "tcp://b": 4})
         executor = SerialExecutor()
         executor._client = client  # type: ignore[attr-defined]
         assert count_workers(executor) == 7
 
     @pytest.mark.slow
-    def test_a_dask_cluster_makes_the_same_bytes(self, tmp_path: Path) -> None:
+    def test_dask_cluster_is_byte_identical(self, tmp_path: Path) -> None:
         distributed = pytest.importorskip("distributed")
         spec = SweepSpec(CASES["III"], Plane.X_PX, (0.35, 0.4), (20, 20), t_max=2e4)
         cluster = distributed.LocalCluster(
@@ -478,25 +468,25 @@ class TestCluster:
             executor: Executor = client.get_executor()
             assert count_workers(executor) == 2
             spread = run_sweep(spec, tmp_path / "cluster", executor=executor)
-        assert bytes_of(spread) == bytes_of(run_elsewhere(tmp_path / "threads", spec))
+        assert bytes_of(spread) == bytes_of(run_in_subprocess(tmp_path / "threads", spec))
         assert np.unique(spread["certificate"]).size >= 3
 
 
 class TestPlan:
-    def test_it_counts_all_starts_and_their_bytes(self, tmp_path: Path) -> None:
+    def test_plan_counts_starts_and_bytes(self, tmp_path: Path) -> None:
         plan = plan_sweep(SPEC, cores=3)
         assert plan.orbits == 3 * 12 * 10
         assert plan.cores == 3
         assert plan.bytes == sum(run_sweep(SPEC, tmp_path / "store")[name].nbytes for name in ARRAYS)
 
-    def test_time_grows_with_pixels_and_shrinks_with_cores(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_time_scales_with_pixels_and_cores(self, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr("engine.sweeps.run._measure_seconds", lambda spec, _cancel: 0.5 + 1e-4 * np.prod(spec.resolution))
         one = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=1)
         many = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=10)
         assert one.seconds == pytest.approx(3 * 100.5)
         assert many.seconds == pytest.approx(one.seconds / 10)
 
-    def test_many_energies_are_planned_from_the_middles_of_twelve_parts(self, monkeypatch: pytest.MonkeyPatch) -> None:
+    def test_plan_uses_the_midpoints_of_twelve_intervals(self, monkeypatch: pytest.MonkeyPatch) -> None:
         seen: set[float] = set()
 
         def measured(spec: MapSpec, _cancel: object) -> float:
@@ -507,7 +497,7 @@ class TestPlan:
         plan_sweep(replace(SPEC, energies=tuple(np.linspace(0.0, 0.24, 241))))
         assert sorted(seen) == pytest.approx(np.arange(0.01, 0.24, 0.02), abs=0.001)
 
-    def test_it_can_be_cancelled(self) -> None:
+    def test_planning_can_be_cancelled(self) -> None:
         cancel = threading.Event()
         cancel.set()
         with pytest.raises(CancelledError):
@@ -517,6 +507,6 @@ class TestPlan:
         with pytest.raises(ValueError, match="cores=0"):
             plan_sweep(SPEC, cores=0)
 
-    def test_it_says_its_figures(self) -> None:
-        said = SweepPlan(10**9, 7200.0, 23 * 10**9, 16).describe()
-        assert said == "1e+09 orbits: about 2 hours on 16 cores (32 core hours), at most 23 GB"
+    def test_description(self) -> None:
+        text = SweepPlan(10**9, 7200.0, 23 * 10**9, 16).describe()
+        assert text == "1e+09 orbits: about 2 hours on 16 cores (32 core hours), at most 23 GB"

@@ -1,0 +1,40 @@
+"""Helpers for tests of jobs."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from engine import Jobs
+
+
+class Inbox:
+    """Collects what the callbacks of one request receive."""
+
+    def __init__(self) -> None:
+        self.results: list[Any] = []
+        self.errors: list[Exception] = []
+        self.first, self.done = threading.Event(), threading.Event()
+
+    def result(self, result: Any) -> None:
+        self.results.append(result)
+        self.first.set()
+        if getattr(result, "complete", True):
+            self.done.set()
+
+    def error(self, error: Exception) -> None:
+        self.errors.append(error)
+        self.done.set()
+
+
+def wait_until(condition: Callable[[], bool], seconds: float = 20.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert condition()
+
+
+def wait_until_idle(jobs: Jobs, seconds: float = 20.0) -> None:
+    wait_until(lambda: jobs.in_flight == 0, seconds)
