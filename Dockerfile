@@ -1,11 +1,11 @@
-# Any image of Debian or Ubuntu with Python 3.13 and pip will do.
+# Any Debian or Ubuntu image with Python 3.13 and pip.
 ARG BASE=python:3.13-slim
 
 FROM ${BASE} AS build
 RUN pip install --no-cache-dir uv
 ENV UV_PROJECT_ENVIRONMENT=/opt/venv UV_LINK_MODE=copy UV_NO_CACHE=1 UV_PYTHON_DOWNLOADS=never UV_COMPILE_BYTECODE=1
 WORKDIR /srv/escape-explorer
-# Without the sources first: a change in them alone does not fetch every package anew.
+# Install the dependencies before copying the sources, so that this layer is cached when only the sources change.
 COPY pyproject.toml README.md LICENSE ./
 RUN uv sync --no-dev --no-install-project
 COPY engine engine
@@ -17,8 +17,8 @@ RUN uv sync --no-dev && /opt/venv/bin/python -m compileall -q app cli engine rep
 FROM ${BASE}
 COPY --from=build /opt/venv /opt/venv
 COPY --from=build /srv/escape-explorer /srv/escape-explorer
-# The sources are not the user's to write: whatever is written goes to the volume, and lasts as long as that. By number, so that an
-# orchestrator can see that it is not root.
+# The sources are read-only for this user; all files are written to the volume. The numeric user id lets an orchestrator verify
+# that it is not root.
 RUN useradd --system --uid 10001 --create-home explorer && install --directory --owner=explorer /var/cache/escape-explorer
 ENV PATH=/opt/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \
@@ -27,13 +27,13 @@ ENV PATH=/opt/venv/bin:$PATH \
     MALLOC_ARENA_MAX=2 \
     ESCAPE_EXPLORER_CACHE=/var/cache/escape-explorer \
     MPLCONFIGDIR=/var/cache/escape-explorer/matplotlib
-# Whose pages may talk to this server besides its own, as behind a proxy that renames it: host:port, with commas between.
+# Origins that may open a WebSocket, such as the public name of a proxy: host:port, separated by commas.
 ENV BOKEH_ALLOW_WS_ORIGIN=localhost:5006,127.0.0.1:5006
 WORKDIR /srv/escape-explorer
 USER 10001
-# As the server does at its start. Kernels fit the processor that compiled them; on another kind they are compiled anew into the
-# volume, which begins as a copy of what is here.
-RUN python -c "from app.server.warmup import prepare_now; prepare_now()"
+# Compile the kernels, as the server does when it starts. Machine code is specific to a processor type; on another one the
+# kernels are compiled again into the volume, which is initialized with a copy of this folder.
+RUN python -c "from app.server.warmup import warm_up; warm_up()"
 VOLUME /var/cache/escape-explorer
 EXPOSE 5006
 HEALTHCHECK --start-period=3m \

@@ -1,4 +1,4 @@
-"""What can be taken along: pictures, a map's numbers, orbits, and the lines that make them again."""
+"""Files to download: pictures, maps as NetCDF, orbits as CSV, and a Python script that reproduces them."""
 
 from __future__ import annotations
 
@@ -6,20 +6,14 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from importlib import metadata
-from io import BytesIO
-
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_figure import draw_picture
-from app.rendering.map_images import TITLES
 from app.rendering.palette import Palette
 from app.state.system import TYPED, System
 from engine import CASES, EscapeMap, MapSpec, Orbit
 
 MOST_ROWS = 100_000
-"""As many rows of numbers a table of orbits has, unless somebody asks for more."""
+"""Default number of rows that a table of orbits has at most."""
 
 _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
@@ -30,58 +24,47 @@ def png_bytes(
     palette: Palette,
     side: int,
     *,
-    findings: MapAnalyses = NO_ANALYSES,
+    analyses: MapAnalyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
 ) -> bytes:
-    """A PNG file of some pictures side by side, with the map's provenance in its text fields.
+    """PNG file of some pictures side by side, with the map's provenance in its text fields.
 
-    Parameters are those of `draw_picture`.
-
-    Raises
-    ------
-    ValueError
-        When no picture is chosen, or as in `draw_picture`.
+    Parameters and errors are those of `app.rendering.map_figure.draw_map_figure`.
     """
-    if not pictures:
-        raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
-    drawn = [draw_picture(frame, name, palette, side, findings=findings, starts=starts) for name in pictures]
-    page = Image.new("RGB", (sum(image.width for image in drawn), max(image.height for image in drawn)), "white")
-    for k, image in enumerate(drawn):
-        page.paste(image, (sum(before.width for before in drawn[:k]), 0))
-    notes = PngInfo()
-    notes.add_text("Software", f"escape-explorer {metadata.version('escape-explorer')}")
-    for name, value in frame.provenance().items():
-        notes.add_text(name, str(value))
-    file = BytesIO()
-    page.save(file, "PNG", pnginfo=notes)
-    return file.getvalue()
+    # Matplotlib takes longer to import than the rest of the page.
+    from app.rendering.figure_axes import RENDER_LOCK, save_figure, software
+    from app.rendering.map_figure import draw_map_figure
+
+    about = {"Software": software()} | {name: str(value) for name, value in frame.provenance().items()}
+    with RENDER_LOCK:
+        figure = draw_map_figure(frame, pictures, palette, side, analyses=analyses, starts=starts)
+        return save_figure(figure, "png", about, crop=True)
 
 
-def netcdf_bytes(frame: EscapeMap, findings: MapAnalyses = NO_ANALYSES) -> bytes:
-    """A NetCDF-4 file of `EscapeMap.to_xarray`, for `xarray.open_dataset` and any reader of HDF5.
-
-    What second looks have found goes with it: ``character``, ``trust`` and ``origin``.
-    """
-    dataset = findings.add_to(frame.to_xarray())
-    # Shuffled and squeezed, a map takes a quarter of the room, in less time than it takes to write it plain.
-    squeezed = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars}
-    return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=squeezed))
+def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
+    """NetCDF-4 file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
+    dataset = analyses.add_to(frame.to_xarray())
+    # Shuffled and compressed, a map has a quarter of the size and is written faster.
+    encoding = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars}
+    return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
 def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS) -> str:
-    """A table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
+    """CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
 
-    Lines before it that begin with # hold each orbit's start, energy and verdict, and which of its samples follow.
+    Comment lines (#) at the top hold the start, energy and verdict of each orbit, and which of its samples follow.
 
     Parameters
     ----------
+    orbits
+        The orbits; none for an empty table.
     most_rows
-        As many rows of numbers at most, at least one an orbit; a long orbit is thinned to every k-th sample.
+        Rows at most, at least 1 per orbit; longer orbits are thinned to every k-th sample.
 
     Raises
     ------
     ValueError
-        When `most_rows` is less than the number of orbits.
+        If `most_rows` is less than the number of orbits.
     """
     if most_rows < max(1, len(orbits)):
         raise ValueError(f"most_rows={most_rows}: must be at least 1, and one for each of {len(orbits)} orbits")
@@ -97,12 +80,12 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS) -> str:
 
 def _header(number: int, orbit: Orbit, stride: int) -> list[str]:
     start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
-    kept = f"one in {stride} of {orbit.t.size} samples" if stride > 1 else f"all {orbit.t.size} samples"
+    samples = f"one in {stride} of {orbit.t.size} samples" if stride > 1 else f"all {orbit.t.size} samples"
     return [
         f"# orbit {number}: start {start}",
         f"# orbit {number}: energy {orbit.energy!r}",
         f"# orbit {number}: {orbit.describe()}",
-        f"# orbit {number}: {kept}",
+        f"# orbit {number}: {samples}",
     ]
 
 
@@ -112,23 +95,23 @@ def _rows(number: int, orbit: Orbit, stride: int) -> Iterator[str]:
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
-    """A script that makes the same map, and the same orbits, with the engine alone, to the bit.
+    """Python script that reproduces a map and orbits with the engine, bit for bit.
 
     Parameters
     ----------
     spec
         The map.
     system
-        Where its potential is from.
+        Its potential.
     starts
         (x, y, px, py) of each orbit, finite.
 
     Raises
     ------
     ValueError
-        When a start is not four finite numbers.
+        If a start is not four finite numbers.
     """
-    source, made = _potential_line(system)
+    source, expression = _potential_expression(system)
     names = [source, "MapSpec", "Plane", "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
     window = spec.window
     edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
@@ -136,7 +119,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     lines = [
         f"from engine import {', '.join(names)}",
         "",
-        f"potential = {made}",
+        f"potential = {expression}",
         "spec = MapSpec(",
         "    potential,",
         f"    Plane.{spec.plane.name},",
@@ -154,8 +137,8 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     return "\n".join(lines) + "\n"
 
 
-def _potential_line(system: System) -> tuple[str, str]:
-    """The name that makes the potential, and the expression."""
+def _potential_expression(system: System) -> tuple[str, str]:
+    """Name to import, and the expression of the potential."""
     parameters = ", ".join(f"{name}={value!r}" for name, value in system.changed.items())
     changed = f".with_parameters({parameters})" if parameters else ""
     if system.case == TYPED:
@@ -176,7 +159,7 @@ def _numbers(numbers: Sequence[float]) -> str:
 
 
 def file_stem(spec: MapSpec, case: str) -> str:
-    """A name for files about a map, without an ending: letters, digits and ``_ . + -`` only."""
+    """File name for a map, without an ending: letters, digits and ``_ . + -`` only."""
     energies = spec.energy if isinstance(spec.energy, tuple) else (spec.energy,)
     stem = f"escapes-{case}-{spec.plane.name.lower()}-h{'-'.join(repr(float(energy)) for energy in energies)}"
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)

@@ -1,11 +1,10 @@
-"""The page that `panel serve app` serves: one explorer for each visitor."""
+"""The page that `panel serve app` serves: one explorer for each session."""
 
 import panel as pn
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
 
-LOST = "The connection to the server is lost. Reload this page: its address holds the view."
-
-pn.extension(notifications=True, disconnect_notification=LOST)
+# Without this call Panel loads the scripts of all its extensions.
+pn.extension()
 explorer_page(Explorer()).servable()

@@ -1,7 +1,7 @@
-"""Every map of the paper, both planes, nine energies, three cases, at 225 x 225 and t_max = 1e5: its time, its certificates.
+"""All maps of the paper (three cases, two planes, nine energies) at 225 x 225 and t_max = 1e5: time and certificates.
 
-Run: uv run python -m benchmarks.all_maps            # the table, and the five slowest again without certificates
-     uv run python -m benchmarks.all_maps --validate # 61 x 61, each map with and without certificates: none may be wrong
+Run: uv run python -m benchmarks.all_maps            # time all; then the five slowest without certificates
+     uv run python -m benchmarks.all_maps --validate # 61 x 61, with and without certificates
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ def specs(resolution: int) -> Iterator[MapSpec]:
                 yield MapSpec(CASES[case], plane, energy, (resolution, resolution), t_max=1e5)
 
 
-def timed(spec: MapSpec) -> tuple[float, EscapeMap]:
+def time_map(spec: MapSpec) -> tuple[float, EscapeMap]:
     begin = time.perf_counter()
     result = compute_map(spec)
     return time.perf_counter() - begin, result
 
 
 def shares(result: EscapeMap) -> str:
-    """Bounded share of the interior; of these, the share of each certificate."""
+    """Bounded share of the interior, then the share of each certificate among the bounded orbits."""
     bounded = result.fate == Fate.BOUNDED
     kinds = [np.count_nonzero(result.certificate[bounded] == code) / max(bounded.sum(), 1) for code in Certificate if code]
     return " | ".join(f"{share:.1%}" for share in (bounded.sum() / result.interior.sum(), *kinds))
@@ -46,23 +46,25 @@ def title(spec: MapSpec) -> str:
 
 
 def time_all() -> None:
+    """Print the times of all maps, and of the slowest ones without certificates."""
     print(f"225 x 225, t_max = 1e5, {default_executor()._max_workers} threads\n")
     names = " | ".join(code.name.lower().replace("_", "-") for code in Certificate if code)
     print(f"| case | plane | h | seconds | bounded | {names} | worst energy error |\n|{'---|' * (11)}")
     times = {}
     for spec in specs(225):
         compute_map(replace(spec, resolution=(20, 20), t_max=1000.0))
-        times[spec], result = timed(spec)
+        times[spec], result = time_map(spec)
         print(f"| {title(spec)} | {times[spec]:.1f} | {shares(result)} | {result.worst_energy_error:.1e} |", flush=True)
     print()
-    print("| case | plane | h | with certificates, s | without, s | ratio | other fates |\n|---|---|---|---|---|---|---|")
+    print("| case | plane | h | with certificates, s | without, s | ratio | differing fates |\n|---|---|---|---|---|---|---|")
     for spec in sorted(times, key=lambda spec: -times[spec])[:SLOWEST]:
-        seconds, whole = timed(replace(spec, certify=False))
+        seconds, whole = time_map(replace(spec, certify=False))
         differ = np.count_nonzero(whole.fate != compute_map(spec).fate)
         print(f"| {title(spec)} | {times[spec]:.1f} | {seconds:.1f} | {seconds / times[spec]:.1f} | {differ} |", flush=True)
 
 
 def validate() -> None:
+    """Count certified orbits that escape when they are integrated to t_max."""
     print("| case | plane | h | bounded | certified early | wrong | escape after t = 1000 |\n|---|---|---|---|---|---|---|")
     totals = np.zeros(4, int)
     for spec in specs(61):

@@ -1,7 +1,7 @@
-"""What more channels cost: V = r²/2 − rⁿ cos nθ / n for n = 3 … 8, beside the paper's potentials.
+"""Cost of an integration step against the number of channels: V = r²/2 − rⁿ cos nθ / n for n = 3 … 8, and the paper's cases.
 
-Bounded orbits, one core. Multiply-adds are counted in the source of a step; what else it does (its size, tests) is in the time
-but not in the count.
+Bounded orbits, one core. Multiply-adds are counted in the source of the step; its step-size rule and event tests are timed but
+not counted.
 
 Run: uv run python -m benchmarks.families
 """
@@ -16,7 +16,7 @@ from numba import njit
 
 from benchmarks.throughput import multiplications
 from engine import CASES, Plane, Potential, start_states
-from engine.dynamics.lyapunov_orbits import closed_curves, exit_gates
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_gates
 from engine.potentials.catalogue import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
@@ -30,31 +30,31 @@ ENERGY = 0.9
 """In units of the escape energy."""
 
 
-def nanoseconds(potential: Potential) -> float:
-    """Of one step of one orbit, in the loop that maps use; the least of several runs."""
+def step_nanoseconds(potential: Potential) -> float:
+    """Time of one step of one orbit in the propagation loop of maps, in ns: the minimum of several runs."""
     energy = ENERGY * potential.escape_energy
     reach = np.sqrt(2.0 * energy)
     x, px = np.random.default_rng(1).uniform(-reach, reach, (2, 40 * ORBITS))
     states = start_states(potential, Plane.X_PX, energy, x, px)
     inside = np.isfinite(states).all(axis=1) & (np.abs(x) < np.hypot(*potential.saddles.T).min())
-    begin = np.ascontiguousarray(states[inside][:ORBITS])
-    curves = closed_curves(potential)[None]
+    starts = np.ascontiguousarray(states[inside][:ORBITS])
+    curves = closed_channel_curves(potential)[None]
     gates = exit_gates(curves)
     advance = load_kernels(potential.terms, potential.channels).advance
-    least = np.inf
+    shortest = np.inf
     for _ in range(REPEATS):
-        state, counts = begin.copy(), np.zeros((3, len(begin)), np.int64)
+        state, counts = starts.copy(), np.zeros((3, ORBITS), np.int64)
         started = time.thread_time()
         steps = advance(
-            np.arange(len(begin)), T_MAX, True, TOLERANCE, 2**62, ORBITS, gates, curves, counts[0], state,
-            np.zeros(len(begin)), counts[1], counts[2], np.full(len(begin), NOT_COMPUTED, np.int8), np.ones(len(begin), np.uint8),
+            np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, ORBITS, gates, curves, counts[0], state,
+            np.zeros(ORBITS), counts[1], counts[2], np.full(ORBITS, NOT_COMPUTED, np.int8), np.ones(ORBITS, np.uint8),
         )  # fmt: skip
-        least = min(least, (time.thread_time() - started) / steps)
-    return least * 1e9
+        shortest = min(shortest, (time.thread_time() - started) / steps)
+    return shortest * 1e9
 
 
 def vector_share(potential: Potential) -> float:
-    """The packed share of the multiplications in the machine code; with the remainder of the loop, which never runs, one half."""
+    """Share of packed multiplications in the machine code; 0.5 if the loop is vectorised, as its remainder is scalar."""
     step = njit(error_model="numpy", fastmath={"contract"})(
         load_kernels(potential.terms, potential.channels).step.function.py_func
     )
@@ -65,11 +65,11 @@ def vector_share(potential: Potential) -> float:
 
 
 def main() -> None:
-    print("| potential | channels | multiply-adds a step | ns an orbit-step | ns a multiply-add | vector code |")
+    print("| potential | channels | multiply-adds per step | ns per orbit and step | ns per multiply-add | vectorised |")
     print("|---|---|---|---|---|---|")
     named = {**CASES, **{f"n = {n}": channel_family(n) for n in range(3, 9)}}
     for name, potential in named.items():
-        count, time_taken = multiplications(potential), nanoseconds(potential)
+        count, time_taken = multiplications(potential), step_nanoseconds(potential)
         vector = "yes" if vector_share(potential) >= 0.5 else "no"
         print(f"| {name} | {potential.channels} | {count} | {time_taken:.1f} | {time_taken / count:.3f} | {vector} |", flush=True)
 

@@ -1,6 +1,6 @@
-"""How long a map takes, warm, in the engine: medians over repeats, and the time to its first frame.
+"""Time of a short map and of its first frame, with warm kernels: medians.
 
-Run: uv run python benchmarks/maps.py
+Run: uv run python -m benchmarks.maps
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ def time_map(spec: MapSpec) -> tuple[float, float]:
     """Seconds to the first frame and to the whole map."""
     frames: list[float] = []
 
-    def note(_frame: EscapeMap) -> None:
+    def record(_frame: EscapeMap) -> None:
         frames.append(time.perf_counter())
 
     begin = time.perf_counter()
-    compute_map(spec, note)
+    compute_map(spec, record)
     return frames[0] - begin, time.perf_counter() - begin
 
 
 def main() -> None:
     print(f"225 x 225, t_max = {T_MAX:g}, {default_executor()._max_workers} threads, median of {REPEATS} warm runs\n")
-    print("| case | plane | h | first frame, ms | whole map, ms |\n|---|---|---|---|---|")
+    print("| case | plane | h | first frame, ms | complete map, ms |\n|---|---|---|---|---|")
     for case, plane, energy in MAPS:
         spec = MapSpec(CASES[case], plane, energy, t_max=T_MAX)
         time_map(spec)

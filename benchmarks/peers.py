@@ -1,6 +1,6 @@
-"""The whole job of a map on one core: beside heyoka with exact events, SciPy's DOP853, and a plain compiled Runge-Kutta loop.
+"""Orbits classified per second on one core, beside heyoka with events, SciPy's DOP853 and a compiled Runge-Kutta loop.
 
-All classify starts of the same map to the same t_max; the slower ones a random part of it. What is compared is orbits a second.
+All classify starts of the same map to the same t_max, the slower ones a random sample.
 
 Run: uv run python -m benchmarks.peers
 """
@@ -29,7 +29,7 @@ HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-11
 
 
 def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
-    """Interior starts of a map and what became of them."""
+    """Interior starts of a map, (n, 4), and their fates, (n,)."""
     result = compute_map(spec, executor=one_core())
     x, ordinate = np.meshgrid(result.x, result.ordinate)
     inside = result.interior
@@ -37,7 +37,7 @@ def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
 
 
 def by_scipy(potential: Potential, energy: float, states: np.ndarray) -> np.ndarray:
-    """As one writes it first: solve_ivp, an event for each exit."""
+    """Straightforward use of `scipy.integrate.solve_ivp`, with an event for each exit."""
     lines = exit_lines(potential, energy)
 
     def motion(_t: float, s: np.ndarray) -> list[float]:
@@ -70,7 +70,7 @@ A, B, E5 = dop853.A[:12, :12].copy(), dop853.B.copy(), dop853.E5.copy()
 
 @numba.njit(fastmath=True)
 def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves):
-    """Fates by an adaptive Runge-Kutta method of order 8, exits and crossings looked at after each step."""
+    """Fates by an adaptive Runge-Kutta method of order 8 that tests for exits and crossings after each step."""
     fate = np.zeros(states.shape[0], np.int64)
     crossings = np.zeros(states.shape[0], np.int64)
     k, point, new, error = np.empty((13, 4)), np.empty(4), np.empty(4), np.empty(4)
@@ -149,24 +149,24 @@ PEERS: dict[str, Callable[[Potential, float, np.ndarray], np.ndarray]] = {
 
 
 def main() -> None:
-    print("| case | h | who | orbits | orbits/s | ours is faster by | other fates |\n|---|---|---|---|---|---|---|")
+    print("| case | h | method | orbits | orbits/s | this engine is faster by | differing fates |\n|---|---|---|---|---|---|---|")
     for case, energy in MAPS:
         potential = CASES[case]
         spec = MapSpec(potential, Plane.X_PX, energy, t_max=T_MAX)
         states, fates = starts_of(spec)
         begin = time.perf_counter()
         compute_map(spec, executor=one_core())
-        ours = len(states) / (time.perf_counter() - begin)
-        print(f"| {case} | {energy} | this engine, whole map | {len(states)} | {ours:.0f} | 1 | 0 |")
-        chosen = np.random.default_rng(1).permutation(len(states))
+        engine_rate = len(states) / (time.perf_counter() - begin)
+        print(f"| {case} | {energy} | this engine, whole map | {len(states)} | {engine_rate:.0f} | 1 | 0 |")
+        order = np.random.default_rng(1).permutation(len(states))
         for name, classify in PEERS.items():
-            part = chosen[: SAMPLES[name]]
+            part = order[: SAMPLES[name]]
             classify(potential, energy, states[part[:1]])
             begin = time.perf_counter()
-            theirs = classify(potential, energy, states[part])
+            peer_fates = classify(potential, energy, states[part])
             rate = part.size / (time.perf_counter() - begin)
-            differ = np.count_nonzero(theirs != fates[part])
-            print(f"| {case} | {energy} | {name} | {part.size} | {rate:.1f} | {ours / rate:.0f} | {differ} |", flush=True)
+            differ = np.count_nonzero(peer_fates != fates[part])
+            print(f"| {case} | {energy} | {name} | {part.size} | {rate:.1f} | {engine_rate / rate:.0f} | {differ} |", flush=True)
 
 
 if __name__ == "__main__":

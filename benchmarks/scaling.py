@@ -1,4 +1,4 @@
-"""How the time of a map grows with resolution and t_max, what a second core brings, and how much memory the largest takes.
+"""Time of a map against resolution, t_max and cores, and the memory of the largest map.
 
 Run: uv run python -m benchmarks.scaling
 """
@@ -19,10 +19,12 @@ REPEATS = 3
 
 @cache
 def one_core() -> ThreadPoolExecutor:
+    """A pool with a single thread."""
     return ThreadPoolExecutor(1)
 
 
 def seconds(spec: MapSpec, executor: Executor | None = None) -> float:
+    """Median time of a map."""
     times = []
     for _ in range(REPEATS):
         begin = time.perf_counter()
@@ -42,22 +44,22 @@ def main() -> None:
         )
     print(f"\n| map | one core, s | {default_executor()._max_workers} cores, s | ratio |\n|---|---|---|---|")
     for name, spec in {
-        "I (x, px) 0.12, t_max = 2e4, followed": MapSpec(one, Plane.X_PX, 0.12, (100, 100), t_max=2e4, certify=False),
+        "I (x, px) 0.12, t_max = 2e4, no certificates": MapSpec(one, Plane.X_PX, 0.12, (100, 100), t_max=2e4, certify=False),
         "III (x, px) 0.45, t_max = 1e3": MapSpec(three, Plane.X_PX, 0.45, (450, 450), t_max=1e3),
         "III (x, px) 0.26, t_max = 1e5": MapSpec(three, Plane.X_PX, 0.26),
     }.items():
         alone, together = seconds(spec, one_core()), seconds(spec)
         print(f"| {name} | {alone:.2f} | {together:.2f} | {alone / together:.2f} |", flush=True)
-    before = memory()
+    before = peak_memory()
     begin = time.perf_counter()
     result = compute_map(MapSpec(three, Plane.X_PX, 0.45, (4000, 4000), t_max=1e3))
-    took = time.perf_counter() - begin
-    print(f"\n4000 x 4000, III (x, px) 0.45, t_max = 1e3: {took:.0f} s; the result holds {result.nbytes / 2**20:.0f} MiB,")
-    print(f"the process at its highest {memory():.0f} MiB, {before:.0f} MiB before")
+    elapsed = time.perf_counter() - begin
+    print(f"\n4000 x 4000, III (x, px) 0.45, t_max = 1e3: {elapsed:.0f} s; the result takes {result.nbytes / 2**20:.0f} MiB,")
+    print(f"the process at most {peak_memory():.0f} MiB, {before:.0f} MiB before")
 
 
-def memory() -> float:
-    """Most memory that this process has held, MiB."""
+def peak_memory() -> float:
+    """Peak resident memory of this process in MiB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 

@@ -1,8 +1,8 @@
-"""Which order and tolerance carry orbits fastest at a worst energy error of 1e-11 over 1e5 time units.
+"""Speed and energy error of Taylor orders and tolerances, to choose the fastest with an error below 1e-11 at t = 1e5.
 
-The loop as the engine uses it, refill and event tests included, one core, 64 bounded orbits a case.
+The propagation loop of the engine, with refill and event tests, on one core; 64 bounded orbits per case.
 
-Run: uv run python benchmarks/steps.py
+Run: uv run python -m benchmarks.steps
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 
 from engine import CASES, Plane, start_states
-from engine.dynamics.lyapunov_orbits import closed_curves, exit_gates
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.disk_cache import CACHE_VARIABLE
 from engine.taylor.kernels import propagate
@@ -30,7 +30,7 @@ TRIALS = ((17, 1e-15), (18, 1e-15), (18, 3e-15), (19, 1e-15), (19, 3e-15), (19, 
 
 
 def bounded_starts(case: str) -> np.ndarray:
-    """Orbits below the escape energy, spread over (x, px)."""
+    """(ORBITS, 4) random starts on (x, px) below the escape energy."""
     x, px = np.random.default_rng(1).uniform(-0.7, 0.7, (2, 20 * ORBITS))
     states = start_states(CASES[case], Plane.X_PX, ENERGIES[case], x, px)
     inside = np.isfinite(states).all(axis=1) & (np.abs(x) < 0.5)
@@ -38,9 +38,9 @@ def bounded_starts(case: str) -> np.ndarray:
 
 
 def measure(case: str, order: int, tolerance: float) -> tuple[float, float, float]:
-    """Million steps a second, million time units a second, worst relative energy error.
+    """Million steps per second, million time units per second, worst relative energy error.
 
-    In a process and with a cache of its own, since compiled kernels hold the order.
+    Runs in a new process with its own kernel cache, because the order is compiled into the kernels.
     """
     with tempfile.TemporaryDirectory() as cache, ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as process:
         return process.submit(_measure, case, order, tolerance, cache).result()
@@ -51,7 +51,7 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
     potential = CASES[case]
     recurrence.ORDER = propagate.ORDER = order
     kernels = load_kernels(potential.terms, potential.channels)
-    curves = closed_curves(potential)[None]
+    curves = closed_channel_curves(potential)[None]
     gates = exit_gates(curves)
 
     def run(horizon: float) -> tuple[np.ndarray, int, float]:

@@ -1,7 +1,7 @@
-"""Raw speed on one core beside heyoka's batch mode: the same orbits to the same time, at a worst energy error of 1e-11.
+"""Integration speed on one core beside heyoka's batch mode: the same orbits to the same time, with an energy error below 1e-11.
 
-Our loop has its refill, exit and crossing tests; heyoka has no events, and the fastest tolerance that keeps the error.
-The share of the peak counts multiplications of a step alone, against a loop of independent multiply-adds.
+The engine runs with refill, exit and crossing tests; heyoka without events, at the fastest tolerance that keeps the error. The
+share of peak compares the multiplications of a step with a loop of independent multiply-adds.
 
 Run: uv run python -m benchmarks.throughput
 """
@@ -28,7 +28,7 @@ BATCH = hy.recommended_simd_size()
 
 
 def heyoka_units(case: str, tolerance: float) -> tuple[float, float]:
-    """Million time units a second, worst relative energy error."""
+    """Million time units per second, worst relative energy error."""
     potential, states = CASES[case], bounded_starts(case)
     integrator = hy.taylor_adaptive_batch(equations(potential), np.zeros((4, BATCH)), tol=tolerance)
     seconds = worst = 0.0
@@ -43,20 +43,20 @@ def heyoka_units(case: str, tolerance: float) -> tuple[float, float]:
 
 
 def fastest_heyoka(case: str) -> tuple[float, float, float]:
-    """(million time units a second, worst energy error, tolerance) of the fastest tolerance that is accurate enough."""
+    """(million time units a second, worst energy error, tolerance) of the fastest tolerance with a permitted error."""
     trials = [(*heyoka_units(case, tolerance), tolerance) for tolerance in TOLERANCES]
     return max(trial for trial in trials if trial[1] <= PERMITTED_ERROR)
 
 
 def multiplications(potential: Potential) -> int:
-    """In the source of one step."""
+    """Number of multiplications in the source of one step."""
     step = generate_source(potential.terms, potential.channels).split("@kernel\n")[0]
     return sum(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) for node in ast.walk(ast.parse(step)))
 
 
 @numba.njit(fastmath={"contract"})
 def chains(repeats, a):
-    """Eight multiply-adds on each number, in vectors; enough independent ones to hide their latency."""
+    """Eight dependent multiply-adds per number; the numbers are independent, which hides the latency."""
     for _ in range(repeats):
         for i in range(a.shape[0]):
             v = a[i]
@@ -71,8 +71,8 @@ def chains(repeats, a):
             a[i] = v
 
 
-def peak() -> float:
-    """10^9 multiply-adds a second on one core."""
+def peak_rate() -> float:
+    """Multiply-adds per second on one core, in units of 1e9."""
     a, repeats = np.ones(256), 1_000_000
     chains(1, a)
     begin = time.perf_counter()
@@ -81,18 +81,18 @@ def peak() -> float:
 
 
 def main() -> None:
-    print("| case | ours: million time units/s | worst error | heyoka | its tolerance | worst error | ratio | share of peak |")
+    print("| case | this engine: million time units/s | worst error | heyoka | tolerance | worst error | ratio | share of peak |")
     print("|---|---|---|---|---|---|---|---|")
     for case, potential in CASES.items():
-        ours, theirs, shares = [], [], []
+        engine_runs, heyoka_runs, shares = [], [], []
         for _ in range(REPEATS):
-            ours.append(measure(case, ORDER, TOLERANCE))
-            theirs.append(fastest_heyoka(case))
-            shares.append(ours[-1][0] * multiplications(potential) / peak() / 1e3)
-        units = statistics.median(run[1] for run in ours)
-        heyoka, error, tolerance = sorted(theirs)[REPEATS // 2]
+            engine_runs.append(measure(case, ORDER, TOLERANCE))
+            heyoka_runs.append(fastest_heyoka(case))
+            shares.append(engine_runs[-1][0] * multiplications(potential) / peak_rate() / 1e3)
+        units = statistics.median(run[1] for run in engine_runs)
+        heyoka, error, tolerance = sorted(heyoka_runs)[REPEATS // 2]
         print(
-            f"| {case} | {units:.1f} | {ours[0][2]:.1e} | {heyoka:.2f} | {tolerance:g} | {error:.1e} "
+            f"| {case} | {units:.1f} | {engine_runs[0][2]:.1e} | {heyoka:.2f} | {tolerance:g} | {error:.1e} "
             f"| {units / heyoka:.2f} | {statistics.median(shares):.0%} |",
             flush=True,
         )

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from app.rendering.figure_axes import SMALL, label_axes, name_panel, new_figure, save_figure, software, style_axes
 from app.rendering.map_figure import draw_curve, draw_limits, draw_pixels, show_window
-from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves
+from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, initial_state
 from app.rendering.palette import LIGHT, Palette
 from engine import CHAOS_THRESHOLD, Orbit, Plane, Potential
 
@@ -26,7 +26,7 @@ def orbit_png(potential: Potential, orbit: Orbit, palette: Palette) -> bytes:
     _draw_sali(panels["sali"], curves, colour)
     _draw_r2(panels["r2"], curves, colour)
     figure.supxlabel(textwrap.fill(orbit.describe(), _LINE_LENGTH), fontsize=SMALL, color=LIGHT.text)
-    start = ", ".join(repr(float(getattr(orbit, name)[0])) for name in ("x", "y", "px", "py"))
+    start = ", ".join(map(repr, initial_state(orbit)))
     about = {"potential": potential.name, "energy": repr(orbit.energy), "start": start, "verdict": orbit.describe()}
     return save_figure(figure, "png", {"Software": software(), **about})
 

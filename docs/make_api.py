@@ -1,4 +1,7 @@
-"""Makes the library's pages from its docstrings and from docs/*.md. Run: python docs/make_api.py [folder]; without one, site/."""
+"""Generate the HTML documentation from the docstrings of `engine` and from the Markdown files.
+
+Run: python docs/make_api.py [folder]; the default folder is site/.
+"""
 
 from __future__ import annotations
 
@@ -21,14 +24,16 @@ import engine
 ROOT = Path(__file__).parents[1]
 HERE = Path(__file__).parent
 PICTURES = ("*.png", "*.webp")
-LINKED_FILES = re.compile(r"\]\((?:\.\./)?((?:deploy|examples)/[\w.-]+)\)")
+# Links to files that are copied as they are.
+LINKED_FILES = re.compile(r"\]\((?:\.\./)?((?:deploy|examples)/[\w.-]+|LICENSE|CITATION\.cff)\)")
+LINKED_PAGES = re.compile(r"\]\((?:\.\./)?(?:docs/)?([\w-]+)\.md(#[\w-]+)?\)")
 PAGE = """<!doctype html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{title}</title>
 <style>
 body {{ max-width: 52rem; margin: 2rem auto; padding: 0 1rem; font: 1rem/1.5 system-ui, sans-serif; color-scheme: light dark }}
 img {{ max-width: 100% }} pre {{ overflow-x: auto }} td, th {{ padding: 0.2rem 0.6rem; text-align: left; vertical-align: top }}
 </style>
-<nav><a href="index.html">Escape Explorer</a> · <a href="engine.html">the library, name by name</a></nav>
+<nav><a href="index.html">Escape Explorer</a> · <a href="engine.html">API reference</a></nav>
 {body}
 <hr><nav>{pages}</nav>
 </html>
@@ -41,19 +46,18 @@ def main(arguments: list[str]) -> None:
 
 
 def make_site(folder: Path) -> None:
-    """README as index.html, each page of docs, and engine.html with every public name; `folder` is made, or written over."""
+    """Write index.html from README.md, one page per Markdown file, and engine.html with every public name."""
     folder.mkdir(parents=True, exist_ok=True)
     module = document_engine()
     pdoc.render.configure(docformat="numpy", show_source=False)
     with warnings.catch_warnings():
-        # Parameters of a generic function or class are names of no module; pdoc shows them as they are written.
-        warnings.filterwarnings("ignore", r"Error parsing type annotation .* Import of Result failed")
+        # pdoc cannot resolve type parameters; it prints their names.
+        warnings.filterwarnings("ignore", r"Error parsing type annotation .* Import of (Result|T) failed")
         _write(folder / "engine.html", pdoc.render.html_module(module, {"engine": module}))
     _write(folder / "search.js", pdoc.render.search_index({"engine": module}))
-    sources = {"index": ROOT / "README.md", "benchmarks": ROOT / "benchmarks" / "README.md"}
-    sources |= {path.stem: path for path in sorted(HERE.glob("*.md"))}
+    sources = _markdown_files()
     for stem, path in sources.items():
-        _write(folder / f"{stem}.html", _as_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
+        _write(folder / f"{stem}.html", _to_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
     for picture in (path for pattern in PICTURES for path in HERE.glob(pattern)):
         shutil.copy(picture, folder)
     for file in {file for path in sources.values() for file in LINKED_FILES.findall(path.read_text(encoding="utf-8"))}:
@@ -61,8 +65,15 @@ def make_site(folder: Path) -> None:
         shutil.copy(ROOT / file, folder / file)
 
 
+def _markdown_files() -> dict[str, Path]:
+    """Markdown files by the names of their pages."""
+    files = {"index": ROOT / "README.md", "benchmarks": ROOT / "benchmarks" / "README.md"}
+    others = [*sorted(HERE.glob("*.md")), *sorted(ROOT.glob("*.md"))]
+    return files | {path.stem.lower(): path for path in others if path.stem != "README"}
+
+
 def document_engine() -> pdoc.doc.Module:
-    """The public names; constants with the docstrings that stand below them in their own modules."""
+    """Document the public names of `engine`, constants with the docstrings from their own modules."""
     module = pdoc.doc.Module(engine)
     for name in engine.__all__:
         member = module.get(name)
@@ -73,7 +84,7 @@ def document_engine() -> pdoc.doc.Module:
 
 
 def _find_home(name: str, module: str) -> str:
-    """The module that a name is defined in, through all that only pass it on."""
+    """Follow imports to the module that defines a name."""
     source = Path(str(importlib.import_module(module).__file__)).read_text(encoding="utf-8")
     for node in ast.parse(source).body:
         if isinstance(node, ast.ImportFrom) and node.module and name in {alias.asname or alias.name for alias in node.names}:
@@ -81,13 +92,12 @@ def _find_home(name: str, module: str) -> str:
     return module
 
 
-def _as_html(text: str, pages: list[str]) -> str:
-    """A page of Markdown, its links to other pages leading to theirs."""
+def _to_html(text: str, pages: list[str]) -> str:
+    """Convert a Markdown page; links to Markdown files become links to their pages."""
     title = text.split("\n", 1)[0].lstrip("# ")
     text = text.replace("benchmarks/README.md)", "benchmarks.md)")
-    linked = (
-        re.sub(r"\]\((?:\.\./)?(?:docs/)?([\w-]+)\.md\)", r"](\1.html)", text).replace("](docs/", "](").replace("](../", "](")
-    )
+    linked = LINKED_PAGES.sub(lambda link: f"]({link[1].lower()}.html{link[2] or ''})", text)
+    linked = linked.replace("](docs/", "](").replace("](../", "](")
     links = " · ".join(f'<a href="{page}.html">{page}</a>' for page in pages)
     return PAGE.format(title=title, body=pdoc.render_helpers.to_html(linked), pages=links)
 

@@ -1,17 +1,21 @@
-"""Computes the thumbnails of the gallery, app/static/gallery/<key>.png. Run with: python docs/make_gallery.py [key …]"""
+"""Compute the thumbnails of the presets, app/static/gallery/<key>.png. Run: python docs/make_gallery.py [key …]"""
 
 from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from app.rendering.map_analyses import MapAnalyses
+from app.rendering.map_figure import draw_curve, draw_pixels
 from app.rendering.map_images import picture_pixels
 from app.rendering.palette import LIGHT, PAPER, PATCH_EDGE
 from app.state.presets import PRESETS, Preset
@@ -32,14 +36,11 @@ from engine import (
 
 FOLDER = Path(__file__).parents[1] / "app" / "static" / "gallery"
 SIDE = 160
-# Lines are drawn this much larger, then made small.
-_FINER = 4
+# One point is a pixel.
+_DPI = 72
 _MOST_COLOURS = 64
 # In units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.6, 2.2)
-
-Line = tuple[np.ndarray, np.ndarray, str, float]
-"""x, y, colour, and width in pixels of the thumbnail."""
 
 
 def main(keys: list[str]) -> None:
@@ -47,18 +48,31 @@ def main(keys: list[str]) -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     for preset in PRESETS:
         if not keys or preset.key in keys:
-            _paletted(_thumbnail(preset)).save(FOLDER / f"{preset.key}.png", optimize=True)
+            _reduce_colours(_draw_thumbnail(preset)).save(FOLDER / f"{preset.key}.png", optimize=True)
 
 
-def _thumbnail(preset: Preset) -> Image.Image:
-    """RGBA; transparent where nothing can start, so that it goes with a light page and with a dark one."""
+def _draw_thumbnail(preset: Preset) -> Image.Image:
+    """RGBA; transparent where no orbit can start, for light and dark pages."""
     frame = compute_map(replace(ViewState(**preset.values()).map_spec(), resolution=(SIDE, SIDE)))
-    findings = _findings(frame, preset)
-    picture = Image.fromarray(picture_pixels(frame, preset.picture, PAPER, findings))
-    return _with_lines(picture, frame, preset, findings.manifolds) if preset.picture == "curves" else picture
+    analyses = _analyse(frame, preset)
+    pixels = picture_pixels(frame, preset.picture, PAPER, analyses)
+    if preset.picture != "curves":
+        return Image.fromarray(pixels)
+    figure = Figure(figsize=(SIDE / _DPI, SIDE / _DPI), dpi=_DPI, facecolor="none")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    draw_pixels(axes, pixels, frame.spec.window, frame.spec.window)
+    if analyses.manifolds is not None:
+        _draw_manifolds(axes, frame, analyses.manifolds)
+    else:
+        _draw_curves(axes, frame, preset)
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    file = BytesIO()
+    figure.savefig(file, format="png")
+    return Image.open(file).convert("RGBA")
 
 
-def _findings(frame: EscapeMap, preset: Preset) -> MapAnalyses:
+def _analyse(frame: EscapeMap, preset: Preset) -> MapAnalyses:
     spec = frame.spec
     return MapAnalyses(
         regularity=compute_regularity(frame) if preset.judge else None,
@@ -68,36 +82,32 @@ def _findings(frame: EscapeMap, preset: Preset) -> MapAnalyses:
     )
 
 
-def _with_lines(picture: Image.Image, frame: EscapeMap, preset: Preset, manifolds: StableManifolds | None) -> Image.Image:
-    window = frame.spec.window
-    large = picture.resize((SIDE * _FINER, SIDE * _FINER), Image.Resampling.NEAREST)
-    scale = SIDE * _FINER / np.array([window.x_high - window.x_low, window.ordinate_low - window.ordinate_high])
-    draw = ImageDraw.Draw(large)
-    threads = [(arc.x, arc.px, PAPER.channels[arc.channel - 1], 0.7) for arc in manifolds.arcs] if manifolds is not None else []
-    for x, y, colour, width in threads or _lines(frame, preset):
-        points = (np.column_stack([x, y]) - (window.x_low, window.ordinate_high)) * scale
-        draw.line([tuple(point) for point in points.tolist()], fill=colour, width=round(width * _FINER), joint="curve")
-    return large.resize((SIDE, SIDE), Image.Resampling.BOX)
+def _draw_manifolds(axes: Axes, frame: EscapeMap, manifolds: StableManifolds) -> None:
+    for arc in manifolds.arcs:
+        points, colour = np.column_stack([arc.x, arc.px]), PAPER.channels[arc.channel - 1]
+        draw_curve(axes, [points], frame.spec.window, colors=colour, linewidths=0.4)
 
 
-def _lines(frame: EscapeMap, preset: Preset) -> list[Line]:
-    """From back to front."""
+def _draw_curves(axes: Axes, frame: EscapeMap, preset: Preset) -> None:
+    """Equipotentials, limiting curve, orbits and exits."""
     spec, escape = frame.spec, frame.spec.potential.escape_energy
     energies = (preset.energy, escape, *(level * escape for level in _LEVELS))
     limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.window)
-    lines: list[Line] = [(*piece.T, LIGHT.equipotential, 0.6) for pieces in levels for piece in pieces]
-    lines += [(*piece.T, LIGHT.critical_equipotential, 1.0) for piece in critical]
-    lines += [(*piece.T, PATCH_EDGE, 1.6) for piece in limit]
+    for pieces in levels:
+        draw_curve(axes, pieces, spec.window, colors=LIGHT.equipotential, linewidths=0.6)
+    draw_curve(axes, critical, spec.window, colors=LIGHT.critical_equipotential, linewidths=1.0)
+    draw_curve(axes, limit, spec.window, colors=PATCH_EDGE, linewidths=1.6)
     for (x, y), colour in zip(preset.starts, PAPER.orbits, strict=False):
         start = start_states(spec.potential, spec.plane, preset.energy, np.array([x]), np.array([y]))[0]
         orbit = integrate_orbit(spec.potential, start, spec.t_max)
-        lines.append((orbit.x, orbit.y, colour, 1.0))
-    exits = find_lyapunov_orbits(spec.potential, preset.energy)
-    return lines + [(*ring.half_path.T, PAPER.channels[ring.channel - 1], 2.5) for ring in exits]
+        draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], spec.window, colors=colour, linewidths=1.0)
+    for exit_orbit in find_lyapunov_orbits(spec.potential, preset.energy):
+        colour = PAPER.channels[exit_orbit.channel - 1]
+        draw_curve(axes, [exit_orbit.half_path], spec.window, colors=colour, linewidths=2.5)
 
 
-def _paletted(picture: Image.Image) -> Image.Image:
-    """With few colours, exactly those of the picture where these are few already."""
+def _reduce_colours(picture: Image.Image) -> Image.Image:
+    """Convert to a palette: exact if there are few colours."""
     colours, codes = np.unique(np.asarray(picture).reshape(-1, 4), axis=0, return_inverse=True)
     if len(colours) > _MOST_COLOURS:
         return picture.quantize(_MOST_COLOURS, Image.Quantize.FASTOCTREE)

@@ -1,4 +1,4 @@
-"""Takes the README's picture and its short animation from the real page. Run: python docs/make_picture.py"""
+"""Take the screenshot and the animation of the README from the running page. Run: python docs/make_picture.py"""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ SWEPT = "?case=III&plane=x_y&h=0.28&t_max=1000"
 FRAMES, FRAME_MS, WIDTH = 36, 250, 1000
 
 
-def opened(browser: Browser, link: str, height: int) -> ExplorerPage:
-    """The page on a wide screen, for somebody who has been here before."""
+def open_page(browser: Browser, link: str, height: int) -> ExplorerPage:
+    """Open the page on a wide screen, without the tour of the first visit."""
     context = browser.new_context(viewport={"width": 1600, "height": height})
     context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
     explorer = ExplorerPage(context.new_page())
@@ -33,8 +33,8 @@ def opened(browser: Browser, link: str, height: int) -> ExplorerPage:
 
 
 def take_picture(browser: Browser, address: str) -> None:
-    """Case III at h = 0.45: an orbit, its neighbour, and one that stays; a little way along them."""
-    explorer = opened(browser, address + STILL, 1500)
+    """Screenshot of case III at h = 0.45 with an orbit, its neighbour and a bounded orbit, after 40 animation frames."""
+    explorer = open_page(browser, address + STILL, 1500)
     page = explorer.page
     expect(explorer.text("upward crossings of y = 0")).to_be_visible()
     for _ in range(40):
@@ -45,8 +45,8 @@ def take_picture(browser: Browser, address: str) -> None:
 
 
 def take_animation(browser: Browser, address: str) -> None:
-    """The energy of case III, played upward from just above the escape energy."""
-    explorer = opened(browser, address + SWEPT, 800)
+    """Animation of case III: the energy played upward from just above the escape energy."""
+    explorer = open_page(browser, address + SWEPT, 800)
     page = explorer.page
     explorer.press("▶ Play")
     box = page.evaluate(
@@ -69,7 +69,7 @@ def take_animation(browser: Browser, address: str) -> None:
 
 
 def main() -> None:
-    """Serve the app, and take both."""
+    """Serve the app and take both."""
     with (
         tempfile.TemporaryDirectory() as folder,
         served_app(Path(folder) / "log") as address,

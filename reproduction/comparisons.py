@@ -1,6 +1,6 @@
-"""What the paper states, and what we measure in its place.
+"""Comparison of the numbers stated in the paper with computed ones.
 
-`compare_all(shelf, hunt)` gives a `Comparison` for each of `STATED_NUMBERS`; `hunt` is what `shelf.hunt()` gives.
+`compare_all(shelf, search)` returns a `Comparison` for each of `STATED_NUMBERS`; `search` is `shelf.super_sticky()`.
 """
 
 from __future__ import annotations
@@ -17,100 +17,100 @@ from reproduction.stated_numbers import STATED_NUMBERS, Quantity, Relation, Stat
 from reproduction.unknown_windows import FittedWindow, fit_window
 
 POINTS = 2.0
-"""Shares that differ by no more than so many points of percentage agree."""
+"""Largest difference of shares that agree, in percentage points."""
 
 PERCENT = 2.0
-"""Other numbers agree when they differ by no more than so many percent."""
+"""Largest relative difference of other numbers that agree, in percent."""
 
-JUDGED_SIDE = 75
-"""Columns and rows of the maps of I and II whose bounded orbits are judged: it takes ten times as long as the map itself."""
+CLASSIFIED_SIDE = 75
+"""Columns and rows of the maps of I and II whose bounded orbits are classified: this takes ten times as long as the map."""
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """One number of the paper beside ours.
+    """One number of the paper with the computed one.
 
     Attributes
     ----------
     stated
-        What the paper states.
-    ours
-        What we measure, in the same unit, a value for each of its energies; shares are out of the starts inside. Of Lyapunov
-        orbits the smallest and the largest R². NaN where there is none.
+        The number in the paper.
+    computed
+        Computed values in the same unit, one per energy; shares are relative to the starts inside. For Lyapunov orbits the
+        smallest and the largest R². NaN if there is no value.
     windows
-        For each energy the window that comes nearest to what is stated there; empty where none is needed.
+        For each energy the window that best explains the stated shares; empty if the number needs no window.
     counted
-        Our shares in these windows, with starts outside counted.
+        Computed shares in these windows, with starts outside counted.
     """
 
     stated: StatedNumber
-    ours: tuple[float, ...]
+    computed: tuple[float, ...]
     windows: tuple[FittedWindow, ...] = ()
     counted: tuple[float, ...] = ()
 
     @property
     def difference(self) -> float:
-        """Ours less what is stated, where this is largest; 0 where a bound holds, NaN where we have none."""
-        return _furthest(self.stated, self.ours)
+        """Largest difference computed − stated; 0 if a stated bound holds, NaN without a computed value."""
+        return _furthest(self.stated, self.computed)
 
     @property
     def counted_difference(self) -> float:
-        """The same with starts outside counted; NaN where no window is needed."""
+        """The same with starts outside counted; NaN if the number needs no window."""
         return _furthest(self.stated, self.counted)
 
     @property
     def agrees(self) -> bool:
-        """Whether the difference is within `POINTS`, or `PERCENT` for what is no share."""
+        """Whether the difference is within `POINTS` for shares, or `PERCENT` for other numbers."""
         return _small(self.stated, self.difference)
 
     @property
     def agrees_when_counted(self) -> bool:
-        """Whether it is so with starts outside counted."""
+        """The same with starts outside counted."""
         return _small(self.stated, self.counted_difference)
 
 
 def compare_all(
-    shelf: MapShelf, hunt: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
+    shelf: MapShelf, search: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
 ) -> tuple[Comparison, ...]:
-    """Measure all that the paper states.
+    """Compute all numbers that the paper states.
 
     Parameters
     ----------
     shelf
-        Of the maps.
-    hunt
-        The super-sticky orbits of case III at h = 0.26.
+        Source of the maps.
+    search
+        Search for super-sticky orbits of case III at h = 0.26.
     numbers
-        What to measure.
+        Numbers to compute.
 
     Raises
     ------
     concurrent.futures.CancelledError
-        When the shelf is stopped.
+        If the shelf is cancelled.
     """
-    bench = _Bench(shelf, hunt, numbers)
-    return tuple(bench.compare(number) for number in numbers)
+    context = _Context(shelf, search, numbers)
+    return tuple(context.compare(number) for number in numbers)
 
 
-class _Bench:
-    """What the measurements share."""
+class _Context:
+    """Data shared by the comparisons."""
 
-    def __init__(self, shelf: MapShelf, hunt: SuperStickySearch, numbers: tuple[StatedNumber, ...]) -> None:
-        self.shelf, self.hunt, self.numbers = shelf, hunt, numbers
-        coarse = replace(shelf.quality, resolution=min(shelf.quality.resolution, JUDGED_SIDE))
-        self.judged_shelf = MapShelf(coarse, shelf.executor, shelf.cancel)
+    def __init__(self, shelf: MapShelf, search: SuperStickySearch, numbers: tuple[StatedNumber, ...]) -> None:
+        self.shelf, self.search, self.numbers = shelf, search, numbers
+        coarse = replace(shelf.quality, resolution=min(shelf.quality.resolution, CLASSIFIED_SIDE))
+        self.classified_shelf = MapShelf(coarse, shelf.executor, shelf.cancel)
         self.windows: dict[tuple[str, Plane, float], FittedWindow] = {}
 
     def compare(self, number: StatedNumber) -> Comparison:
-        """Ours beside one number."""
-        ours = _MEASURES[number.quantity](self, number)
+        """Compare one number."""
+        computed = _MEASURES[number.quantity](self, number)
         if not number.needs_window:
-            return Comparison(number, ours)
+            return Comparison(number, computed)
         windows = tuple(self.window(number, energy) for energy in number.energies)
-        return Comparison(number, ours, windows, tuple(window.share(_codes(number)) for window in windows))
+        return Comparison(number, computed, windows, tuple(window.share(_codes(number)) for window in windows))
 
     def window(self, number: StatedNumber, energy: float) -> FittedWindow:
-        """The window that explains all shares stated of one map."""
+        """Window that explains all shares stated for one map."""
         assert number.plane is not None
         key = (number.case, number.plane, energy)
         if key not in self.windows:
@@ -123,66 +123,66 @@ class _Bench:
         return self.windows[key]
 
     def maps(self, number: StatedNumber) -> list[EscapeMap]:
-        """One for each energy."""
+        """Maps of a number, one per energy."""
         assert number.plane is not None
         return [self.shelf.map(number.case, number.plane, energy) for energy in number.energies]
 
 
-def _measure_shares(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
-    shares = [frame.fractions() for frame in bench.maps(number)]
+def _measure_shares(context: _Context, number: StatedNumber) -> tuple[float, ...]:
+    shares = [frame.fractions() for frame in context.maps(number)]
     return tuple(100.0 * sum(share[code] for code in _codes(number)) for share in shares)
 
 
-def _measure_direct(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(100.0 * compute_statistics(frame).direct_share for frame in bench.maps(number))
+def _measure_direct(context: _Context, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(100.0 * compute_statistics(frame).direct_share for frame in context.maps(number))
 
 
-def _measure_chaotic(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
+def _measure_chaotic(context: _Context, number: StatedNumber) -> tuple[float, ...]:
     if number.case == "III":
-        return (100.0 * bench.hunt.chaotic_share,)
+        return (100.0 * context.search.chaotic_share,)
     assert number.plane is not None
-    frames = [bench.judged_shelf.map(number.case, number.plane, energy) for energy in number.energies]
-    return tuple(100.0 * bench.judged_shelf.judged(frame).chaotic_share for frame in frames)
+    frames = [context.classified_shelf.map(number.case, number.plane, energy) for energy in number.energies]
+    return tuple(100.0 * context.classified_shelf.regularity(frame).chaotic_share for frame in frames)
 
 
-def _measure_last_bounded(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
+def _measure_last_bounded(context: _Context, number: StatedNumber) -> tuple[float, ...]:
     low, high = number.energies
-    frame = bench.shelf.map(number.case, Plane.X_H, (low, high))
-    # At x = 0 of III a start runs along the y axis, where it stays: one orbit, and no island.
+    frame = context.shelf.map(number.case, Plane.X_H, (low, high))
+    # In III the orbit from x = 0 stays on the y axis: it is bounded, but not part of an island.
     rows = np.flatnonzero((frame.fate == Fate.BOUNDED)[:, frame.x != 0.0].any(axis=1))
     return (float(frame.ordinate[rows[-1]]) if rows.size else float("nan"),)
 
 
-def _measure_median_time(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
-    return tuple(compute_statistics(frame).median_escape_time for frame in bench.maps(number))
+def _measure_median_time(context: _Context, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(compute_statistics(frame).median_escape_time for frame in context.maps(number))
 
 
-def _measure_energy_error(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
+def _measure_energy_error(context: _Context, number: StatedNumber) -> tuple[float, ...]:
     assert number.plane is not None
-    return (float(bench.shelf.curves(number.case, number.plane)["worst_energy_error"].max()),)
+    return (float(context.shelf.curves(number.case, number.plane)["worst_energy_error"].max()),)
 
 
-def _measure_escape_energy(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
+def _measure_escape_energy(context: _Context, number: StatedNumber) -> tuple[float, ...]:
     return (CASES[number.case].escape_energy,)
 
 
-def _measure_lyapunov_r2(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
+def _measure_lyapunov_r2(context: _Context, number: StatedNumber) -> tuple[float, ...]:
     orbits = find_lyapunov_orbits(CASES[number.case], number.energies[0])
     r2 = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
     return float(r2.min()), float(r2.max())
 
 
-def _measure_last_leaver(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
-    leavers = bench.hunt.leavers
-    return (float(bench.hunt.escape_time[leavers[-1]]) if leavers.size else float("nan"),)
+def _measure_last_escape(context: _Context, number: StatedNumber) -> tuple[float, ...]:
+    escapers = context.search.escapers
+    return (float(context.search.escape_time[escapers[-1]]) if escapers.size else float("nan"),)
 
 
-def _measure_nearest_leaver(bench: _Bench, number: StatedNumber) -> tuple[float, ...]:
-    times = bench.hunt.escape_time[np.isin(bench.hunt.fate, number.channels)]
+def _measure_nearest_escape(context: _Context, number: StatedNumber) -> tuple[float, ...]:
+    times = context.search.escape_time[np.isin(context.search.fate, number.channels)]
     return (float(times[np.argmin(np.abs(times - number.value))]) if times.size else float("nan"),)
 
 
-_MEASURES: Mapping[Quantity, Callable[[_Bench, StatedNumber], tuple[float, ...]]] = MappingProxyType(
+_MEASURES: Mapping[Quantity, Callable[[_Context, StatedNumber], tuple[float, ...]]] = MappingProxyType(
     {
         Quantity.ESCAPED_BY: _measure_shares,
         Quantity.BOUNDED: _measure_shares,
@@ -194,14 +194,14 @@ _MEASURES: Mapping[Quantity, Callable[[_Bench, StatedNumber], tuple[float, ...]]
         Quantity.ENERGY_ERROR: _measure_energy_error,
         Quantity.ESCAPE_ENERGY: _measure_escape_energy,
         Quantity.LYAPUNOV_R2: _measure_lyapunov_r2,
-        Quantity.LAST_LEAVER: _measure_last_leaver,
-        Quantity.NEAREST_LEAVER: _measure_nearest_leaver,
+        Quantity.LAST_ESCAPE: _measure_last_escape,
+        Quantity.NEAREST_ESCAPE: _measure_nearest_escape,
     }
 )
 
 
 def _codes(number: StatedNumber) -> tuple[int, ...]:
-    """The fates that a share is of."""
+    """Fates that a share counts."""
     if number.quantity is Quantity.BOUNDED:
         return (int(Fate.BOUNDED),)
     return number.channels or tuple(range(1, CASES[number.case].channels + 1))

@@ -1,4 +1,4 @@
-"""All that is remade of the paper, by name: an entry each, with what it shows and how it is drawn."""
+"""Figures of the paper by name, with captions and drawing functions."""
 
 from __future__ import annotations
 
@@ -9,19 +9,16 @@ from types import MappingProxyType
 
 from matplotlib.figure import Figure
 
+from app.rendering.figure_axes import save_figure, software
 from engine import CASES, Plane
 from reproduction.map_figures import draw_energy_plane, draw_nine_maps
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import CHANNEL_ENERGIES, STICKY_ENERGY, plane_energies
 from reproduction.potential_figures import draw_potential
-from reproduction.printing import print_figure
 from reproduction.share_figures import draw_percentages
 from reproduction.statistics_figures import draw_statistics
 from reproduction.sticky_figures import draw_characters, draw_super_sticky
 from reproduction.survival_figures import draw_survival
-
-ENDINGS = ("png", "pdf")
-"""Each figure becomes a file of each kind."""
 
 
 @dataclass(frozen=True)
@@ -31,11 +28,11 @@ class FigureEntry:
     Attributes
     ----------
     name
-        What it is asked for by, and the stem of its files.
+        Name, and stem of its files.
     caption
-        What it shows.
+        Caption.
     draw
-        Makes it from the maps of a shelf; may take minutes.
+        Draws the figure with maps of a shelf; may take minutes.
     """
 
     name: str
@@ -43,22 +40,29 @@ class FigureEntry:
     draw: Callable[[MapShelf], Figure]
 
     def files(self, shelf: MapShelf) -> dict[str, bytes]:
-        """Draw it: the content of each file by its name, which tells also how finely it was made."""
+        """Draw the figure and return the content of its files by file name, with caption and quality in their metadata."""
         figure, quality = self.draw(shelf), shelf.quality
         keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
-        about = {"Title": self.name, "Subject": self.caption, "Keywords": keywords}
-        return {f"{self.name}.{ending}": print_figure(figure, ending, about) for ending in ENDINGS}
+        png = {"Title": self.name, "Description": self.caption, "Comment": keywords, "Software": software()}
+        pdf = {
+            "Title": self.name, "Subject": self.caption, "Keywords": keywords,
+            "Creator": software(), "Producer": software(), "CreationDate": None,
+        }  # fmt: skip
+        return {
+            f"{self.name}.png": save_figure(figure, "png", png),
+            f"{self.name}.pdf": save_figure(figure, "pdf", pdf),
+        }
 
 
 def _of_case(case: str) -> Sequence[FigureEntry]:
     low, high = plane_energies(case)
     channels = ("green", "red", "blue", "orange")[: CASES[case].channels]
     colours = ", ".join(["bounded grey", *(f"channel {k} {colour}" for k, colour in enumerate(channels, 1))])
-    speed = "the darker, the later; bounded grey"
+    speed = "darker is later; bounded grey"
     rows: tuple[tuple[str, str, Callable[[str, MapShelf], Figure]], ...] = (
         (
             "potential",
-            f"equipotentials with that of the escape energy in red, the Lyapunov orbits over the open channels at "
+            f"equipotentials with that of the escape energy in red, the Lyapunov orbits of the open channels at "
             f"h = {CHANNEL_ENERGIES[case]}, and an orbit through each",
             draw_potential,
         ),
@@ -72,14 +76,14 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
             "orange, more green, bounded grey",
             _nine(Plane.X_PX, "crossings"),
         ),
-        ("percentages", "shares of the bounded starts and of each channel's against h, on (x, y) and (x, px)", draw_percentages),
+        ("percentages", "shares of bounded starts and of each channel against h, on (x, y) and (x, px)", draw_percentages),
         ("xh", f"basins of escape on (x, h), h from {low:.4g} to {high:g}: {colours}", draw_energy_plane),
         (
             "statistics",
-            "escaping and direct starts against h with the paper's fits and ours; escapes after n crossings, and p_n",
+            "escaping and direct starts against h with the paper's fits and new ones; escapes after n crossings, and p_n",
             draw_statistics,
         ),
-        ("survival", "share of the starts not yet escaped, at three energies, with the laws fitted to it", draw_survival),
+        ("survival", "share of the starts that have not escaped, at three energies, with fitted laws", draw_survival),
     )
     return [FigureEntry(f"{case}-{family}", f"Case {case}: {caption}", partial(draw, case)) for family, caption, draw in rows]
 
@@ -96,7 +100,7 @@ _STICKY = (
     ),
     FigureEntry(
         "III-super-sticky",
-        f"Case III, h = {STICKY_ENERGY}: R² = x² + y² against time of a chaotic orbit that leaves long after t = 1e5",
+        f"Case III, h = {STICKY_ENERGY}: R² = x² + y² against time of a chaotic orbit that escapes long after t = 1e5",
         draw_super_sticky,
     ),
 )
@@ -104,4 +108,4 @@ _STICKY = (
 FIGURES: Mapping[str, FigureEntry] = MappingProxyType(
     {entry.name: entry for entry in (*(entry for case in CASES for entry in _of_case(case)), *_STICKY)}
 )
-"""Every figure by its name, in the order in which maps are best shared."""
+"""All figures by name, in an order that reuses maps."""

@@ -1,19 +1,27 @@
-"""Nine maps of a case side by side, and its (x, h) plane."""
+"""Maps of a case at nine energies side by side, and its (x, h) plane."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from app.rendering.figure_axes import LETTER, add_figure_legend, label_axes, name_panel, new_figure, patches
+from app.rendering.image_columns import longest_typical_time
+from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
+from app.rendering.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
+from app.rendering.map_images import picture_pixels
 from app.rendering.palette import PAPER
-from engine import CASES, Fate, Plane
-from reproduction.map_panels import add_time_bar, common_longest, common_window, draw_limits, draw_map, show_window
+from engine import CASES, EscapeMap, Fate, Plane, Window
 from reproduction.map_shelf import MapShelf
+from reproduction.notation import ORDINATES, PLANES
 from reproduction.paper_ranges import nine_energies, plane_energies
-from reproduction.printing import PLANES, add_key, label_axes, limiting_lines, name_panel, new_figure, patches
 
 TITLES = {"basins": "basins of escape", "times": "escape times", "crossings": "upward crossings of $y = 0$ before the escape"}
-"""What stands over each kind of map."""
+"""Titles of the kinds of maps."""
 
 _SIDE = 3
 
@@ -21,37 +29,82 @@ _SIDE = 3
 def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) -> Figure:
     """One picture of `TITLES` at the paper's nine energies, all in one window."""
     frames = [shelf.map(case, plane, energy) for energy in nine_energies(case)]
-    shown, longest = common_window(frames), common_longest(frames)
+    shown, longest = _common_window(frames), max(map(longest_typical_time, frames))
     title = f"Case {case}, {PLANES[plane]} plane: {TITLES[picture]}"
     figure = new_figure(10.6 if picture == "times" else 9.6, 10.4, title, equal=True)
     panels = figure.subplots(_SIDE, _SIDE, sharex=True, sharey=True)
     for axes, frame in zip(panels.flat, frames, strict=True):
-        draw_map(axes, frame, picture, longest)
-        draw_limits(axes, frame, shown)
-        show_window(axes, plane, shown)
+        draw_map_panel(axes, frame, picture, shown, longest=longest)
         name_panel(axes, f"$h = {frame.spec.energy:.2f}$")
-    for axes in panels.flat:
         place = axes.get_subplotspec()
         label_axes(axes, axes.get_xlabel() if place.is_last_row() else "", axes.get_ylabel() if place.is_first_col() else "")
     if picture == "times":
-        add_time_bar(figure, panels.ravel().tolist(), longest)
-    add_key(figure, [*_key_of(case, picture), *limiting_lines(plane)])
+        bar = add_time_bar(figure, longest, PAPER, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="max")
+        bar.set_label(r"escape time $t_{\mathrm{esc}}$", fontsize=LETTER)
+    add_figure_legend(figure, [*_colour_handles(case, picture), *panels[0, 0].collections])
     return figure
 
 
 def draw_energy_plane(case: str, shelf: MapShelf) -> Figure:
-    """The basins on (x, h)."""
+    """Basins on (x, h)."""
     frame = shelf.map(case, Plane.X_H, plane_energies(case))
     figure = new_figure(7.6, 6.6, f"Case {case}, {PLANES[Plane.X_H]} plane: basins of escape")
     axes = figure.subplots()
-    draw_map(axes, frame, "basins")
-    draw_limits(axes, frame, frame.spec.window)
-    show_window(axes, Plane.X_H, frame.spec.window, square=False)
-    add_key(figure, [*_key_of(case, "basins"), *limiting_lines(Plane.X_H)])
+    draw_map_panel(axes, frame, "basins", frame.spec.window, equal=False)
+    add_figure_legend(figure, [*_colour_handles(case, "basins"), *axes.collections])
     return figure
 
 
-def _key_of(case: str, picture: str) -> list[Artist]:
+def draw_map_panel(
+    axes: Axes,
+    frame: EscapeMap,
+    picture: str,
+    shown: Window,
+    *,
+    longest: float | None = None,
+    analyses: MapAnalyses = NO_ANALYSES,
+    equal: bool = True,
+) -> None:
+    """Draw a map with its limiting curve and exits.
+
+    Starts outside are white like forbidden ones, so that panels of different windows look alike; in the picture of regular and
+    chaotic orbits so are escaping starts.
+
+    Parameters
+    ----------
+    axes
+        The panel.
+    frame
+        A complete map.
+    picture
+        One of `app.rendering.map_images.TITLES`.
+    shown
+        Window of the panel.
+    longest
+        Upper end of the scale of escape times; None for that of the map.
+    analyses
+        Regularity of bounded orbits, if the picture shows it.
+    equal
+        Whether both axes have the same scale.
+    """
+    spec = frame.spec
+    pixels = picture_pixels(frame, picture, PAPER, analyses, longest)
+    white = frame.fate == Fate.OUTSIDE
+    if picture == "characters":
+        white |= frame.fate > Fate.BOUNDED
+    pixels[::-1][white] = 0
+    draw_pixels(axes, pixels, spec.window, shown)
+    draw_limits(axes, spec.potential, spec.plane, spec.energy, shown)
+    show_window(axes, shown, "$x$", ORDINATES[spec.plane], equal=equal)
+
+
+def _common_window(frames: Sequence[EscapeMap]) -> Window:
+    """Smallest window that contains those of several maps."""
+    edges = np.array([[w.x_low, w.x_high, w.ordinate_low, w.ordinate_high] for w in (frame.spec.window for frame in frames)])
+    return Window(edges[:, 0].min(), edges[:, 1].max(), edges[:, 2].min(), edges[:, 3].max())
+
+
+def _colour_handles(case: str, picture: str) -> list[Artist]:
     bounded = PAPER.outcomes[Fate.BOUNDED]
     if picture == "times":
         return patches([bounded])

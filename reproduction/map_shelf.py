@@ -1,4 +1,4 @@
-"""The maps that figures and tables are made of: each computed once, at first need, however many ask for it."""
+"""Cache of the maps and analyses that figures and tables need; each is computed once, on first use."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from reproduction.quality import Quality
 
 
 class MapShelf:
-    """Finished maps of one quality, kept without what is needed to go on from them; and what is found in them.
+    """Complete maps of one quality, stored without the state of their orbits, and analyses of them.
 
     Parameters
     ----------
     quality
-        How finely.
+        Resolution.
     executor
         Any `concurrent.futures.Executor`; None for the pool of this process.
     cancel
-        Set to stop; what is under way then raises CancelledError.
+        Event that cancels computations; they then raise CancelledError.
     on_map
-        Told of each map that has been computed.
+        Called with each computed map.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class MapShelf:
         quality: Quality,
         executor: Executor | None = None,
         cancel: threading.Event | None = None,
-        on_map: Callable[[EscapeMap], None] = lambda made: None,
+        on_map: Callable[[EscapeMap], None] = lambda frame: None,
     ) -> None:
         self.quality = quality
         self.executor = executor
@@ -54,90 +54,90 @@ class MapShelf:
         self._on_map = on_map
         self._maps: dict[MapSpec, EscapeMap] = {}
         self._curves: dict[tuple[str, Plane], xr.Dataset] = {}
-        self._judged: dict[MapSpec, RegularityMap] = {}
-        self._hunt: SuperStickySearch | None = None
+        self._regularities: dict[MapSpec, RegularityMap] = {}
+        self._super_sticky: SuperStickySearch | None = None
 
     def map(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
-        """The map of a case of the paper.
+        """Map of a case of the paper.
 
         Parameters
         ----------
         case
-            Of `engine.CASES`.
+            Key of `engine.CASES`.
         plane, energy, window
-            As of `engine.MapSpec`.
+            As in `engine.MapSpec`.
 
         Raises
         ------
         concurrent.futures.CancelledError
-            When stopped.
+            If cancelled.
         ValueError
-            As of `engine.MapSpec`.
+            As in `engine.MapSpec`.
         """
-        return self._kept(self._spec(case, plane, energy, window))
+        return self._stored(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Plane) -> xr.Dataset:
-        """Shares at the energies of `curve_energies`, as from `engine.tabulate_crossing_statistics`, with crossings to n = 0.
+        """Shares at the energies of `curve_energies`, from `engine.tabulate_crossing_statistics` with crossings to n = 0.
 
-        Of these many maps only those are kept that were there before.
+        New maps are not stored.
 
         Raises
         ------
         concurrent.futures.CancelledError
-            When stopped.
+            If cancelled.
         """
         if (case, plane) not in self._curves:
-            self._curves[case, plane] = tabulate_crossing_statistics(self._passing(case, plane), most_crossings=0)
+            self._curves[case, plane] = tabulate_crossing_statistics(self._curve_maps(case, plane), most_crossings=0)
         return self._curves[case, plane]
 
-    def judged(self, frame: EscapeMap) -> RegularityMap:
-        """Which bounded orbits of a map are regular, and which chaotic.
+    def regularity(self, frame: EscapeMap) -> RegularityMap:
+        """Classification of the bounded orbits of a map as regular or chaotic.
 
         Raises
         ------
         concurrent.futures.CancelledError
-            When stopped.
+            If cancelled.
         """
-        if frame.spec not in self._judged:
+        if frame.spec not in self._regularities:
             regularity = compute_regularity(frame, cancel=self.cancel, executor=self.executor)
             if not regularity.complete:
                 raise CancelledError
-            self._judged[frame.spec] = regularity
-        return self._judged[frame.spec]
+            self._regularities[frame.spec] = regularity
+        return self._regularities[frame.spec]
 
-    def hunt(self) -> SuperStickySearch:
-        """The chaotic bounded orbits of case III at h = 0.26 on (x, px), followed on.
+    def super_sticky(self) -> SuperStickySearch:
+        """Continuation of the chaotic bounded orbits of case III at h = 0.26 on (x, px).
 
         Raises
         ------
         concurrent.futures.CancelledError
-            When stopped.
+            If cancelled.
         """
-        if self._hunt is None:
-            side = self.quality.hunt_resolution
-            frame = self._kept(replace(self._spec(STICKY_CASE, Plane.X_PX, STICKY_ENERGY, None), resolution=(side, side)))
-            self._hunt = find_super_sticky_orbits(
-                frame, self.judged(frame), self.quality.hunt_t_max, executor=self.executor, cancel=self.cancel
+        if self._super_sticky is None:
+            side = self.quality.search_resolution
+            frame = self._stored(replace(self._spec(STICKY_CASE, Plane.X_PX, STICKY_ENERGY, None), resolution=(side, side)))
+            self._super_sticky = find_super_sticky_orbits(
+                frame, self.regularity(frame), self.quality.search_t_max, executor=self.executor, cancel=self.cancel
             )
-        return self._hunt
+        return self._super_sticky
 
     def _spec(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None) -> MapSpec:
         side, t_max = self.quality.resolution, self.quality.t_max
         return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)  # type: ignore[arg-type]  # None is the whole interior
 
-    def _passing(self, case: str, plane: Plane) -> Iterator[EscapeMap]:
+    def _curve_maps(self, case: str, plane: Plane) -> Iterator[EscapeMap]:
         for energy in curve_energies(case, self.quality.curve_points):
             spec = self._spec(case, plane, energy, None)
-            yield self._maps[spec] if spec in self._maps else self._computed(spec)
+            yield self._maps[spec] if spec in self._maps else self._compute(spec)
 
-    def _kept(self, spec: MapSpec) -> EscapeMap:
+    def _stored(self, spec: MapSpec) -> EscapeMap:
         if spec not in self._maps:
-            self._maps[spec] = self._computed(spec)
+            self._maps[spec] = self._compute(spec)
         return self._maps[spec]
 
-    def _computed(self, spec: MapSpec) -> EscapeMap:
-        made = compute_map(spec, cancel=self.cancel, executor=self.executor)
-        if not made.complete:
+    def _compute(self, spec: MapSpec) -> EscapeMap:
+        computed = compute_map(spec, cancel=self.cancel, executor=self.executor)
+        if not computed.complete:
             raise CancelledError
-        self._on_map(made)
-        return replace(made, batch=None)
+        self._on_map(computed)
+        return replace(computed, batch=None)

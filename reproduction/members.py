@@ -1,4 +1,4 @@
-"""What a reproduction consists of: every figure, and the tables of numbers; what is asked for by name, and the files of each."""
+"""Members of the reproduction, the figures and the tables, and their files."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from reproduction.map_shelf import MapShelf
 from reproduction.report import write_report, write_table
 
 TABLES = "tables"
-"""The name of what is no figure."""
+"""Name of the member that is not a figure."""
 
 CAPTIONS = {
     **{name: entry.caption for name, entry in FIGURES.items()},
-    TABLES: "Every number that the paper states beside ours, as a page and as a table",
+    TABLES: "All numbers stated in the paper with the computed ones, as Markdown and CSV",
 }
-"""What each member shows, by its name; in the order in which they are made, so that maps are shared best."""
+"""Captions of the members by name, in an order that reuses maps."""
 
 
 def choose_members(names: Sequence[str]) -> list[str]:
-    """What is to be made, each once and in order: all of it when nothing is named.
+    """Select members by name, each once and in order; all if there are no names.
 
     Raises
     ------
     ValueError
-        When there is nothing of a name.
+        If a name is unknown.
     """
     for name in names:
         if name not in CAPTIONS:
@@ -34,15 +34,15 @@ def choose_members(names: Sequence[str]) -> list[str]:
 
 
 def make_files(name: str, shelf: MapShelf) -> dict[str, str | bytes]:
-    """The content of each file of a member, by the file's name; may take minutes.
+    """Content of the files of a member by file name; may take minutes.
 
     Raises
     ------
     concurrent.futures.CancelledError
-        When the shelf is stopped.
+        If the shelf is cancelled.
     """
     if name != TABLES:
         return dict(FIGURES[name].files(shelf))
-    hunt = shelf.hunt()
-    rows = compare_all(shelf, hunt)
-    return {"reproduction.md": write_report(shelf, hunt, rows), "reproduction.csv": write_table(rows)}
+    search = shelf.super_sticky()
+    rows = compare_all(shelf, search)
+    return {"reproduction.md": write_report(shelf, search, rows), "reproduction.csv": write_table(rows)}

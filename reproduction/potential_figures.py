@@ -1,4 +1,4 @@
-"""The potential: equipotentials, the way out over the Lyapunov orbits, and an orbit through each channel."""
+"""The potential: equipotentials, channels with Lyapunov orbits, and an orbit through each channel."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from app.rendering.figure_axes import label_axes, name_panels, new_figure, style_axes
 from app.rendering.palette import LIGHT, PAPER
 from engine import (
     CASES,
@@ -20,21 +21,21 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from reproduction.map_shelf import MapShelf
+from reproduction.notation import ORDINATES
 from reproduction.paper_ranges import CHANNEL_ENERGIES
-from reproduction.printing import ORDINATES, label_axes, name_panels, new_figure, tidy_axes
 from reproduction.sample_orbits import find_sample_starts
 
-# Of the escape energy: dense below it, so that the well shows, and wider apart on the walls and down the channels.
+# Equipotentials in units of the escape energy: dense inside the well, sparse outside.
 _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
-# How much larger than the interior the panels are: all of them, so that they can be compared.
+# Side of the panels in units of that of the interior.
 _ENLARGED = 1.35
 _SAMPLES = 301
-# Letters stand this far beyond the saddle, in distances from the bottom of the well to it.
+# Distance of labels from the bottom of the well, in units of that of the saddle.
 _LABEL_PLACE = 1.22
 
 
 def draw_potential(case: str, shelf: MapShelf) -> Figure:
-    """Three panels for one case, all of one window."""
+    """Three panels with the same window."""
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
     window = _enlarged(default_window(potential, Plane.X_Y, energy))
     figure = new_figure(12.6, 4.85, f"Case {case}: the potential and its {potential.channels} channels", equal=True)
@@ -47,10 +48,12 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
         axes.set_xlim(window.x_low, window.x_high)
         axes.set_ylim(window.ordinate_low, window.ordinate_high)
         axes.set_aspect("equal")
-        tidy_axes(axes)
+        style_axes(axes)
         label_axes(axes, "$x$", ORDINATES[Plane.X_Y] if axes is panels[0] else "")
     escape = f"equipotentials, that of the escape energy ${potential.escape_energy:.4g}$ in red"
-    name_panels(panels, [escape, f"the way out at $h = {energy}$", f"one orbit through each channel, $h = {energy}$"])
+    name_panels(
+        panels, [escape, f"channels and Lyapunov orbits, $h = {energy}$", f"one orbit through each channel, $h = {energy}$"]
+    )
     return figure
 
 
@@ -89,7 +92,7 @@ def _draw_escapes(axes: Axes, shelf: MapShelf, case: str, window: Window) -> Non
 
 
 def _draw_arrow(axes: Axes, x: float, y: float, px: float, py: float, colour: str, window: Window) -> None:
-    """Where an orbit leaves, and which way it goes on."""
+    """Arrow at the end of an orbit, in its direction."""
     length = 0.05 * (window.x_high - window.x_low) / np.hypot(px, py)
     arrow = {"arrowstyle": "-|>,head_width=0.25,head_length=0.5", "color": colour, "linewidth": 1.1, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (x + length * px, y + length * py), (x, y), arrowprops=arrow)

@@ -1,4 +1,4 @@
-"""How finely the paper is remade: as it was made, or quickly."""
+"""Quality of the reproduction: as in the paper, or a quick preview."""
 
 from __future__ import annotations
 
@@ -7,32 +7,32 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Quality:
-    """What decides how long a reproduction takes.
+    """Resolution of a reproduction.
 
     Attributes
     ----------
     name
-        What people call it.
+        Name on the command line.
     resolution
         Columns and rows of every map.
     t_max
-        How long orbits are followed, dimensionless.
+        Integration time of orbits, dimensionless.
     curve_points
-        Energies of every curve against h.
-    hunt_resolution, hunt_t_max
-        Columns and rows of the map whose chaotic bounded orbits are followed on, and how long.
+        Number of energies of curves against h.
+    search_resolution, search_t_max
+        Columns and rows of the map whose chaotic bounded orbits are continued, and until which time.
     """
 
     name: str
     resolution: int
     t_max: float
     curve_points: int
-    hunt_resolution: int
-    hunt_t_max: float
+    search_resolution: int
+    search_t_max: float
 
 
-FULL = Quality("full", resolution=225, t_max=1e5, curve_points=75, hunt_resolution=225, hunt_t_max=4e6)
-"""As the paper: about 50 000 starts a map, followed to 1e5."""
+FULL = Quality("full", resolution=225, t_max=1e5, curve_points=75, search_resolution=225, search_t_max=4e6)
+"""As in the paper: about 50 000 starts per map, integrated to 1e5."""
 
-QUICK = Quality("quick", resolution=75, t_max=1e5, curve_points=19, hunt_resolution=45, hunt_t_max=4e6)
-"""A ninth of the starts."""
+QUICK = Quality("quick", resolution=75, t_max=1e5, curve_points=19, search_resolution=45, search_t_max=4e6)
+"""One ninth of the starts."""

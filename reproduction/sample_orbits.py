@@ -1,4 +1,4 @@
-"""One orbit through each channel, chosen from a map by a rule, for a figure to show."""
+"""Selection of one orbit through each channel of a map."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import numpy as np
 from engine import EscapeMap
 
 SHOWN_CROSSINGS = 3
-"""Upward crossings of y = 0 that a shown orbit makes, or a few more: enough to see it wander, few enough to follow it."""
+"""Minimal number of upward crossings of y = 0 of a selected orbit."""
 
 
 def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float, float]]:
-    """A start for each channel that any orbit of a map leaves by.
+    """Find a start for each channel through which an orbit of a map escapes.
 
     Parameters
     ----------
@@ -20,8 +20,9 @@ def find_sample_starts(frame: EscapeMap) -> dict[int, tuple[float, float, float,
 
     Returns
     -------
-    By channel, x, y, px, py of the orbit with the fewest crossings from `SHOWN_CROSSINGS` on (else the most there are), of these
-    the one that leaves first, of these the lowest and leftmost pixel.
+    dict
+        By channel, (x, y, px, py) of the orbit with the fewest crossings, but at least `SHOWN_CROSSINGS` if there is one (else
+        with the most crossings); among these the first to escape, then the lowest and leftmost pixel.
     """
     found: dict[int, tuple[float, float, float, float]] = {}
     for channel in range(1, frame.spec.potential.channels + 1):

@@ -1,4 +1,4 @@
-"""Shares of the starts against energy: bounded, and by each channel."""
+"""Shares of bounded starts and of each channel against energy."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from app.rendering.palette import PAPER
 from engine import CASES, Fate, Plane, Potential
 from reproduction.map_shelf import MapShelf
-from reproduction.printing import PLANES, add_panel_key, label_axes, name_panels, new_figure, tidy_axes
+from reproduction.notation import PLANES
 
-# Where symmetry makes two channels equal their lines lie over each other: the second is dashed.
+# Curves of channels that are equal by symmetry coincide: the second is dashed.
 _DASHED = (0, (4.0, 3.0))
 
 
 def draw_percentages(case: str, shelf: MapShelf) -> Figure:
-    """Percentages on (x, y) and (x, px), out of the interior starts."""
+    """Percentages of the interior starts on (x, y) and (x, px)."""
     figure = new_figure(11.4, 4.6, f"Case {case}: percentages of bounded and escaping starts")
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)
@@ -26,7 +27,7 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
         _draw_shares(axes, shelf.curves(case, plane), CASES[case])
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
     name_panels(panels, [f"the {PLANES[plane]} plane" for plane in planes])
-    add_panel_key(panels[1], "center right")
+    add_panel_legend(panels[1], "center right")
     return figure
 
 
@@ -42,5 +43,4 @@ def _draw_shares(axes: Axes, table: xr.Dataset, potential: Potential) -> None:
         axes.plot(table["h"].values, shares, marker="o", markersize=2.2, **style)
     axes.set_ylim(0.0, 100.0)
     axes.set_xlim(*table["h"].values[[0, -1]])
-    axes.grid(alpha=0.25, linewidth=0.5)
-    tidy_axes(axes)
+    style_axes(axes, grid=True)

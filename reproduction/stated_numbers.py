@@ -1,4 +1,4 @@
-"""Every number that Zotos (2014) states of escapes, as data: Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9."""
+"""Numbers on escapes stated in Zotos (2014), Nonlinear Dynamics, doi 10.1007/s11071-014-1524-9."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from engine import Plane
 
 
 class Quantity(Enum):
-    """What is measured; the value is its name on paper."""
+    """Measured quantity; the value is its name in the report."""
 
-    ESCAPED_BY = "leave through"
+    ESCAPED_BY = "escape through"
     BOUNDED = "bounded"
-    ESCAPED = "leave"
-    DIRECT = "leave directly"
-    CHAOTIC = "chaotic, of the bounded"
+    ESCAPED = "escape"
+    DIRECT = "escape directly"
+    CHAOTIC = "chaotic share of the bounded"
     LAST_BOUNDED_ENERGY = "highest h with a bounded start"
     MEDIAN_ESCAPE_TIME = "median escape time"
     ENERGY_ERROR = "largest relative energy error"
     ESCAPE_ENERGY = "escape energy"
     LYAPUNOV_R2 = "R² of the Lyapunov orbits"
-    LAST_LEAVER = "escape time of the last chaotic bounded orbit"
-    NEAREST_LEAVER = "escape time of one that leaves through"
+    LAST_ESCAPE = "escape time of the last chaotic bounded orbit"
+    NEAREST_ESCAPE = "nearest escape time through"
 
 
 class Relation(Enum):
-    """How the paper words a number; the value is that word."""
+    """Relation to the stated value; the value is the word in the paper."""
 
     EXACTLY = ""
     ABOUT = "about"
@@ -35,40 +35,40 @@ class Relation(Enum):
 
 
 class Counting(Enum):
-    """Which starts a share is out of."""
+    """Starts that a share is relative to."""
 
     ANY = "of any starts"
-    """The same whichever starts are counted: none are outside on this plane, or the share is nothing."""
+    """The same for all ways of counting: no starts are outside on this plane, or the share is 0."""
     INTERIOR = "of the starts inside"
-    """Shares of orbits that are launched, which outside starts are not."""
+    """Relative to the starts inside, whose orbits are integrated."""
     WINDOW = "of a window that is not stated"
-    """Outside starts exist on this plane, and the paper seems to count them."""
+    """There are starts outside on this plane, and the paper seems to count them."""
 
 
 @dataclass(frozen=True)
 class StatedNumber:
-    """One number of the paper.
+    """One number stated in the paper.
 
     Attributes
     ----------
     case
-        Of `engine.CASES`.
+        Key of `engine.CASES`.
     plane
-        Plane of the starts; None where there is none.
+        Plane of the starts; None if the number depends on no plane.
     energies
-        h at which we measure; several where the paper speaks of a range. On (x, h) the ends of the plane.
+        Energies of the computed values; several for a stated range. On (x, h) the ends of the plane.
     at
-        h in the paper's words.
+        Energy or range as stated.
     quantity
-        What is measured.
+        Measured quantity.
     relation, value
-        What is stated: in percent for shares, else dimensionless.
+        Stated value: in percent for shares, else dimensionless.
     channels
-        The channels that the quantity is about, together; empty for those that are about none.
+        Channels that are counted together; empty if the quantity does not depend on channels.
     counting
-        Which starts a share is out of.
+        Starts that a share is relative to.
     remark
-        AnalysisPresenter ours differs, where it differs.
+        Reason for a difference, if any.
     """
 
     case: str
@@ -100,22 +100,22 @@ _THROUGH, _BOUNDED, _ESCAPED, _DIRECT = Quantity.ESCAPED_BY, Quantity.BOUNDED, Q
 _INTERIOR, _WINDOW = Counting.INTERIOR, Counting.WINDOW
 _X_Y, _X_PX, _X_H = Plane.X_Y, Plane.X_PX, Plane.X_H
 
-_MEDIAN = "Of those that leave half have left before t = 1000, and some hundredth alone takes longer than 10 000."
-_HALF = "Half are still inside at t = 5000 or so; by 20 000 nearly all that ever leave have left, and more starts change nothing."
+_MEDIAN = "Half of the escaping orbits escape before t = 1000, and only about 1 % after t = 10 000."
+_HALF = "About half are bounded at t = 5000; nearly all escapes happen before 20 000, and more starts change nothing."
 _CONFINED = (
-    "The paper says that all bounded orbits of I and II are regular; SALI of many of these falls below its threshold: "
-    "chaos that invariant tori shut in."
+    "The paper states that all bounded orbits of I and II are regular; SALI of many of them falls below its threshold: "
+    "chaotic orbits confined by invariant tori."
 )
-_TINY = "Above h = 0.22 single pixels of tiny islands are left, which a coarser grid passes over."
+_TINY = "Above h = 0.22 single pixels of tiny islands remain, which a coarser grid misses."
 _OVER_100 = "The four stated shares sum to 102."
 _OVER_106 = "The five stated shares sum to 106."
-_SQUARE = "No square about the origin has so much of channel 1 and so little of the others outside."
-_OWN_FIT = "The paper's own fit gives 84.8 at h = 0.5, as we find; its words are lower than its curve."
-_FALLING = "Ours still fall there, to 6 each at h = 0.6."
-_LAST_ISLANDS = "Of the last islands, near h = 0.56, the paper says once that they end at 0.55 and once that they do at 0.6."
-_NINE_TENTHS = "A share of 88 that is called about 90."
-_ACCIDENT = "So late an escape is an accident of rounding; of ours far fewer leave at all."
-_LYAPUNOV = "On the Lyapunov orbits themselves R² is hardly above 1, that of the saddles; 1.26 lies well outside."
+_SQUARE = "No square centred on the origin has so many starts outside in channel 1 and so few in the others."
+_OWN_FIT = "The paper's own fit gives 84.8 at h = 0.5, as computed; its text states less than its curve."
+_FALLING = "The computed shares still decrease there, to 6 each at h = 0.6."
+_LAST_ISLANDS = "The last islands are near h = 0.56; the paper states both 0.55 and 0.6 as their end."
+_NINE_TENTHS = "The computed share of 88 may be stated as about 90."
+_ACCIDENT = "Such late escapes depend on rounding; far fewer orbits escape in this computation."
+_LYAPUNOV = "On the Lyapunov orbits R² is just above 1, its value at the saddles; 1.26 is well outside of them."
 
 _CASE_I = (
     StatedNumber("I", None, (), "", Quantity.ESCAPE_ENERGY, _EXACTLY, 1 / 8),
@@ -186,13 +186,13 @@ _CASE_III = (
     StatedNumber("III", _X_PX, (0.62, 0.65, 0.7), "> 0.6", _DIRECT, _MORE, 90.0),
     StatedNumber("III", _X_H, (0.25, 1.0), "(0.25, 1]", Quantity.LAST_BOUNDED_ENERGY, _ABOUT, 0.6, remark=_LAST_ISLANDS),
     StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.CHAOTIC, _LESS, 10.0),
-    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.LAST_LEAVER, _ABOUT, 3.5e6, remark=_ACCIDENT),
-    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.NEAREST_LEAVER, _ABOUT, 851e3, (2,), remark=_ACCIDENT),
+    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.LAST_ESCAPE, _ABOUT, 3.5e6, remark=_ACCIDENT),
+    StatedNumber("III", _X_PX, (0.26,), "0.26", Quantity.NEAREST_ESCAPE, _ABOUT, 851e3, (2,), remark=_ACCIDENT),
     StatedNumber("III", _X_Y, (0.26,), "0.26", Quantity.LYAPUNOV_R2, _ABOUT, 1.26, remark=_LYAPUNOV),
 )
 
 STATED_NUMBERS: tuple[StatedNumber, ...] = (*_CASE_I, *_CASE_II, *_CASE_III)
-"""All of them, case by case; shares of a third are written in full, and "the rest" as what is left of 100.
+"""All stated numbers, by case; a third is 100/3, and "the rest" is the remainder to 100.
 
-The fits of Ne/N0 and Nde/N0 are `engine.PAPER_FITS`. Of dN_n and p_n the text states no number.
+The fits of Ne/N0 and Nde/N0 are `engine.PAPER_FITS`. The text states no numbers for dN_n and p_n.
 """

@@ -1,4 +1,4 @@
-"""The statistics of the paper, in four panels: who escapes, who does so directly, and after how many crossings."""
+"""Statistics of the paper in four panels: escapes, direct escapes, and escapes by number of crossings."""
 
 from __future__ import annotations
 
@@ -10,28 +10,29 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from app.rendering.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares, tabulate_crossing_statistics
 from reproduction.map_shelf import MapShelf
+from reproduction.notation import PLANES
 from reproduction.paper_ranges import nine_energies
-from reproduction.printing import PLANES, add_panel_key, label_axes, name_panels, new_figure, tidy_axes
 
 Curve = Callable[[Any], Any]
 """A share against energy."""
 
 MOST_CROSSINGS = 40
-"""Where the axis of crossings ends; what leaves later is a tail of single orbits."""
+"""Upper end of the axis of crossings; only few orbits escape later."""
 
 FEWEST_REMAINING = 50
-"""Starts that must remain for p_n to be drawn: with fewer it is an accident of the grid."""
+"""Minimal number of remaining starts for which p_n is drawn; with fewer it depends on the grid."""
 
-# The part of the scale of escape times that can be told from white and from black.
+# Part of the colour scale of escape times that differs from white and black.
 _LIGHTEST, _DARKEST = 50, 255
 _SAMPLES = 400
 
 
 def draw_statistics(case: str, shelf: MapShelf) -> Figure:
-    """Ne/N0 and Nde/N0 against h with the paper's fits and ours; dN_n/N0 and p_n against n."""
+    """Ne/N0 and Nde/N0 against h with the paper's fits and new ones; dN_n/N0 and p_n against n."""
     figure = new_figure(11.4, 8.6, f"Case {case}, {PLANES[Plane.X_PX]} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = shelf.curves(case, Plane.X_PX)
@@ -55,15 +56,14 @@ def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: Curve, own:
     axes.plot(h, shares, "o", color=MEASURED, markersize=3.6, label="computed")
     axes.plot(fine, paper(fine), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
     if own is not None:
-        axes.plot(fine, own(fine), color=LIGHT.text, linewidth=1.2, label="our fit")
+        axes.plot(fine, own(fine), color=LIGHT.text, linewidth=1.2, label="this fit")
     axes.set_xlim(h[0], h[-1])
-    axes.grid(alpha=0.25, linewidth=0.5)
-    tidy_axes(axes)
-    add_panel_key(axes, "lower right")
+    style_axes(axes, grid=True)
+    add_panel_legend(axes, "lower right")
 
 
 def _draw_crossings(shares: Axes, chances: Axes, table: xr.Dataset) -> None:
-    """Both panels against n, one line an energy: the slower, the darker."""
+    """Both panels against n, one line per energy; lower energies are darker."""
     energies, n = table["h"].values.tolist(), table["n"].values
     places = np.linspace(_DARKEST, _LIGHTEST, len(energies)).astype(int)
     for energy, place in zip(energies, places, strict=True):
@@ -78,6 +78,5 @@ def _draw_crossings(shares: Axes, chances: Axes, table: xr.Dataset) -> None:
     label_axes(chances, "$n$", "$p_n$")
     for axes in (shares, chances):
         axes.set_xlim(-0.5, MOST_CROSSINGS + 0.5)
-        axes.grid(alpha=0.25, linewidth=0.5)
-        tidy_axes(axes)
-    add_panel_key(shares, "upper right", columns=3)
+        style_axes(axes, grid=True)
+    add_panel_legend(shares, "upper right", columns=3)

@@ -1,4 +1,4 @@
-"""Case III near its escape energy: regular and chaotic bounded orbits, and one that leaves after all."""
+"""Case III near its escape energy: regular and chaotic bounded orbits, and a super-sticky orbit."""
 
 from __future__ import annotations
 
@@ -8,90 +8,87 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.palette import MEASURED, PAPER, THRESHOLD
-from engine import Plane, RadiusEnvelope, SuperStickySearch, compute_radius_envelope, find_lyapunov_orbits
-from reproduction.map_panels import draw_limits, draw_map, show_window
-from reproduction.map_shelf import MapShelf
-from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
-from reproduction.printing import (
-    PLANES,
-    add_key,
-    add_panel_key,
+from app.rendering.figure_axes import (
+    add_figure_legend,
+    add_panel_legend,
     label_axes,
-    limiting_lines,
     name_panels,
     new_figure,
     patches,
-    tidy_axes,
+    style_axes,
 )
+from app.rendering.map_analyses import MapAnalyses
+from app.rendering.palette import MEASURED, PAPER, THRESHOLD
+from engine import Plane, RadiusEnvelope, SuperStickySearch, compute_radius_envelope, find_lyapunov_orbits
+from reproduction.map_figures import draw_map_panel
+from reproduction.map_shelf import MapShelf
+from reproduction.notation import PLANES
+from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 
 LONGEST_DRAWN = 4e6
-"""The latest escape of an orbit that is drawn: to follow it takes a second for each 1e5 time units."""
+"""Latest escape time of a drawn orbit; the integration takes a second per 1e5 time units."""
 
-# Times at which R² is known by its least and greatest value between them, for the page to thin out.
+# Intervals of time for which the minimum and the maximum of R² are computed, and of those that are drawn.
 _INTERVALS = 100_000
 _ACROSS = 2000
-# The last part of the way, in which one sees it come loose: a share of all.
+# Share of the time that the second panel shows, before the escape.
 _LAST = 0.01
 _TIME_UNIT = 1e5
-# How far the axis of R² goes beyond the exits: there is room for the key.
+# Upper end of the axis of R² in units of its value at the exits; leaves room for the legend.
 _ABOVE = 1.4
 
 
 def draw_characters(shelf: MapShelf) -> Figure:
-    """The plane (x, px): regular cyan, chaotic magenta, escaping white."""
+    """Bounded orbits on (x, px): regular cyan, chaotic magenta, escaping white."""
     frame = shelf.map(STICKY_CASE, Plane.X_PX, STICKY_ENERGY)
-    regularity = shelf.judged(frame)
+    regularity = shelf.regularity(frame)
     title = f"Case {STICKY_CASE}, {PLANES[Plane.X_PX]} plane, $h = {STICKY_ENERGY}$: bounded orbits"
     figure = new_figure(6.8, 7.2, title, equal=True)
     axes = figure.subplots()
-    draw_map(axes, frame, "characters", findings=MapAnalyses(regularity=regularity))
-    draw_limits(axes, frame, frame.spec.window)
-    show_window(axes, Plane.X_PX, frame.spec.window)
-    add_key(figure, [*patches(PAPER.character_entries[1:3]), *limiting_lines(Plane.X_PX)])
+    draw_map_panel(axes, frame, "characters", frame.spec.window, analyses=MapAnalyses(regularity=regularity))
+    add_figure_legend(figure, [*patches(PAPER.character_entries[1:3]), *axes.collections])
     return figure
 
 
 def draw_super_sticky(shelf: MapShelf) -> Figure:
-    """R²(t) of an orbit that is bounded for the paper's 1e5 time units and leaves long after: all of it, and its end."""
-    hunt = shelf.hunt()
-    orbit = _follow_late_orbit(hunt, shelf)
-    figure = new_figure(11.4, 4.8, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(hunt, orbit)}")
+    """R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
+    search = shelf.super_sticky()
+    orbit = _follow_late_orbit(search, shelf)
+    figure = new_figure(11.4, 4.8, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, orbit)}")
     panels = list(figure.subplots(1, 2, sharey=True, width_ratios=(2, 1)))
     if orbit is not None:
-        _draw_history(panels[0], orbit, hunt.spec.t_max)
+        _draw_history(panels[0], orbit, search.spec.t_max)
         _draw_departure(panels[1], orbit)
     for axes in panels:
-        _draw_exits(axes, hunt)
-        tidy_axes(axes)
+        _draw_exits(axes, search)
+        style_axes(axes)
     label_axes(panels[0], "$t / 10^5$", "$R^2 = x^2 + y^2$")
     label_axes(panels[1], r"$t - t_{\mathrm{esc}}$", "")
-    name_panels(panels, ["from the start to the escape", "the last hundredth of the way"])
-    add_panel_key(panels[0], "upper right")
+    name_panels(panels, ["from the start to the escape", "the last hundredth of the time"])
+    add_panel_legend(panels[0], "upper right")
     return figure
 
 
-def find_shown(hunt: SuperStickySearch) -> int | None:
-    """The place in a hunt of the orbit to draw: the last to leave by `LONGEST_DRAWN`, else the first; None when none leaves."""
-    leavers = hunt.leavers
-    if not leavers.size:
+def find_shown(search: SuperStickySearch) -> int | None:
+    """Index of the orbit to draw: the last to escape by `LONGEST_DRAWN`, else the first to escape; None if none escapes."""
+    escapers = search.escapers
+    if not escapers.size:
         return None
-    early = leavers[hunt.escape_time[leavers] <= LONGEST_DRAWN]
-    return int(early[-1] if early.size else leavers[0])
+    early = escapers[search.escape_time[escapers] <= LONGEST_DRAWN]
+    return int(early[-1] if early.size else escapers[0])
 
 
-def _follow_late_orbit(hunt: SuperStickySearch, shelf: MapShelf) -> RadiusEnvelope | None:
-    place = find_shown(hunt)
+def _follow_late_orbit(search: SuperStickySearch, shelf: MapShelf) -> RadiusEnvelope | None:
+    place = find_shown(search)
     if place is None:
         return None
-    return compute_radius_envelope(hunt.spec.potential, hunt.states[place], hunt.t_max, _INTERVALS, cancel=shelf.cancel)
+    return compute_radius_envelope(search.spec.potential, search.states[place], search.t_max, _INTERVALS, cancel=shelf.cancel)
 
 
-def _describe(hunt: SuperStickySearch, orbit: RadiusEnvelope | None) -> str:
+def _describe(search: SuperStickySearch, orbit: RadiusEnvelope | None) -> str:
     if orbit is None:
-        return f"no chaotic orbit of this map leaves by {hunt.t_max / 1e6:g} million time units"
-    return f"an orbit that leaves through channel {orbit.fate} at $t = {orbit.escape_time:.0f}$"
+        return f"no chaotic orbit of this map escapes by {search.t_max / 1e6:g} million time units"
+    return f"an orbit that escapes through channel {orbit.fate} at $t = {orbit.escape_time:.0f}$"
 
 
 def _draw_history(axes: Axes, orbit: RadiusEnvelope, t_max: float) -> None:
@@ -110,15 +107,15 @@ def _draw_departure(axes: Axes, orbit: RadiusEnvelope) -> None:
 
 
 def _draw_band(axes: Axes, ends: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
-    """The least and greatest R² between each two ends."""
+    """Minimum and maximum of R² in each interval."""
     least, greatest = (np.append(side, side[-1]) for side in (low, high))
     axes.fill_between(ends, least, greatest, step="post", color=MEASURED, linewidth=0.2)
 
 
-def _draw_exits(axes: Axes, hunt: SuperStickySearch) -> None:
-    """The band that the Lyapunov orbits span."""
-    assert not isinstance(hunt.spec.energy, tuple)
-    orbits = find_lyapunov_orbits(hunt.spec.potential, hunt.spec.energy)
+def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:
+    """Range of R² on the Lyapunov orbits."""
+    assert not isinstance(search.spec.energy, tuple)
+    orbits = find_lyapunov_orbits(search.spec.potential, search.spec.energy)
     distances = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
     low, high = float(distances.min()), float(distances.max())
     label = f"Lyapunov orbits, $R^2 = {low:.3f}$ to ${high:.3f}$"

@@ -1,4 +1,4 @@
-"""How long starts survive: S(t) with an exponential law and a power law."""
+"""Share S(t) of starts that have not escaped, with an exponential law and a power law."""
 
 from __future__ import annotations
 
@@ -6,21 +6,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from app.rendering.palette import LAW_COLOURS, MEASURED
 from engine import DecayLaws, LawFit, Plane, compute_statistics, fit_decay_laws
 from reproduction.map_shelf import MapShelf
+from reproduction.notation import PLANES
 from reproduction.paper_ranges import three_energies
-from reproduction.printing import PLANES, add_panel_key, label_axes, name_panels, new_figure, tidy_axes
 
 _SAMPLES = 300
-# Where more than this share stays, the curve is in the upper half of its panel.
+# If more than this share remains, the curve is in the upper half of its panel.
 _MOST_STAY = 0.4
 _SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
 _DASHES = {"exponential": "--", "power law": "-."}
 
 
 def draw_survival(case: str, shelf: MapShelf) -> Figure:
-    """A panel an energy, on (x, px)."""
+    """One panel per energy, on (x, px)."""
     energies = three_energies(case)
     figure = new_figure(12.6, 4.6, f"Case {case}, {PLANES[Plane.X_PX]} plane: share of the starts not yet escaped")
     panels = list(figure.subplots(1, len(energies), sharex=True))
@@ -43,16 +44,15 @@ def _draw_laws(axes: Axes, laws: DecayLaws, t_max: float) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(1.0, t_max)
-    # At least a decade: else there is no number on the axis.
+    # At least a decade, so that the axis has labels.
     axes.set_ylim(10.0 ** np.floor(np.log10(0.99 * steps[positive].min())), 1.4)
-    axes.grid(alpha=0.25, linewidth=0.5)
-    tidy_axes(axes)
-    add_panel_key(axes, "lower left" if steps[-1] > _MOST_STAY else "upper right")
+    style_axes(axes, grid=True)
+    add_panel_legend(axes, "lower left" if steps[-1] > _MOST_STAY else "upper right")
 
 
 def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
     name = str(fit.law)
-    label = f"{name}, ${_SYMBOLS[name]} = {_written(fit.rate)}$" + (" (holds)" if preferred else "")
+    label = f"{name}, ${_SYMBOLS[name]} = {_mathtext(fit.rate)}$" + (" (preferred)" if preferred else "")
     t = np.geomspace(fit.t_low, fit.t_high, _SAMPLES)
     curve = fit.curve(t)
     axes.plot(
@@ -60,7 +60,7 @@ def _draw_law(axes: Axes, fit: LawFit, *, preferred: bool) -> None:
     )
 
 
-def _written(number: float) -> str:
-    """Three digits, with a power of ten where it is small."""
+def _mathtext(number: float) -> str:
+    """Number to three digits, with a power of ten if it is small or large."""
     digits, _, power = f"{number:.2e}".partition("e")
     return f"{number:.3g}" if abs(int(power)) < 3 else rf"{digits} \times 10^{{{int(power)}}}"

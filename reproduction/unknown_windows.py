@@ -1,7 +1,7 @@
-"""Which window would explain percentages whose window is not stated.
+"""Estimate of the windows that the paper does not state.
 
-Starts outside count as escaped at once through the channel they lie in; how many there are, the window decides. The paper's text
-gives none, so we look for the square about the origin that comes nearest to what it states.
+Starts outside count as immediate escapes through the channel they lie in, and their number depends on the window. `fit_window`
+finds the square centred on the origin that best explains the stated percentages.
 """
 
 from __future__ import annotations
@@ -15,29 +15,29 @@ from engine import EscapeMap, Fate, MapSpec, Window, compute_map
 from reproduction.map_shelf import MapShelf
 
 LARGEST_HALF_SIDE = 3.0
-"""Of the windows tried: some three times as wide as the interior."""
+"""Largest half side of the windows tried, about three times that of the interior."""
 
 STEP = 0.05
-"""From one window to the next."""
+"""Step between the half sides of windows."""
 
-# Fine enough for shares of areas to a few tenths of a point.
+# Resolution for shares of areas to a few tenths of a percentage point.
 _SIDE = 400
-# So short that no orbit goes anywhere: what is wanted is where starts lie.
+# Integration time close to 0: only the positions of starts are needed.
 _INSTANT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class FittedWindow:
-    """The window that explains stated percentages best.
+    """Window that best explains stated percentages.
 
     Attributes
     ----------
     window
-        The window; a square about the origin, or one whose right edge is moved.
+        The window; a square centred on the origin, or one with another right edge.
     outside_share
-        Share of its starts that lie outside.
+        Share of its starts that are outside.
     counted
-        The map in it; its percentages are those with `count_outside`.
+        The map of the window; its percentages are those with `count_outside`.
     """
 
     window: Window
@@ -46,11 +46,11 @@ class FittedWindow:
 
     @property
     def half_side(self) -> float:
-        """It reaches from −half_side to half_side along both axes, but for the right edge."""
+        """Half side: the window extends from −half_side to half_side along both axes, except for its right edge."""
         return self.window.ordinate_high
 
     def share(self, codes: tuple[int, ...]) -> float:
-        """Percentage of the starts with one of these fates, outside ones counted."""
+        """Percentage of the starts with one of these fates, including starts outside."""
         fractions = self.counted.fractions(count_outside=True)
         return 100.0 * sum(fractions[code] for code in codes)
 
@@ -58,25 +58,25 @@ class FittedWindow:
 def fit_window(
     shelf: MapShelf, case: str, interior: EscapeMap, stated: Mapping[tuple[int, ...], float], enough: float
 ) -> FittedWindow:
-    """Find the square for which the largest difference from what is stated is least.
+    """Find the square with the smallest maximal difference from the stated percentages.
 
-    Where that is not good enough, the right edge may lie elsewhere: in II the interior reaches furthest to the right, and so may
-    the paper's pictures. More freedom than this would explain anything.
+    If no square is good enough, the right edge is fitted, too: in II the interior, and perhaps the paper's figures, extend
+    furthest to the right. More free parameters would fit any percentages.
 
     Parameters
     ----------
     shelf
-        Gives the map in the window.
+        Source of the map in the window.
     case
-        Of `engine.CASES`.
+        Key of `engine.CASES`.
     interior
-        The map of the interior at this energy, on this plane.
+        Map of the interior.
     stated
-        Percentages by the fates that they are of, `Fate.BOUNDED` or channels.
+        Percentages by the fates that they count, `Fate.BOUNDED` or channels.
     enough
-        The largest difference, in points, with which a square is good enough; also what another window must reach.
+        Largest acceptable difference, in percentage points.
     """
-    outside, spec = _Outside.found(interior.spec), interior.spec
+    outside, spec = _Outside.of(interior.spec), interior.spec
     sides = _edges(max(-spec.window.x_low, spec.window.x_high, -spec.window.ordinate_low, spec.window.ordinate_high))
     squares = [Window(-side, side, -side, side) for side in sides]
     best, difference = _best(squares, outside, interior.fractions(), stated)
@@ -92,7 +92,7 @@ def fit_window(
 
 @dataclass(frozen=True, eq=False)
 class _Outside:
-    """On a fine grid: how many starts lie inside, and of each that lies outside the channel and the place."""
+    """Number of starts inside, and channel and position of each start outside, on a fine grid."""
 
     inside: int
     channel: np.ndarray
@@ -100,7 +100,7 @@ class _Outside:
     ordinate: np.ndarray
 
     @classmethod
-    def found(cls, spec: MapSpec) -> _Outside:
+    def of(cls, spec: MapSpec) -> _Outside:
         square = Window(-LARGEST_HALF_SIDE, LARGEST_HALF_SIDE, -LARGEST_HALF_SIDE, LARGEST_HALF_SIDE)
         wide = compute_map(replace(spec, resolution=(_SIDE, _SIDE), window=square, t_max=_INSTANT, certify=False))
         rows, columns = np.nonzero(wide.fate == Fate.OUTSIDE)
@@ -108,14 +108,14 @@ class _Outside:
         return cls(int(np.count_nonzero(wide.interior)), channel, wide.x[columns], wide.ordinate[rows])
 
     def count(self, window: Window) -> np.ndarray:
-        """(channels + 1,) how many of them lie in a window, by channel; entry 0 is 0."""
-        held = (self.x >= window.x_low) & (self.x <= window.x_high) & (np.abs(self.ordinate) <= window.ordinate_high)
-        counts: np.ndarray = np.bincount(self.channel[held], minlength=int(self.channel.max(initial=0)) + 1)
+        """(channels + 1,) number of starts outside in a window by channel; entry 0 is 0."""
+        contained = (self.x >= window.x_low) & (self.x <= window.x_high) & (np.abs(self.ordinate) <= window.ordinate_high)
+        counts: np.ndarray = np.bincount(self.channel[contained], minlength=int(self.channel.max(initial=0)) + 1)
         return counts
 
 
 def _edges(least: float) -> list[float]:
-    """From the first step that holds the interior on."""
+    """Multiples of `STEP` from the smallest that contains the interior."""
     steps = np.arange(np.ceil(least / STEP), round(LARGEST_HALF_SIDE / STEP) + 1)
     edges: list[float] = (STEP * steps).round(6).tolist()
     return edges
@@ -124,7 +124,7 @@ def _edges(least: float) -> list[float]:
 def _best(
     windows: Sequence[Window], outside: _Outside, fractions: Mapping[int, float], stated: Mapping[tuple[int, ...], float]
 ) -> tuple[Window, float]:
-    """The window with the least largest difference, and this."""
+    """Window with the smallest maximal difference, and this difference."""
     differences = [_largest_difference(outside.count(window), outside.inside, fractions, stated) for window in windows]
     place = int(np.argmin(differences))
     return windows[place], differences[place]

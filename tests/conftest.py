@@ -1,4 +1,4 @@
-"""What every test may rely on: random inputs that are the same in every run, and one browser for all that want one."""
+"""Shared configuration: reproducible Hypothesis inputs, and one Chromium for all browser tests of a process."""
 
 from __future__ import annotations
 
@@ -10,23 +10,24 @@ import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
 
-PATIENCE_MS = 30_000
-NAMES = ("chromium", "chromium-browser", "google-chrome")
+TIMEOUT_MS = 30_000
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
-settings.register_profile("same-every-run", derandomize=True, deadline=None, max_examples=60, database=None)
-settings.load_profile("same-every-run")
+settings.register_profile("reproducible", derandomize=True, deadline=None, max_examples=60, database=None)
+settings.load_profile("reproducible")
 
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
-    path = next(filter(None, map(shutil.which, NAMES)), None)
+    """A running Chromium; without one, browser tests are skipped, or fail in CI."""
+    path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
-        message = f"no browser: none of {', '.join(NAMES)} is on PATH (Debian: apt-get install chromium)"
+        message = f"no browser: none of {', '.join(BROWSERS)} is on PATH (Debian: apt-get install chromium)"
         if os.environ.get("CI"):
             pytest.fail(message)
         pytest.skip(message)
     playwright: Playwright
-    expect.set_options(timeout=PATIENCE_MS)
+    expect.set_options(timeout=TIMEOUT_MS)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield browser

@@ -1,4 +1,4 @@
-"""The examples run as they are, write what they say, and tell numbers that make sense."""
+"""The examples run as scripts, open as notebooks, write their files and print plausible numbers."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ NUMBER = r"[-+]?[\d.]+(?:e[-+]?\d+)?"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the example was run."""
+    """Working directory of the example."""
     return tmp_path_factory.mktemp("case-three")
 
 
 @pytest.fixture(scope="module")
-def said(folder: Path) -> str:
-    """What it printed."""
+def output(folder: Path) -> str:
+    """Standard output of the example."""
     run = subprocess.run(
-        [sys.executable, "-W", "error", str(ROOT / "examples" / "a_day_with_case_three.py")],
+        [sys.executable, "-W", "error", str(ROOT / "examples" / "case_three.py")],
         cwd=folder, env={**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)},
         capture_output=True, text=True, timeout=600, check=False,
     )  # fmt: skip
@@ -39,61 +39,61 @@ def said(folder: Path) -> str:
     return run.stdout
 
 
-def numbers(said: str, pattern: str) -> list[float]:
-    """The numbers that stand in the places marked # of a line."""
-    line = re.search(re.escape(pattern).replace(r"\#", f"({NUMBER})"), said)
+def numbers(output: str, pattern: str) -> list[float]:
+    """The numbers in a line of the output, at the places marked # in the pattern."""
+    line = re.search(re.escape(pattern).replace(r"\#", f"({NUMBER})"), output)
     assert line, pattern
     return [float(number) for number in line.groups()]
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
-def test_it_opens_as_a_notebook_with_prose_before_every_cell_of_code(example: Path) -> None:
+def test_example_is_a_notebook_with_text_before_every_code_cell(example: Path) -> None:
     cells = re.split(r"^# %%", example.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]
-    kinds = ["prose" if cell.startswith(" [markdown]\n") else "code" for cell in cells]
-    assert kinds[0] == "prose"
+    kinds = ["text" if cell.startswith(" [markdown]\n") else "code" for cell in cells]
+    assert kinds[0] == "text"
     assert kinds.count("code") >= 5
     assert not any(pair == ("code", "code") for pair in pairwise(kinds))
     for cell, kind in zip(cells, kinds, strict=True):
-        if kind == "prose":
+        if kind == "text":
             assert all(line.startswith("#") for line in cell.splitlines()[1:] if line)
 
 
 @pytest.mark.slow
 class TestCaseThree:
-    def test_its_shares_add_up_and_mirror_images_are_equal(self, said: str) -> None:
-        channels = [numbers(said, f"channel {k}: #")[0] for k in range(1, 5)]
-        assert sum(channels) + numbers(said, "bounded: #")[0] == pytest.approx(1.0, abs=3e-4)
+    def test_shares_sum_to_one_and_respect_the_symmetry(self, output: str) -> None:
+        channels = [numbers(output, f"channel {k}: #")[0] for k in range(1, 5)]
+        assert sum(channels) + numbers(output, "bounded: #")[0] == pytest.approx(1.0, abs=3e-4)
         assert channels[0] == channels[1] > channels[2] == channels[3] > 0.0
-        assert numbers(said, "worst energy error: #")[0] < 1e-10
+        assert numbers(output, "worst energy error: #")[0] < 1e-10
 
-    def test_sali_tells_its_two_orbits_apart(self, said: str) -> None:
-        assert numbers(said, "bounded orbit: SALI #")[0] > 0.1
-        assert numbers(said, "late orbit: SALI #")[0] < 1e-7
+    def test_sali_distinguishes_the_two_orbits(self, output: str) -> None:
+        assert numbers(output, "bounded orbit: SALI #")[0] > 0.1
+        assert numbers(output, "late orbit: SALI #")[0] < 1e-7
 
-    def test_shares_of_pixels_are_shares(self, said: str) -> None:
+    def test_chaotic_and_doubtful_shares_are_between_0_and_a_half(self, output: str) -> None:
         for pattern in ("chaotic among the bounded: #", "doubtful pixels: #"):
-            assert 0.0 < numbers(said, pattern)[0] < 0.5
+            assert 0.0 < numbers(output, pattern)[0] < 0.5
 
-    def test_the_papers_fit_is_near_the_counts_and_ours_nearer(self, said: str) -> None:
-        rms = [float(value) for value in re.findall(rf"({NUMBER}) points root mean square", said)]
+    def test_new_fit_is_closer_to_the_counts_than_the_published_one(self, output: str) -> None:
+        rms = [float(value) for value in re.findall(rf"root mean square of ({NUMBER})", output)]
         assert len(rms) == 2
         assert 0.0 < rms[1] < rms[0] < 10.0
 
-    def test_basin_entropies_stay_below_that_of_five_equal_fates(self, said: str) -> None:
-        found = [(float(a), float(b)) for a, b in re.findall(rf"S_b ({NUMBER}), S_bb ({NUMBER})", said)]
+    def test_basin_entropies_are_below_the_maximum_of_five_fates(self, output: str) -> None:
+        found = [(float(a), float(b)) for a, b in re.findall(rf"S_b ({NUMBER}), S_bb ({NUMBER})", output)]
         assert len(found) == 9
         assert all(0.0 < s_b < s_bb < np.log(5.0) for s_b, s_bb in found)
 
-    def test_the_file_holds_the_map(self, said: str, folder: Path) -> None:
-        assert "read back: h = 0.36" in said
+    def test_netcdf_contains_the_map(self, output: str, folder: Path) -> None:
+        assert "loaded: h = 0.36" in output
         wanted = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.36, (120, 120), t_max=1e4))
         with xr.open_dataset(folder / "case-three.nc", engine="h5netcdf") as found:
             np.testing.assert_array_equal(found["fate"], wanted.fate)
             assert found.attrs["potential"] == CASES["III"].name
 
-    @pytest.mark.usefixtures("said")
+    @pytest.mark.usefixtures("output")
     @pytest.mark.parametrize("name", ["orbits", "against-energy", "basins"])
-    def test_its_pictures_show_something(self, folder: Path, name: str) -> None:
+    def test_pictures_are_not_empty(self, folder: Path, name: str) -> None:
         with Image.open(folder / f"{name}.png") as picture:
             assert min(picture.size) > 400
             colours = picture.convert("RGB").getcolors(maxcolors=picture.width * picture.height)

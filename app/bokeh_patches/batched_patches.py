@@ -1,11 +1,11 @@
-"""All that one callback changes on a page, sent as one message.
+"""Send all changes that one callback makes to a document as one message.
 
-Bokeh sends a message for each change, and goes through all models of the page for each message: the first frame of a map is 17
-changes, 16 ms of work as many messages and 3 ms as one; and the browser paints once. The protocol has room for any number of
-changes in a message.
+Replaces ``bokeh.server.session.ServerSession._send_pending_patches``, which sends one message per change and collects all
+models of the document for each: the first frame of a map has 17 changes, 16 ms of work as separate messages and 3 ms as
+one, and the browser then paints once. The protocol allows any number of changes in a message. Bokeh also serializes in a
+thread and waits for it, which gains nothing while threads compete for the interpreter lock.
 
-Bokeh also hands the writing of them to a thread and waits for it, which gains nothing where Python's lock is what everybody waits
-for.
+The change for upstream is ``batched_patches.patch``.
 """
 
 from __future__ import annotations
@@ -18,31 +18,29 @@ from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
 from bokeh.server.session import ServerSession
 
-from app.bokeh_patches.own_ways import put_in_place
+
+def batch_patches() -> None:
+    """Replace Bokeh's function in this process."""
+    ServerSession._send_pending_patches = _send_pending_patches
 
 
-def send_changes_together() -> None:
-    """From now on, in this process."""
-    put_in_place(ServerSession, "_send_pending_patches", _send)
-
-
-async def _send(session: ServerSession, pending: Sequence[Any]) -> None:
-    for message, connections in serialize_together(pending):
+async def _send_pending_patches(session: ServerSession, pending: Sequence[Any]) -> None:
+    for message, connections in serialize_batches(pending):
         for connection in connections:
             await connection.send_message(message)
 
 
-def serialize_together(pending: Sequence[Any]) -> list[tuple[Any, Any]]:
-    """One message for each run of changes to the same page that go to the same connections, in their order.
+def serialize_batches(pending: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """Serialize consecutive changes of the same document for the same connections into one message each.
 
     Parameters
     ----------
     pending
-        Bokeh's pending patches: each an event, a protocol and connections.
+        Bokeh's pending patches; each has an event, a protocol and connections.
 
     Returns
     -------
-    Pairs of a message, ready to be sent, and the connections it goes to.
+    Pairs of a prepared message and its connections, in order.
     """
     runs = itertools.groupby(pending, key=lambda patch: (id(patch.event.document), patch.connections))
     return [_serialize([*patches]) for _, patches in runs]

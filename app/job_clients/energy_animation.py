@@ -1,4 +1,4 @@
-"""The energy, played: a sweep upward through the slider's range, one quick look after the other."""
+"""Animation of the energy: previews at rising energies through the range of the slider."""
 
 from __future__ import annotations
 
@@ -6,34 +6,34 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 SWEEP_SECONDS = 20.0
-"""A sweep over the whole range lasts this long, or longer where quick looks take their time."""
+"""Duration of an animation over the whole range, longer if previews are slow."""
 
 TICK_MS = 80
 
 
 class Timer(Protocol):
-    """What calls back in time: a Bokeh document."""
+    """Calls back periodically: a Bokeh document."""
 
     def add_periodic_callback(self, callback: Callable[[], None], period_milliseconds: int) -> Any:
-        """Call again and again."""
+        """Start periodic calls."""
 
     def remove_periodic_callback(self, callback_obj: Any) -> None:
-        """Call no more."""
+        """Stop periodic calls."""
 
 
 class EnergyAnimation:
-    """Plays from an energy to the end of the range, and from its beginning when it stands at the end.
+    """Raises the energy to the end of the range; from the start of the range if it is at the end.
 
     Parameters
     ----------
     timer
         The session's document.
     is_busy
-        Whether the last energy is still being drawn: then a tick is left out.
+        Whether the preview of the last energy is not finished; the tick is then skipped.
     on_energy
-        Called with each energy in turn.
+        Called with each energy.
     on_stop
-        Called with the last one.
+        Called with the last energy.
     """
 
     def __init__(
@@ -45,11 +45,11 @@ class EnergyAnimation:
 
     @property
     def playing(self) -> bool:
-        """Whether it runs."""
+        """Whether the animation runs."""
         return self._callback is not None
 
     def start(self, energy: float, low: float, high: float) -> None:
-        """Play from an energy on."""
+        """Start at an energy; no effect while it runs."""
         if self.playing:
             return
         self._energy = energy if low <= energy < high else low
@@ -57,7 +57,7 @@ class EnergyAnimation:
         self._callback = self._timer.add_periodic_callback(self._tick, TICK_MS)
 
     def stop(self) -> None:
-        """Stay where it is."""
+        """Stop at the current energy."""
         if self.playing:
             self._timer.remove_periodic_callback(self._callback)
             self._callback = None

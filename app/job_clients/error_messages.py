@@ -1,4 +1,4 @@
-"""What a person may read of an error; the rest goes to the log."""
+"""Error messages for the page; details go to the log."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ log = logging.getLogger(__name__)
 
 
 def sentence(error: Exception) -> str:
-    """The error's own words where it was written for people, else a word that the log knows more."""
+    """Message of a ValueError, which is written for users; for other errors a reference to the log, where they are logged."""
     if isinstance(error, ValueError):
         return str(error)
     log.error("a job failed", exc_info=error)
@@ -16,5 +16,5 @@ def sentence(error: Exception) -> str:
 
 
 def as_markdown(text: str) -> str:
-    """A text as Markdown that shows it as it is: whatever might be markup, of Markdown or of HTML, is written as a number."""
-    return "".join(one if one.isalnum() or one in " .,:;=…" else f"&#{ord(one)};" for one in text)
+    """Escape a text for Markdown: characters that Markdown or HTML may interpret become character references."""
+    return "".join(c if c.isalnum() or c in " .,:;=…" else f"&#{ord(c)};" for c in text)

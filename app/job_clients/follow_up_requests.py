@@ -1,4 +1,4 @@
-"""Second looks: what is asked about a map once it is whole, again for each new one, while the view wants it."""
+"""Follow-up analyses: requested for each complete map while the view state asks for them."""
 
 from __future__ import annotations
 
@@ -10,55 +10,55 @@ from typing import Any
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.view_state import ViewState
-from engine import EscapeMap, JobRequest, Requests
+from engine import EscapeMap, JobRequest, JobSubmitter
 
 
 @dataclass(frozen=True, eq=False)
 class FollowUp:
-    """One question about a whole map.
+    """One follow-up analysis.
 
     Attributes
     ----------
-    ask
-        The request to make about a map; None where there is nothing to ask.
+    request
+        Returns the request for a complete map; None if the analysis is not wanted.
     show
-        Called with the map and the answer, more than once where it grows.
+        Called with the map and each result, partial results included.
     watched
-        Names of what it depends on in the view state; a change asks anew.
+        Attributes of the view state that the request depends on.
     """
 
-    ask: Callable[[EscapeMap], JobRequest[Any] | None]
+    request: Callable[[EscapeMap], JobRequest[Any] | None]
     show: Callable[[EscapeMap, Any], None]
     watched: Sequence[str] = ()
 
 
 class FollowUpRequests:
-    """One session's second looks; `fail(sentence)` hears what went wrong, under the session's lock like `show`."""
+    """Follow-up analyses of one session; `fail(sentence)` reports errors, under the session's lock like `show`."""
 
     def __init__(
-        self, state: ViewState, jobs: Requests, looks: Sequence[FollowUp], fail: Callable[[str], None], locked: Locked
+        self, state: ViewState, jobs: JobSubmitter, follow_ups: Sequence[FollowUp], fail: Callable[[str], None], locked: Locked
     ) -> None:
         self._frame: EscapeMap | None = None
-        self._requests = [(look, LatestRequest(jobs, partial(self._show, look), fail, locked)) for look in looks]
-        for look, request in self._requests:
-            if look.watched:
-                state.param.watch(partial(self._look, look, request), list(look.watched))
+        self._requests = [(one, LatestRequest(jobs, partial(self._show, one), fail, locked)) for one in follow_ups]
+        for follow_up, request in self._requests:
+            if follow_up.watched:
+                state.param.watch(partial(self._update, follow_up, request), list(follow_up.watched))
 
     def follow(self, frame: EscapeMap | None) -> None:
-        """Ask about this whole map; None to ask nothing, and to hear no more of the last one."""
+        """Analyse this complete map; None cancels the analyses of the last one."""
         self._frame = frame
-        for look, request in self._requests:
+        for follow_up, request in self._requests:
             request.cancel()
-            self._look(look, request)
+            self._update(follow_up, request)
 
-    def _look(self, look: FollowUp, request: LatestRequest, *_: Any) -> None:
-        spec = look.ask(self._frame) if self._frame is not None else None
+    def _update(self, follow_up: FollowUp, request: LatestRequest, *_: Any) -> None:
+        spec = follow_up.request(self._frame) if self._frame is not None else None
         if spec is None:
             request.cancel()
         else:
-            request.ask(spec)
+            request.submit(spec)
 
-    def _show(self, look: FollowUp, answer: Any) -> None:
-        # Requests are cancelled with the map that they are about.
+    def _show(self, follow_up: FollowUp, result: Any) -> None:
+        # Requests are cancelled together with their map.
         assert self._frame is not None
-        look.show(self._frame, answer)
+        follow_up.show(self._frame, result)

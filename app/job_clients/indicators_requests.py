@@ -1,4 +1,4 @@
-"""The chaos indicators of the orbit that is looked at; those that need more than its own history are asked for."""
+"""Chaos indicators of the chosen orbit; Birkhoff digits, which need more than its history, are requested."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, BirkhoffDigitsRequest, Fate, IndicatorVerdict, Orbit, Requests, evaluate_indicators
+from engine import BirkhoffDigits, BirkhoffDigitsRequest, Fate, IndicatorVerdict, JobSubmitter, Orbit, evaluate_indicators
 
 
 class IndicatorsRequests:
-    """One session's verdicts; `show(verdicts)` is told what each indicator says, empty for no orbit."""
+    """Indicators of one session; `show(verdicts)` receives one verdict per indicator, none if there is no orbit."""
 
     def __init__(
         self,
         state: ViewState,
-        jobs: Requests,
+        jobs: JobSubmitter,
         show: Callable[[Sequence[IndicatorVerdict]], None],
-        say: Callable[[str], None],
+        notify: Callable[[str], None],
         locked: Locked,
     ) -> None:
         self._state, self._show = state, show
         self._orbit: Orbit | None = None
-        self._request = LatestRequest(jobs, self._answered, say, locked)
+        self._request = LatestRequest(jobs, self._on_digits, notify, locked)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Judge what is looked at now."""
+        """Evaluate the indicators of the chosen orbit."""
         chosen = self._state.chosen
         orbit = orbits[chosen].orbit if chosen < len(orbits) else None
         if orbit is not None and orbit is self._orbit:
@@ -38,12 +38,12 @@ class IndicatorsRequests:
         if orbit is not None and orbit.fate == Fate.BOUNDED:
             spec = self._state.orbit_spec(orbits[chosen].start)
             assert spec is not None
-            self._request.ask(BirkhoffDigitsRequest(spec.potential, spec.state, spec.t_max))
+            self._request.submit(BirkhoffDigitsRequest(spec.potential, spec.state, spec.t_max))
 
     def close(self) -> None:
-        """Nobody waits for them any more."""
+        """Cancel the request."""
         self._request.cancel()
 
-    def _answered(self, digits: BirkhoffDigits) -> None:
+    def _on_digits(self, digits: BirkhoffDigits) -> None:
         if self._orbit is not None:
             self._show(evaluate_indicators(self._orbit, digits))

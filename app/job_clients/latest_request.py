@@ -1,4 +1,4 @@
-"""One request at a time: a new one takes the place of the last, whose answer nobody hears any more."""
+"""One request at a time: a new request replaces the last one, whose results are dropped."""
 
 from __future__ import annotations
 
@@ -8,39 +8,39 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
-from engine import JobRequest, Requests, Subscription
+from engine import JobRequest, JobSubmitter, Subscription
 
 
 class LatestRequest:
-    """`show(answer)` is told what comes, more than once where it grows; `fail(sentence)` what went wrong; both under the lock."""
+    """Submits requests; calls `show(result)` for each result and `fail(sentence)` for errors, under the session's lock."""
 
-    def __init__(self, jobs: Requests, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
+    def __init__(self, jobs: JobSubmitter, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
         self._jobs, self._show, self._fail = jobs, show, fail
         self._wanted: JobRequest[Any] | None = None
-        self._ticket: Subscription | None = None
-        self._answer = locked(self._answered)
+        self._subscription: Subscription | None = None
+        self._deliver = locked(self._on_result)
 
-    def ask(self, spec: JobRequest[Any]) -> None:
-        """Ask for this, unless it has been asked for already."""
+    def submit(self, spec: JobRequest[Any]) -> None:
+        """Submit a request, unless it is the current one."""
         if spec == self._wanted:
             return
         self.cancel()
         self._wanted = spec
-        self._ticket = self._jobs.request(spec, partial(self._answer, spec), partial(self._answer, spec))
+        self._subscription = self._jobs.request(spec, partial(self._deliver, spec), partial(self._deliver, spec))
 
     def cancel(self) -> None:
-        """Nobody waits for it any more."""
+        """Cancel the current request, if any."""
         self._wanted = None
-        if self._ticket is not None:
-            self._ticket.cancel()
-            self._ticket = None
+        if self._subscription is not None:
+            self._subscription.cancel()
+            self._subscription = None
 
-    def _answered(self, spec: JobRequest[Any], answer: Any) -> None:
+    def _on_result(self, spec: JobRequest[Any], result: Any) -> None:
         if spec != self._wanted:
             return
-        if isinstance(answer, Exception):
-            # It may be asked for again.
+        if isinstance(result, Exception):
+            # Allow the same request again.
             self._wanted = None
-            self._fail(sentence(answer))
+            self._fail(sentence(result))
         else:
-            self._show(answer)
+            self._show(result)

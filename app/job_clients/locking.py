@@ -1,8 +1,8 @@
-"""What a session's lock looks like to those who need it."""
+"""Type of the function that runs callbacks under a session's lock."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 Locked = Callable[[Callable[..., None]], Callable[..., None]]
-"""Turns a function into one that any thread may call, that returns at once and runs under the session's lock."""
+"""Wraps a function: any thread may call the result, which returns at once and runs the function under the session's lock."""

@@ -1,4 +1,4 @@
-"""The orbits that a visitor has chosen: asked for, on their way, here, or refused in words."""
+"""Orbits of the chosen starts: requested, received, or refused with a message."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from app.job_clients.locking import Locked
 from app.rendering.orbit_curves import OrbitCurves, compute_orbit_curves
 from app.state.system import SYSTEM
 from app.state.view_state import Start, ViewState
-from engine import Fate, Orbit, OrbitRequest, Requests, Subscription, describe_fate
+from engine import Fate, JobSubmitter, Orbit, OrbitRequest, Subscription, describe_fate
 
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start and what is known of its orbit: its drawing, or the reason why there is none; neither while it is on its way."""
+    """A start with its orbit, or with the reason why there is none; with neither while the orbit is computed."""
 
     start: Start
     drawing: OrbitCurves | None = None
@@ -24,69 +24,71 @@ class ChosenOrbit:
 
     @property
     def orbit(self) -> Orbit | None:
-        """The orbit, if it is here."""
+        """The orbit, once it is computed."""
         return self.drawing.orbit if self.drawing is not None else None
 
 
 class OrbitRequests:
-    """One session's orbits; `show(orbits)` is told of every change, under the session's lock."""
+    """Orbits of one session; `show(orbits)` is called after every change, under the session's lock."""
 
-    def __init__(self, state: ViewState, jobs: Requests, show: Callable[[tuple[ChosenOrbit, ...]], None], locked: Locked) -> None:
+    def __init__(
+        self, state: ViewState, jobs: JobSubmitter, show: Callable[[tuple[ChosenOrbit, ...]], None], locked: Locked
+    ) -> None:
         self._state, self._jobs, self._show = state, jobs, show
-        self._tickets: dict[OrbitRequest, Subscription | None] = {}
-        self._answers: dict[OrbitRequest, OrbitCurves | str] = {}
-        self._told: tuple[ChosenOrbit, ...] = ()
-        self._answer = locked(self._answered)
+        self._subscriptions: dict[OrbitRequest, Subscription | None] = {}
+        self._results: dict[OrbitRequest, OrbitCurves | str] = {}
+        self._shown: tuple[ChosenOrbit, ...] = ()
+        self._deliver = locked(self._on_result)
         state.param.watch(lambda *events: self.follow(), ["starts", *SYSTEM, "plane", "energy", "t_max"])
 
     def follow(self) -> None:
-        """Ask for what is wanted and not known, and give up what is not wanted any more."""
+        """Request the orbits of new starts and cancel those of removed ones."""
         wanted = [spec for spec in map(self._state.orbit_spec, self._state.starts) if spec is not None]
-        for spec in [spec for spec in self._tickets if spec not in wanted]:
-            _cancel(self._tickets.pop(spec))
-        self._answers = {spec: answer for spec, answer in self._answers.items() if spec in wanted}
+        for spec in [spec for spec in self._subscriptions if spec not in wanted]:
+            _cancel(self._subscriptions.pop(spec))
+        self._results = {spec: result for spec, result in self._results.items() if spec in wanted}
         for spec in wanted:
-            if spec not in self._answers and spec not in self._tickets:
+            if spec not in self._results and spec not in self._subscriptions:
                 self._request(spec)
-        self._tell()
+        self._notify()
 
     def close(self) -> None:
-        """Nobody waits for them any more."""
-        for ticket in self._tickets.values():
-            _cancel(ticket)
-        self._tickets.clear()
-        self._answers.clear()
+        """Cancel all requests."""
+        for subscription in self._subscriptions.values():
+            _cancel(subscription)
+        self._subscriptions.clear()
+        self._results.clear()
 
     def _request(self, spec: OrbitRequest) -> None:
-        # An orbit that is kept may come before its ticket.
-        self._tickets[spec] = None
-        ticket = self._jobs.request(
+        # A cached orbit is delivered before `request` returns.
+        self._subscriptions[spec] = None
+        subscription = self._jobs.request(
             spec,
-            lambda orbit: self._answer(spec, compute_orbit_curves(spec.potential, orbit)),
-            lambda error: self._answer(spec, sentence(error)),
+            lambda orbit: self._deliver(spec, compute_orbit_curves(spec.potential, orbit)),
+            lambda error: self._deliver(spec, sentence(error)),
         )
-        if spec in self._tickets:
-            self._tickets[spec] = ticket
+        if spec in self._subscriptions:
+            self._subscriptions[spec] = subscription
 
-    def _answered(self, spec: OrbitRequest, answer: OrbitCurves | str) -> None:
-        if spec in self._tickets:
-            del self._tickets[spec]
-            self._answers[spec] = answer
-            self._tell()
+    def _on_result(self, spec: OrbitRequest, result: OrbitCurves | str) -> None:
+        if spec in self._subscriptions:
+            del self._subscriptions[spec]
+            self._results[spec] = result
+            self._notify()
 
-    def _tell(self) -> None:
-        known = tuple(self._known(start) for start in self._state.starts)
-        # Drawing nothing anew would delay the map that is wanted at the same time.
-        if known != self._told:
-            self._told = known
-            self._show(known)
+    def _notify(self) -> None:
+        orbits = tuple(self._orbit_of(start) for start in self._state.starts)
+        # Drawing unchanged orbits again would delay a map that is requested at the same time.
+        if orbits != self._shown:
+            self._shown = orbits
+            self._show(orbits)
 
-    def _known(self, start: Start) -> ChosenOrbit:
+    def _orbit_of(self, start: Start) -> ChosenOrbit:
         spec = self._state.orbit_spec(start)
-        answer: Any = describe_fate(Fate.FORBIDDEN) if spec is None else self._answers.get(spec)
-        return ChosenOrbit(start, problem=answer) if isinstance(answer, str) else ChosenOrbit(start, answer)
+        result: Any = describe_fate(Fate.FORBIDDEN) if spec is None else self._results.get(spec)
+        return ChosenOrbit(start, problem=result) if isinstance(result, str) else ChosenOrbit(start, result)
 
 
-def _cancel(ticket: Subscription | None) -> None:
-    if ticket is not None:
-        ticket.cancel()
+def _cancel(subscription: Subscription | None) -> None:
+    if subscription is not None:
+        subscription.cancel()

@@ -1,6 +1,6 @@
-"""Quick looks at energies that a visitor passes by: always one on its way, always the latest wanted next.
+"""Previews at the energies that the slider passes: one at a time, the latest energy next.
 
-While many wait for their first picture there are none; the latest wanted comes when that is over.
+Under overload previews wait; the latest energy is requested when the overload ends.
 """
 
 from __future__ import annotations
@@ -12,96 +12,96 @@ from typing import Any
 from app.job_clients.locking import Locked
 from app.rendering.image_columns import map_columns
 from app.state.view_state import ViewState
-from engine import EscapeMap, PreviewRequest, Requests, Subscription
+from engine import EscapeMap, JobSubmitter, PreviewRequest, Subscription
 
 
 @dataclass(frozen=True)
 class LoadPolicy:
-    """How to wait while others wait for more.
+    """How a session behaves under overload.
 
     Attributes
     ----------
-    is_pressed
-        Whether many wait.
-    later
-        Calls back in a while, under the session's lock.
+    is_overloaded
+        Whether the server is overloaded.
+    call_later
+        Calls a function after a delay, under the session's lock.
     """
 
-    is_pressed: Callable[[], bool] = lambda: False
-    later: Callable[[Callable[[], None]], Any] = lambda call: None
+    is_overloaded: Callable[[], bool] = lambda: False
+    call_later: Callable[[Callable[[], None]], Any] = lambda call: None
 
 
-UNHURRIED = LoadPolicy()
-"""Nobody else is there."""
+NO_OVERLOAD = LoadPolicy()
+"""For a server that is never overloaded."""
 
 
 class PreviewRequests:
-    """One session's previews; `show(frame, columns)` paints one, under the session's lock."""
+    """Previews of one session; `show(frame, columns)` receives them, under the session's lock."""
 
     def __init__(
         self,
         state: ViewState,
-        jobs: Requests,
+        jobs: JobSubmitter,
         show: Callable[[EscapeMap, dict[str, list[Any]]], None],
         locked: Locked,
-        patience: LoadPolicy,
+        load_policy: LoadPolicy,
     ) -> None:
-        self._state, self._jobs, self._show, self._patience = state, jobs, show, patience
+        self._state, self._jobs, self._show, self._load_policy = state, jobs, show, load_policy
         self._waiting = False
         self._wanted: float | None = None
-        self._under_way: float | None = None
-        self._ticket: Subscription | None = None
-        self._arrive = locked(self._arrived)
+        self._current: float | None = None
+        self._subscription: Subscription | None = None
+        self._deliver = locked(self._on_frame)
 
     @property
     def under_way(self) -> bool:
-        """Whether one is being computed or painted."""
-        return self._under_way is not None
+        """Whether a preview is being computed or shown."""
+        return self._current is not None
 
     def request(self, energy: float) -> None:
-        """Look at an energy: at once, or as soon as the last look is over."""
+        """Request a preview, at once or after the current one."""
         self._wanted = energy
         if not (self.under_way or self._waiting):
             self._begin()
 
     def cancel(self) -> None:
-        """Look no more."""
-        self._wanted = self._under_way = None
-        if self._ticket is not None:
-            self._ticket.cancel()
-            self._ticket = None
+        """Cancel the current preview and the next one."""
+        self._wanted = self._current = None
+        if self._subscription is not None:
+            self._subscription.cancel()
+            self._subscription = None
 
     def _wait(self) -> None:
         self._waiting = True
-        self._patience.later(self._waited)
+        self._load_policy.call_later(self._retry)
 
-    def _waited(self) -> None:
+    def _retry(self) -> None:
         self._waiting = False
         self._begin()
 
     def _begin(self) -> None:
-        if self._wanted is not None and self._patience.is_pressed():
+        if self._wanted is not None and self._load_policy.is_overloaded():
             self._wait()
             return
         energy, self._wanted = self._wanted, None
         if energy is None:
             return
-        self._under_way = energy
-        self._ticket = self._jobs.request(
+        self._current = energy
+        self._subscription = self._jobs.request(
             PreviewRequest(self._state.unresolved_map_spec_at(energy)),
-            lambda preview: self._answer(energy, preview.frame, map_columns(preview.frame, characters=False)),
-            lambda error: self._answer(energy, None, {}),
+            lambda preview: self._pass_on(energy, preview.value, map_columns(preview.value, characters=False)),
+            lambda error: self._pass_on(energy, None, {}),
         )
 
-    def _answer(self, energy: float, frame: EscapeMap | None, columns: dict[str, list[Any]]) -> None:
-        # The session keeps the latest only: what is late must not take the place of what is wanted now.
-        if energy == self._under_way:
-            self._arrive(energy, frame, columns)
+    def _pass_on(self, energy: float, frame: EscapeMap | None, columns: dict[str, list[Any]]) -> None:
+        # The session keeps the latest call only: a late preview would replace the current one.
+        if energy == self._current:
+            self._deliver(energy, frame, columns)
 
-    def _arrived(self, energy: float, frame: EscapeMap | None, columns: dict[str, list[Any]]) -> None:
-        if energy != self._under_way:
+    def _on_frame(self, energy: float, frame: EscapeMap | None, columns: dict[str, list[Any]]) -> None:
+        if energy != self._current:
             return
-        self._under_way = None
+        self._current = None
         if frame is not None:
             self._show(frame, columns)
         self._begin()

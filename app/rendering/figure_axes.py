@@ -1,41 +1,69 @@
-"""What stands around a printed picture: axes with round numbers, the colour bar, the legend, in a font that is always there."""
+"""Shared style of all figures: text sizes, axes, panel titles, legends and reproducible files.
+
+Figures use Matplotlib's object-oriented API. Matplotlib is not thread-safe: threads draw and save under `RENDER_LOCK`.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import datetime
 from decimal import Decimal
-from functools import cache
-from typing import NamedTuple
+from importlib import metadata
+from io import BytesIO
+from typing import Any, Literal, NamedTuple
 
-import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.legend import Legend
+from matplotlib.patches import Patch
+from matplotlib.text import Text
+from matplotlib.ticker import MaxNLocator, NullFormatter
+from matplotlib.transforms import Bbox
 
-from app.rendering.image_columns import longest_typical_time
-from app.rendering.map_images import time_colours
-from app.rendering.palette import LIGHT, PATCH_EDGE, Entry, Palette
-from engine import EscapeMap
+from app.rendering.palette import LIGHT, PATCH_EDGE, Entry
 
-WHITE = (255, 255, 255)
+RENDER_LOCK = threading.Lock()
+"""Held by a thread while it draws and saves a figure."""
 
+RESOLUTION = 180
+"""Pixels per inch of the PNG files of the reproduction."""
+
+LETTER, SMALL = 12.0, 10.5
+"""Font sizes of labels and of tick labels, in points."""
+
+# The STIX fonts are part of Matplotlib; they have Greek letters, fractions and mathematical symbols.
+_FAMILY, _MATHS = "STIXGeneral", "stix"
+_FRAME = 0.7
+_MOST_TICKS = 5
+# Padding around panels, in inches.
+_GAP = 0.07
+# Around a cropped figure, in pixels.
+_MARGIN = 8
 _FEWEST_TICKS = 3
-# Steps below this power of ten are written as distances from the middle: their digits would run into each other.
+# Smaller tick steps than 10 to this power are labelled as distances from the middle tick: plain labels would overlap.
 _FINEST_PLAIN_STEP = -4
-# What the built-in font lacks, as it is typed.
-_TYPED = str.maketrans({"–": "-", "—": "-", "−": "-", "×": "x", "²": "^2", "½": "1/2", "≤": "<=", "≥": ">=", "→": "->"})
+
+Corner = Literal["upper left", "upper right", "lower left", "lower right", "center right"]
+"""Position of a legend in its panel."""
+
+POINTS_PER_INCH = 72.0
 
 
 class Axis(NamedTuple):
-    """Name of an axis, and for each tick its place, 0 to 1 along the axis, and its label."""
+    """Name of an axis, and for each tick its position, 0 to 1 along the axis, and its label."""
 
     name: str
     ticks: list[tuple[float, str]]
 
 
 def label_axis(name: str, low: float, high: float) -> Axis:
-    """Ticks at multiples of 1, 2 or 5 · 10^k between two numbers, three to eight of them, exact to the last digit.
+    """Ticks at multiples of 1, 2 or 5 · 10^k between two numbers, three to eight of them, with exact labels.
 
-    Where they are less than 1e-4 apart, the labels are distances from the middle one, and the axis' name says so.
+    If they are less than 1e-4 apart, the labels are distances from the middle tick, which the axis name then states.
     """
     most = (high - low) / _FEWEST_TICKS
     exponent = math.floor(math.log10(most))
@@ -46,95 +74,160 @@ def label_axis(name: str, low: float, high: float) -> Axis:
     if exponent < _FINEST_PLAIN_STEP:
         middle = values[len(values) // 2]
         labels = [f"{(value - middle).scaleb(-exponent):f}" for value in values]
-        offset = f"({name} {'-' if middle > 0 else '+'} {abs(middle):f})" if middle else name
+        offset = f"({name} {'−' if middle > 0 else '+'} {abs(middle):f})" if middle else name
         name = f"{offset} / 1e{exponent}"
-    return Axis(name, [(float(value - Decimal(low)) / (high - low), label) for value, label in zip(values, labels, strict=True)])
+    positions = [float(value - Decimal(low)) / (high - low) for value in values]
+    return Axis(name, [(position, label.replace("-", "−")) for position, label in zip(positions, labels, strict=True)])
 
 
-def draw_panel(frame: EscapeMap, square: Image.Image, title: str, size: int) -> tuple[Image.Image, int]:
-    """Title, map and axes; and where the map's left edge is."""
-    window, side, font = frame.spec.window, square.width, font_of(size)
-    across, up = (
-        label_axis("x", window.x_low, window.x_high),
-        label_axis(frame.spec.plane.ordinate, window.ordinate_low, window.ordinate_high),
-    )
-    left = round(2.8 * size + max(font.getlength(label) for _, label in up.ticks))
-    top, tick = 2 * size, size // 3
-    # Wide enough for the longest line of a legend.
-    panel = Image.new("RGB", (left + max(side + 2 * size, 17 * size), top + side + 3 * size), WHITE)
-    draw = ImageDraw.Draw(panel)
-    draw.text((left, top // 2), title, LIGHT.text, font_of(round(1.2 * size)), "lm")
-    line = max(1, size // 12)
-    draw.rectangle((left - line, top - line, left + side + line - 1, top + side + line - 1), LIGHT.text, width=line)
-    panel.paste(square, (left, top))
-    _draw_ticks(draw, [(left + place * side, label) for place, label in across.ticks], top + side, size)
-    draw.text((left + side / 2, top + side + 2.3 * size), typed(across.name), LIGHT.text, font, "mm")
-    for place, label in up.ticks:
-        y = top + (1 - place) * side
-        draw.line((left - tick, y, left, y), LIGHT.text, line)
-        draw.text((left - 1.5 * tick, y), label, LIGHT.text, font, "rm")
-    name = Image.new("RGB", (side, round(1.4 * size)), WHITE)
-    ImageDraw.Draw(name).text((side / 2, 0.7 * size), typed(up.name), LIGHT.text, font, "mm")
-    panel.paste(name.transpose(Image.Transpose.ROTATE_90), (size // 2, top))
-    return panel, left
+def new_figure(width: float, height: float, title: str, *, equal: bool = False) -> Figure:
+    """Empty figure with a title, in inches; `equal` packs panels that have equal scales on both axes."""
+    figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal))
+    figure.suptitle(title, fontsize=LETTER + 2.0, color=LIGHT.text)
+    return figure
 
 
-def _draw_ticks(draw: ImageDraw.ImageDraw, ticks: list[tuple[float, str]], y: int, size: int) -> None:
-    """Ticks below a line, with their labels; one that would run into another is left out."""
-    taken: list[tuple[float, float]] = []
-    for x, label in ticks:
-        draw.line((x, y, x, y + size // 3), LIGHT.text, max(1, size // 12))
-        half = 0.5 * font_of(size).getlength(label) + 0.2 * size
-        if all(x + half < low or high < x - half for low, high in taken):
-            draw.text((x, y + size // 2), label, LIGHT.text, font_of(size), "ma")
-            taken.append((x - half, x + half))
+def label_axes(axes: Axes, across: str, up: str) -> None:
+    """Name both axes."""
+    axes.set_xlabel(across, fontsize=LETTER)
+    axes.set_ylabel(up, fontsize=LETTER)
 
 
-def draw_colour_bar(frame: EscapeMap, palette: Palette, side: int, left: int, width: int, size: int) -> Image.Image:
-    """The logarithmic scale of the escape times."""
-    longest = longest_typical_time(frame)
-    bar = Image.new("RGB", (width, round(3.4 * size)), WHITE)
-    times = longest ** ((np.arange(side) + 0.5) / side)
-    bar.paste(Image.fromarray(time_colours(times, longest, palette)[None]).resize((side, size // 2 * 2)), (left, size // 2))
-    powers = [10.0**k for k in range(math.floor(math.log10(longest)) + 1)]
-    between = [m * power for power in powers for m in (2.0, 5.0) if m * power < longest]
-    marks = [*powers, longest, *between]
-    ticks = [(left + side * math.log(mark) / math.log(longest), f"{mark:.0f}") for mark in dict.fromkeys(marks)]
-    _draw_ticks(ImageDraw.Draw(bar), ticks, size // 2 + size // 2 * 2, size)
-    return bar
+def style_axes(axes: Axes, *, grid: bool = False) -> None:
+    """Thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
+    axes.tick_params(direction="out", labelsize=SMALL, width=_FRAME, length=3.0, which="major")
+    axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
+    for spine in axes.spines.values():
+        spine.set_linewidth(_FRAME)
+    for axis, scale in ((axes.xaxis, axes.get_xscale()), (axes.yaxis, axes.get_yscale())):
+        if scale == "log":
+            axis.set_minor_formatter(NullFormatter())
+        else:
+            axis.set_major_locator(MaxNLocator(_MOST_TICKS, steps=[1, 2, 5, 10]))
+    if grid:
+        axes.grid(alpha=0.25, linewidth=0.5)
 
 
-def draw_flow(entries: Sequence[Entry], size: int, left: int, width: int, gap: int) -> Image.Image:
-    """Entries in lines that wrap: a patch, where there is a colour, and the label."""
-    font, patch, line = font_of(size), round(0.8 * size), round(1.5 * size)
-    places: list[tuple[float, int]] = []
-    x, row = float(left), 0
-    for entry in entries:
-        wide = font.getlength(typed(entry.label)) + (1.4 * patch if entry.colour else 0)
-        if x > left and x + wide > width - size // 2:
-            x, row = float(left), row + 1
-        places.append((x, row))
-        x += wide + gap
-    image = Image.new("RGB", (width, (row + 1) * line + size // 2), WHITE)
-    draw = ImageDraw.Draw(image, "RGBA")
-    for entry, (x, row) in zip(entries, places, strict=True):
-        middle = (row + 0.5) * line
-        if entry.colour:
-            box = (x, middle - patch / 2, x + patch, middle + patch / 2)
-            draw.rectangle(box, entry.colour, PATCH_EDGE, max(1, size // 12))
-            x += 1.4 * patch
-        draw.text((x, middle), typed(entry.label), LIGHT.text, font, "lm")
-    return image
+def name_panel(axes: Axes, words: str) -> None:
+    """Write the title of a panel above its left end."""
+    axes.set_title(words, loc="left", fontsize=LETTER, color=LIGHT.text, pad=4.0)
 
 
-@cache
-def font_of(size: int) -> ImageFont.FreeTypeFont:
-    """Pillow's built-in font in a size; `typed` replaces what it lacks."""
-    font = ImageFont.load_default(size)
-    assert isinstance(font, ImageFont.FreeTypeFont)
-    return font
+def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
+    """Title panels (a), (b), …"""
+    for letter, axes, word in zip("abcdefghi", panels, words, strict=False):
+        name_panel(axes, f"({letter}) {word}")
 
 
-def typed(text: str) -> str:
-    """Text in characters that Pillow's built-in font has: no Greek, no dashes, no fractions."""
-    return text.translate(_TYPED)
+def patches(entries: Iterable[Entry]) -> list[Artist]:
+    """Legend handles of colours."""
+    return [Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label) for entry in entries]
+
+
+def add_figure_legend(figure: Figure, handles: Sequence[Artist]) -> None:
+    """Add one legend for the whole figure, below all panels."""
+    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=len(handles), **_legend_style()))
+
+
+def add_legend_below(axes: Axes, handles: Sequence[Artist], offset: float, width: float) -> Legend:
+    """Add a legend below a panel, in as many columns as fit.
+
+    Parameters
+    ----------
+    axes
+        The panel.
+    handles
+        Of the entries.
+    offset
+        From the lower edge of the panel to the legend, in points.
+    width
+        Available, in points.
+    """
+    place: dict[str, Any] = {
+        "loc": "upper left", "bbox_to_anchor": (0.0, -offset / size_in_points(axes)[1]), "borderaxespad": 0.0, "borderpad": 0.0,
+    }  # fmt: skip
+    figure, columns = figure_of(axes), 1
+    for _ in range(2):
+        legend = axes.legend(handles=list(handles), ncols=columns, **place, **_legend_style())
+        set_font(figure)
+        spacing = legend.columnspacing * LETTER
+        widest = legend.get_window_extent().width * POINTS_PER_INCH / figure.dpi
+        columns = max(1, min(len(handles), int((width + spacing) // (widest + spacing))))
+    _colour_text(legend)
+    return legend
+
+
+def size_in_points(axes: Axes) -> tuple[float, float]:
+    """Width and height of a panel."""
+    box, scale = axes.get_window_extent(), POINTS_PER_INCH / figure_of(axes).dpi
+    return float(box.width * scale), float(box.height * scale)
+
+
+def figure_of(axes: Axes) -> Figure:
+    """Figure of a panel."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    return figure
+
+
+def _legend_style() -> dict[str, Any]:
+    return {"frameon": False, "fontsize": LETTER - 1.0, "handlelength": 1.4, "handleheight": 0.9, "columnspacing": 1.3}
+
+
+def add_panel_legend(axes: Axes, corner: Corner, columns: int = 1) -> None:
+    """Add a legend inside a panel."""
+    legend = axes.legend(
+        loc=corner, ncols=columns, fontsize=SMALL, framealpha=0.85, edgecolor="none",
+        handlelength=1.7, labelspacing=0.3, columnspacing=1.2, borderaxespad=0.4,
+    )  # fmt: skip
+    _colour_text(legend)
+
+
+def _colour_text(legend: Legend) -> None:
+    for text in legend.get_texts():
+        text.set_color(LIGHT.text)
+
+
+def set_font(figure: Figure) -> None:
+    """Set one font family on every text of a figure; Matplotlib's rcParams would change it for the whole process."""
+    for axes in figure.axes:
+        axes.tick_params(labelfontfamily=_FAMILY, which="both")
+    for text in figure.findobj(Text):
+        text.set_fontfamily(_FAMILY)
+        text.set_math_fontfamily(_MATHS)
+
+
+def software() -> str:
+    """Name and version of this program, for the metadata of files."""
+    return f"escape-explorer {metadata.version('escape-explorer')}"
+
+
+def save_figure(figure: Figure, ending: str, about: Mapping[str, str | datetime | None], *, crop: bool = False) -> bytes:
+    """Save a figure to bytes; equal figures give equal bytes.
+
+    Parameters
+    ----------
+    figure
+        What to save.
+    ending
+        ``png`` or ``pdf``.
+    about
+        Metadata of the file. A date of None is left out.
+    crop
+        Whether the file shows exactly what was drawn, in whole pixels, instead of the figure's own size.
+    """
+    set_font(figure)
+    box = _whole_pixels(figure) if crop else None
+    file = BytesIO()
+    figure.savefig(file, format=ending, dpi=figure.dpi if crop else RESOLUTION, metadata=dict(about), bbox_inches=box)
+    # Freeze the layout for the next file.
+    figure.set_layout_engine("none")
+    return file.getvalue()
+
+
+def _whole_pixels(figure: Figure) -> Bbox:
+    """Bounding box of everything drawn, in inches, with a margin, extended to whole pixels."""
+    box, dpi = figure.get_tightbbox(), figure.dpi
+    low = [math.floor(edge * dpi) - _MARGIN for edge in (box.x0, box.y0)]
+    high = [math.ceil(edge * dpi) + _MARGIN for edge in (box.x1, box.y1)]
+    return Bbox.from_extents(*(edge / dpi for edge in (*low, *high)))

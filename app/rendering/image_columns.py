@@ -1,4 +1,4 @@
-"""From a map to the columns of the one data source that all four pictures share."""
+"""Columns of the Bokeh data source that all pictures of a map share."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
 def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[Any]]:
-    """One image a column, in the smallest types that hold it, and the place of the images in the plane.
+    """One image per column, in the smallest integer types, and the position of the images in the plane.
 
-    A coarse frame has coarse images. Without `characters` that column is a single pixel: nobody looks at it. So is the column of
-    passages, which a map does not know by itself.
+    Coarse frames have coarse images. The column of passages is a single pixel: it needs a follow-up analysis
+    (`passage_column`). So is that of characters unless `characters` is true.
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
     classes = np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1
-    # A bounded pixel has its certificate instead.
+    # Bounded pixels are classified by their certificate.
     classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["certificate"][fate == Fate.BOUNDED]
-    character = _codes(fate, _known_from_certificates(images), bounded_too=True) if characters else np.zeros((1, 1), np.uint8)
+    character = _codes(fate, _certified_characters(images), bounded_too=True) if characters else np.zeros((1, 1), np.uint8)
     return {
         "fate": [_codes(fate, fate - 1)],
         "crossing_class": [_codes(fate, classes, bounded_too=True)],
@@ -42,27 +42,27 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
 
 
 def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, list[Any]]:
-    """The one column that the judging of bounded orbits changes."""
+    """Column of regular and chaotic bounded orbits."""
     return {"character": [_codes(frame.fate, regularity.character, bounded_too=True)]}
 
 
 def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
-    """The one column that tells both where orbits come from and where they go."""
+    """Column of origin and fate of each orbit."""
     passage = origins.origin.astype(np.int64) * (MOST_CHANNELS + 1) + origins.fate
-    # Where one of both is no end but an outcome, so is the pixel.
+    # If the origin or the fate is not a channel, the pixel shows that outcome.
     outcome = np.minimum(origins.origin, origins.fate)
     return {"passage": [_codes(outcome, passage, bounded_too=True)]}
 
 
-def _known_from_certificates(images: dict[str, np.ndarray]) -> np.ndarray:
-    """What a map says by itself: on a torus an orbit is regular."""
-    known = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NO_QUESTION)
-    known[images["certificate"] == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
-    return known
+def _certified_characters(images: dict[str, np.ndarray]) -> np.ndarray:
+    """Regularity as far as certificates tell: orbits on an invariant torus are regular."""
+    character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
+    character[images["certificate"] == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
+    return character
 
 
 def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:
-    """Pixel codes: outcomes by their place in the palette, escaped pixels, or bounded ones too, by their class after those."""
+    """Pixel codes: outcomes, then classes of escaped pixels, and of bounded ones if `bounded_too`."""
     codes = (_FIRST_CLASS + classes).astype(np.uint8)
     for outcome, code in _OUTCOME_CODES.items():
         if not (bounded_too and outcome is Fate.BOUNDED):
@@ -71,7 +71,7 @@ def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) 
 
 
 def longest_typical_time(frame: EscapeMap) -> float:
-    """The escape time that all but the slowest hundredth of the escaped pixels stay below, rounded up to 1, 2 or 5 · 10^k."""
+    """99th percentile of the escape times, at least 10, rounded up to 1, 2 or 5 · 10^k; 100 if nothing escapes."""
     times = frame.escape_time[frame.fate > Fate.BOUNDED]
     if times.size == 0:
         return 100.0

@@ -1,4 +1,4 @@
-"""What second looks have found out about a whole map."""
+"""Results of the follow-up analyses of a map."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine import Fate, OriginFateMap, Regularity, RegularityMap, StableManifol
 
 @dataclass(frozen=True)
 class MapAnalyses:
-    """The answers that are here; None for what was not asked, or is on its way."""
+    """Results of follow-up analyses; None for analyses that were not requested or are not finished."""
 
     regularity: RegularityMap | None = None
     origins: OriginFateMap | None = None
@@ -21,17 +21,17 @@ class MapAnalyses:
     manifolds: StableManifolds | None = None
 
     def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
-        """The dataset of the map with ``character``, ``trust`` and ``origin``, as far as they are here."""
-        found: dict[str, tuple[np.ndarray, type[IntEnum]]] = {}
+        """Add the variables ``character``, ``trust`` and ``origin`` to the dataset of a map, as far as they are known."""
+        images: dict[str, tuple[np.ndarray, type[IntEnum]]] = {}
         if self.regularity is not None:
-            found["character"] = self.regularity.character, Regularity
+            images["character"] = self.regularity.character, Regularity
         if self.trust is not None:
-            found["trust"] = self.trust.trust, Trust
+            images["trust"] = self.trust.trust, Trust
         if self.origins is not None:
-            found["origin"] = self.origins.origin, Fate
+            images["origin"] = self.origins.origin, Fate
         dims = dataset["fate"].dims
-        return dataset.assign({name: (dims, image, describe_codes(codes)) for name, (image, codes) in found.items()})
+        return dataset.assign({name: (dims, image, describe_codes(codes)) for name, (image, codes) in images.items()})
 
 
 NO_ANALYSES = MapAnalyses()
-"""Of a map that nobody has looked at again."""
+"""No results."""

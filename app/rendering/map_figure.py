@@ -1,153 +1,286 @@
-"""A map drawn without a browser: the picture of the page on white, with its axes, its legend and where it comes from."""
+"""Maps drawn with Matplotlib: pixels, limiting curve, exits, manifolds, marks of starts, legend and provenance.
+
+Maps are drawn in shares of the window that their axes show, 0 to 1 from its lower left corner: in plane coordinates the transform
+to pixels would lose all digits in a deep zoom.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+import math
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 import shapely
-from PIL import Image, ImageDraw
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
-from app.rendering.figure_axes import WHITE, draw_colour_bar, draw_flow, draw_panel, font_of
-from app.rendering.figure_lines import stroke
+from app.rendering.figure_axes import (
+    LETTER,
+    POINTS_PER_INCH,
+    SMALL,
+    add_legend_below,
+    figure_of,
+    label_axes,
+    label_axis,
+    name_panel,
+    patches,
+    set_font,
+    size_in_points,
+    style_axes,
+)
+from app.rendering.image_columns import longest_typical_time
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_images import DOUBTED, TITLES, picture_pixels
+from app.rendering.map_images import DOUBTED, LARGEST_PICTURE, SHORTEST_TIME, SMALLEST_PICTURE, TITLES, picture_pixels
 from app.rendering.palette import DOUBT, LIGHT, MANIFOLD, MARK_EDGE, Entry, Palette
-from engine import CASES, EscapeMap, Fate, Plane, StableManifolds, find_lyapunov_orbits, trace_zero_velocity_curve
+from engine import (
+    CASES,
+    EscapeMap,
+    Fate,
+    Plane,
+    Potential,
+    StableManifolds,
+    Window,
+    find_lyapunov_orbits,
+    trace_zero_velocity_curve,
+)
 
-SMALLEST_SIDE, LARGEST_SIDE = 100, 4000
-"""Sides in pixels that the map itself may have."""
+# Letters have a fixed size in points. Pixels per inch grow with the side of a map, so that letters grow with it, and are never
+# fewer than these, so that letters stay legible.
+_MAP_INCHES, _LEAST_DPI = 7.0, 80.0
+# Room for the longest entry of a legend, in inches.
+_LEGEND_INCHES = 2.6
+_PANEL_GAP = 0.25
+# From the lower edge of the map, in points: below the tick labels and the name of the axis; and below a colour bar there, too.
+_BELOW_AXIS, _BELOW_BAR, _BAR_HEIGHT = 44.0, 76.0, 9.0
+_PROVENANCE_LETTER = 9.0
+_EXIT_DASHES = (0, (2.0, 1.5))
+# Curves are cut this far outside the window, in shares of it.
+_RIM = 0.02
+# Of a line of provenance, the share that is filled: lines of equally many letters differ in width.
+_FILLED = 0.93
+# Numbers of starts are moved to the inside of the picture this close to its right and upper edge, in shares of it.
+_EDGE = 0.06
 
 
-class _Curve(NamedTuple):
-    """Pieces of a curve, (n, 2) in shares of the window, and how it is drawn; its weight is in letter heights."""
-
-    pieces: list[np.ndarray]
-    entry: Entry
-    weight: float
-    halo: bool
-
-
-def draw_picture(
+def draw_map_figure(
     frame: EscapeMap,
-    picture: str,
+    pictures: Sequence[str],
     palette: Palette,
     side: int,
     *,
-    findings: MapAnalyses = NO_ANALYSES,
+    analyses: MapAnalyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
-) -> Image.Image:
-    """A picture to print or to send: title, map, axes, curves, legend and provenance, in RGB on white.
-
-    All pictures of a map are equally wide, and their maps are in the same place.
+) -> Figure:
+    """Draw pictures of a map side by side, each with title, axes, curves, legend and provenance; save with ``crop=True``.
 
     Parameters
     ----------
     frame
         The map, finished or not. Its window is stretched to a square.
-    picture
-        One of `TITLES`.
+    pictures
+        Some of `TITLES`.
+    palette
+        Colours.
     side
-        Of the map itself, 100 to 4000 pixels; everything else grows with it.
-    findings
-        What second looks have found: which bounded orbits are chaotic, where orbits come from, which pixels are doubtful, and the
-        stable manifolds; without them, what the map says by itself.
+        Of each map, 100 to 4000 pixels; letters and lines grow with it.
+    analyses
+        Results of follow-up analyses: regularity, origins, doubtful pixels and stable manifolds.
     starts
         (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
 
     Raises
     ------
     ValueError
-        Naming the picture or the side, and what is legal.
+        If no picture is given, or a picture or the side is invalid.
     """
-    if not SMALLEST_SIDE <= side <= LARGEST_SIDE:
-        raise ValueError(f"side={side}: must be from {SMALLEST_SIDE} to {LARGEST_SIDE} pixels")
-    pixels, curves = picture_pixels(frame, picture, palette, findings), _curves(frame, palette)
-    if picture == "basins" and findings.manifolds is not None:
-        curves += _manifold_curves(frame, findings.manifolds)
-    size = max(12, side // 38)
-    square = _square(pixels, curves, side, size)
-    for number, start in enumerate(starts):
-        _mark(square, _shares(frame, np.array([start]))[0], str(number + 1), palette.orbits[number % len(palette.orbits)], size)
-    panel, left = draw_panel(frame, square, TITLES[picture], size)
-    parts = [panel]
+    if not SMALLEST_PICTURE <= side <= LARGEST_PICTURE:
+        raise ValueError(f"side={side}: must be from {SMALLEST_PICTURE} to {LARGEST_PICTURE} pixels")
+    if not pictures:
+        raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
+    dpi = max(_LEAST_DPI, side / _MAP_INCHES)
+    # In a figure of one square inch, positions in shares of the figure are inches.
+    figure = Figure(figsize=(1.0, 1.0), dpi=dpi)
+    left = 0.0
+    for picture in pictures:
+        axes = figure.add_axes((left, 0.0, side / dpi, side / dpi))
+        _draw_picture(axes, frame, picture, palette, analyses)
+        mark_starts(axes, starts, palette, frame.spec.window)
+        _explain_picture(axes, frame, picture, palette, analyses)
+        width = max(side / dpi, _LEGEND_INCHES) + _width_of_labels(axes) + _PANEL_GAP
+        left += round(width * dpi) / dpi
+    return figure
+
+
+def _draw_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> None:
+    """Title, pixels, curves and axes."""
+    spec = frame.spec
+    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses), spec.window, spec.window)
+    draw_limits(axes, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
+    if picture == "basins" and analyses.manifolds is not None:
+        _draw_manifolds(axes, analyses.manifolds, spec.window)
+    show_window(axes, spec.window, "x", spec.plane.ordinate)
+    name_panel(axes, TITLES[picture])
+
+
+def _explain_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> None:
+    """Colour bar, legend and provenance below a map."""
+    figure, offset = figure_of(axes), _BELOW_AXIS
+    map_width, map_height = size_in_points(axes)
     if picture == "times":
-        parts += [draw_colour_bar(frame, palette, side, left, panel.width, size)]
-    classes = _entries(frame, picture, palette, findings)
-    parts += [draw_flow([*classes, *(curve.entry for curve in curves)], size, left, panel.width, size)]
-    words = [Entry(word, "") for word in provenance_line(frame).split()]
-    parts += [draw_flow(words, max(12, size * 3 // 4), left, panel.width, size // 4)]
-    page = Image.new("RGB", (panel.width, sum(part.height for part in parts)), WHITE)
-    for k, part in enumerate(parts):
-        page.paste(part, (0, sum(above.height for above in parts[:k])))
-    return page
+        bar = axes.inset_axes((0.0, -(offset + _BAR_HEIGHT) / map_height, 1.0, _BAR_HEIGHT / map_height))
+        add_time_bar(figure, longest_typical_time(frame), palette, cax=bar, orientation="horizontal")
+        offset = _BELOW_BAR
+    width = max(map_width, _LEGEND_INCHES * POINTS_PER_INCH)
+    handles = [*patches(_entries(frame, picture, palette, analyses)), *axes.collections]
+    legend = add_legend_below(axes, handles, offset, width)
+    below = axes.annotate(
+        provenance_line(frame), (0.0, 0.0), (0.0, -8.0), xycoords=legend, textcoords="offset points", va="top",
+        fontsize=_PROVENANCE_LETTER, color=LIGHT.text, annotation_clip=False,
+    )  # fmt: skip
+    set_font(figure)
+    share = width * figure.dpi / POINTS_PER_INCH / below.get_window_extent().width
+    below.set_text(textwrap.fill(below.get_text(), int(_FILLED * share * len(below.get_text())), break_on_hyphens=False))
 
 
-def _shares(frame: EscapeMap, points: np.ndarray) -> np.ndarray:
-    """(n, 2) points of the plane, as shares of the window's width and height."""
-    window = frame.spec.window
-    low, high = np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
+def _width_of_labels(axes: Axes) -> float:
+    """Width of the tick labels and the name of the upright axis, in inches."""
+    figure = figure_of(axes)
+    set_font(figure)
+    labels = axes.yaxis.get_tightbbox()
+    return float(axes.get_window_extent().x0 - labels.x0) / figure.dpi if labels is not None else 0.0
+
+
+def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown: Window) -> None:
+    """Draw the pixels of a window, row 0 on top, in axes that show `shown`."""
+    (left, low), (right, high) = _shares(shown, _corners(window))
+    axes.imshow(pixels, extent=(left, right, low, high), origin="upper", interpolation="none", aspect="auto", zorder=1)
+
+
+def draw_limits(
+    axes: Axes,
+    potential: Potential,
+    plane: Plane,
+    energy: float | tuple[float, float],
+    shown: Window,
+    channel_colours: Sequence[str] | None = None,
+) -> None:
+    """Draw the limiting curve of a plane and, on (x, y), the Lyapunov orbits.
+
+    The orbits have the colours of their channels; without colours they are black and dashed.
+    """
+    h = 0.0 if isinstance(energy, tuple) else energy
+    limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
+    draw_curve(axes, trace_zero_velocity_curve(potential, plane, h, shown), shown, "limiting curve", **limit)
+    orbits = find_lyapunov_orbits(potential, h) if plane is Plane.X_Y else ()
+    if channel_colours is None:
+        paths = [orbit.half_path for orbit in orbits]
+        draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit)
+        return
+    for orbit in orbits:
+        style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
+        draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.channel}", halo=True, **style)
+
+
+def _draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window) -> None:
+    arcs = [np.column_stack([arc.x, arc.px]) for arc in manifolds.arcs]
+    draw_curve(axes, arcs, shown, "stable manifolds", halo=True, colors=MANIFOLD, linewidths=0.5)
+
+
+def draw_curve(
+    axes: Axes, pieces: Iterable[np.ndarray], shown: Window, label: str = "", *, halo: bool = False, **style: Any
+) -> None:
+    """Draw a curve, (n, 2) points of the plane for each piece; nothing if none of it is in view.
+
+    Parameters
+    ----------
+    axes
+        Axes that show `shown`.
+    pieces
+        (n, 2) points of the plane each; pieces of a single point are skipped.
+    shown
+        Window of the axes.
+    label
+        For the legend.
+    halo
+        Whether the curve has a light rim, so that it is visible on any colour.
+    style
+        Properties of `matplotlib.collections.LineCollection`.
+    """
+    # Matplotlib clips lines only after a transform to pixels, which has too few digits for what a deep zoom leaves outside.
+    lines = [shapely.LineString(_shares(shown, piece)) for piece in pieces if len(piece) > 1]
+    visible = shapely.get_parts(shapely.clip_by_rect(lines, -_RIM, -_RIM, 1.0 + _RIM, 1.0 + _RIM))
+    if not len(visible):
+        return
+    if halo:
+        style["path_effects"] = [withStroke(linewidth=1.8 * style["linewidths"], foreground=LIGHT.halo)]
+    axes.add_collection(
+        LineCollection([shapely.get_coordinates(part) for part in visible], label=label, zorder=2, **style), autolim=False
+    )
+
+
+def mark_starts(axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window) -> None:
+    """Mark (x, ordinate) of starts by numbered crosses in the colours of their orbits; starts outside keep their number."""
+    for number, start in enumerate(starts, 1):
+        x, y = _shares(shown, np.array(start))
+        if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
+            continue
+        # From back to front: light on a dark picture, dark on a light one, and the colour of the orbit.
+        for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
+            axes.plot(x, y, "+", markersize=9.6 + width, markeredgewidth=width, color=colour, zorder=3)
+        right, high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
+        axes.annotate(
+            str(number), (x, y), (-6.0 if right else 6.0, -3.6 if high else 3.6), textcoords="offset points",
+            ha="right" if right else "left", va="top" if high else "bottom", fontsize=LETTER, color=LIGHT.text, zorder=4,
+            path_effects=[withStroke(linewidth=4.0, foreground=LIGHT.halo)],
+        )  # fmt: skip
+
+
+def show_window(axes: Axes, shown: Window, across: str, up: str, *, equal: bool = False) -> None:
+    """Limit, tick and name axes that show a window; `equal` gives both axes the same scale."""
+    style_axes(axes)
+    x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
+    axes.set_xticks(*zip(*x.ticks, strict=True))
+    axes.set_yticks(*zip(*y.ticks, strict=True))
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(0.0, 1.0)
+    if equal:
+        axes.set_box_aspect((shown.ordinate_high - shown.ordinate_low) / (shown.x_high - shown.x_low))
+    label_axes(axes, x.name, y.name)
+
+
+def add_time_bar(figure: Figure, longest: float, palette: Palette, **place: Any) -> Colorbar:
+    """Add a logarithmic colour bar of escape times; `place` as for `matplotlib.figure.Figure.colorbar`."""
+    scale = ScalarMappable(LogNorm(SHORTEST_TIME, longest), ListedColormap(list(palette.escape_time)))
+    bar = figure.colorbar(scale, **place)
+    powers = [10.0**k for k in range(math.floor(math.log10(longest)) + 1)]
+    times = list(dict.fromkeys([*powers, longest]))
+    bar.set_ticks(times, labels=[f"{time:.0f}" for time in times])
+    bar.ax.tick_params(labelsize=SMALL)
+    return bar
+
+
+def _shares(shown: Window, points: np.ndarray) -> np.ndarray:
+    """(n, 2) points of the plane in shares of a window's width and height."""
+    low, high = _corners(shown)
     shares: np.ndarray = (points - low) / (high - low)
     return shares
 
 
-def _curves(frame: EscapeMap, palette: Palette) -> list[_Curve]:
-    """The limiting curve and the Lyapunov orbits, where the window shows any of them."""
-    spec = frame.spec
-    energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
-    limit = trace_zero_velocity_curve(spec.potential, spec.plane, energy, spec.window)
-    orbits = find_lyapunov_orbits(spec.potential, energy) if spec.plane is Plane.X_Y else ()
-    curves = [_Curve(_clipped(frame, limit), Entry("limiting curve", LIGHT.limiting_curve), weight=0.1, halo=False)]
-    for orbit in orbits:
-        entry = Entry(f"Lyapunov orbit {orbit.channel}", palette.channels[orbit.channel - 1])
-        curves.append(_Curve(_clipped(frame, [orbit.half_path]), entry, weight=0.2, halo=True))
-    return [curve for curve in curves if curve.pieces]
+def _corners(window: Window) -> np.ndarray:
+    """(2, 2) lower left and upper right corner."""
+    return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
 
 
-def _manifold_curves(frame: EscapeMap, manifolds: StableManifolds) -> list[_Curve]:
-    pieces = _clipped(frame, [np.column_stack([arc.x, arc.px]) for arc in manifolds.arcs if arc.x.size > 1])
-    return [_Curve(pieces, Entry("stable manifolds", MANIFOLD), weight=0.04, halo=True)] if pieces else []
-
-
-def _clipped(frame: EscapeMap, pieces: list[np.ndarray]) -> list[np.ndarray]:
-    """What the window shows of a curve, with a rim: in a deep zoom the rest is further away than a pixel number can say."""
-    shown = shapely.clip_by_rect([shapely.LineString(_shares(frame, piece)) for piece in pieces], -0.02, -0.02, 1.02, 1.02)
-    return [shapely.get_coordinates(part) for part in shapely.get_parts(shown)]
-
-
-def _square(pixels: np.ndarray, curves: list[_Curve], side: int, size: int) -> Image.Image:
-    """The map with its curves."""
-    square = Image.new("RGB", (side, side), WHITE)
-    raster = Image.fromarray(pixels).resize((side, side), Image.Resampling.NEAREST)
-    square.paste(raster, mask=raster)
-    for curve in curves:
-        if curve.halo:
-            stroke(square, curve.pieces, LIGHT.halo, 1.8 * curve.weight * size)
-        stroke(square, curve.pieces, curve.entry.colour, curve.weight * size)
-    return square
-
-
-def _mark(square: Image.Image, place: np.ndarray, number: str, colour: str, size: int) -> None:
-    """A cross with its number, both with a rim; nothing where the start is outside."""
-    if not np.all((place >= 0) & (place <= 1)):
-        return
-    # From the back: light for a dark picture, dark for a light one, and the orbit's own colour.
-    for ink, width in ((LIGHT.halo, 0.6), (MARK_EDGE, 0.4), (colour, 0.2)):
-        arm = (0.4 + width / 2) * size / square.width
-        bars = [place + arm * np.array([[-1, 0], [1, 0]]), place + arm * np.array([[0, -1], [0, 1]])]
-        stroke(square, bars, ink, width * size)
-    x, y = place[0] * square.width, (1 - place[1]) * square.width
-    # The number stays on the picture: left of a cross at the right edge, below one at the top.
-    anchor, dx = ("r", -0.5) if x > square.width - 2 * size else ("l", 0.5)
-    anchor, dy = (anchor + "t", 0.3) if y < 2 * size else (anchor + "b", -0.3)
-    rim, at = max(1, size // 6), (x + dx * size, y + dy * size)
-    ImageDraw.Draw(square).text(at, number, LIGHT.text, font_of(size), anchor, stroke_width=rim, stroke_fill=LIGHT.halo)
-
-
-def _entries(frame: EscapeMap, picture: str, palette: Palette, findings: MapAnalyses) -> list[Entry]:
-    """What the colours mean: all classes of the picture, and the outcomes that occur."""
-    judged = findings.regularity is not None and findings.regularity.complete
+def _entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> list[Entry]:
+    """Legend of the colours: all classes of the picture, and the outcomes that occur."""
+    judged = analyses.regularity is not None and analyses.regularity.complete
     occurring = set(np.unique(frame.fate).tolist())
     outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in occurring]
     if picture == "characters":
@@ -157,12 +290,12 @@ def _entries(frame: EscapeMap, picture: str, palette: Palette, findings: MapAnal
     if picture == "origins":
         return [*palette.passage_entries(channels), *outcomes]
     classes = {"basins": palette.channel_entries(channels), "crossings": palette.crossing_entries}
-    doubt = [Entry("not to be trusted", DOUBT)] if picture in DOUBTED and findings.trust is not None else []
+    doubt = [Entry("doubtful", DOUBT)] if picture in DOUBTED and analyses.trust is not None else []
     return [*classes.get(picture, []), *outcomes, *doubt]
 
 
 def provenance_line(frame: EscapeMap) -> str:
-    """What made the map, in a line: potential, h, plane, window, resolution, t_max and version."""
+    """Provenance of a map in a line: potential, h, plane, window, resolution, t_max and version."""
     facts, plane = frame.provenance(), frame.spec.plane
     x_low, x_high, low, high = (repr(float(edge)) for edge in facts["window"])
     name, (columns, rows) = facts["potential"], facts["resolution"]

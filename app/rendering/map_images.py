@@ -1,16 +1,14 @@
-"""The pictures of a map: what stands over each, which pixel has which colour, and their bare pixels."""
+"""Pictures of a map: their titles, their colour codes and their pixels."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
-from PIL import ImageColor
 
 from app.rendering.image_columns import character_column, longest_typical_time, map_columns, passage_column
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.palette import DOUBT, Palette
+from app.rendering.palette import DOUBT, Palette, rgba
 from engine import EscapeMap, Trust
 
 TITLES = {
@@ -21,7 +19,7 @@ TITLES = {
     "characters": "Regular or chaotic",
     "origins": "Origin and exit",
 }
-"""All pictures, and what stands over each."""
+"""Titles of all pictures."""
 
 PAINTED = {
     "curves": ("fate", "region_colours"),
@@ -31,52 +29,72 @@ PAINTED = {
     "characters": ("character", "character_colours"),
     "origins": ("passage", "passage_colours"),
 }
-"""The column of pixel codes that each picture paints, and the colours of a palette that it has for them."""
+"""For each picture its column of pixel codes and the attribute of `Palette` with the colours of the codes."""
 
 ON_DEMAND = {"characters": "judge", "origins": "origins"}
-"""Pictures that are shown when somebody asks for them, and the switch of the view state that does."""
+"""Pictures that need a follow-up analysis, and the attribute of the view state that requests it."""
 
 DOUBTED = ("basins", "crossings")
 """Pictures in which doubtful pixels are marked."""
 
 SHORTEST_TIME = 1.0
-"""Where the logarithmic scale of escape times begins."""
+"""Lower end of the logarithmic scale of escape times."""
+
+SMALLEST_PICTURE, LARGEST_PICTURE = 100, 4000
+"""Sides in pixels that a map in a picture file may have."""
 
 
-def picture_pixels(frame: EscapeMap, picture: str, palette: Palette, findings: MapAnalyses = NO_ANALYSES) -> np.ndarray:
-    """The bare picture: (rows, columns, 4) uint8 RGBA, a pixel for each start, with row 0 on top.
+def picture_pixels(
+    frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses = NO_ANALYSES, longest: float | None = None
+) -> np.ndarray:
+    """Pixels of a picture without axes and curves.
 
-    `findings` paint what the map does not know by itself, and the doubtful pixels.
+    Parameters
+    ----------
+    frame
+        The map, finished or not.
+    picture
+        One of `TITLES`.
+    palette
+        Colours.
+    analyses
+        Results of follow-up analyses: regularity, origins and doubtful pixels.
+    longest
+        Upper end of the scale of escape times; None for `longest_typical_time`.
 
-    Raises ValueError when `picture` is not one of `TITLES`.
+    Returns
+    -------
+    numpy.ndarray
+        (rows, columns, 4) uint8 RGBA, one pixel per start, row 0 on top.
+
+    Raises
+    ------
+    ValueError
+        If `picture` is not one of `TITLES`.
     """
     if picture not in TITLES:
         raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
     columns = map_columns(frame, characters=picture == "characters")
-    if findings.regularity is not None:
-        columns |= character_column(frame, findings.regularity)
-    if findings.origins is not None:
-        columns |= passage_column(findings.origins)
+    if analyses.regularity is not None:
+        columns |= character_column(frame, analyses.regularity)
+    if analyses.origins is not None:
+        columns |= passage_column(analyses.origins)
     column, colours = PAINTED[picture]
-    pixels = _rgba(getattr(palette, colours))[columns[column][0]]
+    pixels = rgba(getattr(palette, colours))[columns[column][0]]
     if picture == "times":
         times = columns["escape_time"][0]
-        known = np.isfinite(times)
-        pixels[known] = time_colours(times[known], longest_typical_time(frame), palette)
-    if findings.trust is not None and picture in DOUBTED:
-        pixels[findings.trust.trust == Trust.DOUBTFUL] = _rgba([DOUBT])
+        escaped = np.isfinite(times)
+        pixels[escaped] = time_colours(times[escaped], longest or longest_typical_time(frame), palette)
+    if analyses.trust is not None and picture in DOUBTED:
+        pixels[analyses.trust.trust == Trust.DOUBTFUL] = rgba([DOUBT])
     rows, wide = frame.fate.shape
     whole: np.ndarray = pixels.repeat(frame.stride, axis=0).repeat(frame.stride, axis=1)[:rows, :wide]
     return np.ascontiguousarray(whole[::-1])
 
 
-def _rgba(colours: Sequence[str]) -> np.ndarray:
-    return np.array([ImageColor.getcolor(colour, "RGBA") for colour in colours], np.uint8)
-
-
 def time_colours(times: np.ndarray, longest: float, palette: Palette) -> np.ndarray:
-    """(n, 4) colours of escape times, on a logarithmic scale from SHORTEST_TIME to `longest`."""
-    colours = _rgba(palette.escape_time)
+    """(n, 4) colours of escape times, on a logarithmic scale from `SHORTEST_TIME` to `longest`."""
+    colours = rgba(palette.escape_time)
     place = np.log(np.clip(times, SHORTEST_TIME, longest) / SHORTEST_TIME) / math.log(longest / SHORTEST_TIME) * len(colours)
     chosen: np.ndarray = colours[np.minimum(place.astype(int), len(colours) - 1)]
     return chosen

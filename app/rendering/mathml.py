@@ -1,4 +1,4 @@
-"""A system in formulas, as MathML for the browser to set; all of it follows from the potential's terms."""
+"""Formulas of a system as MathML, derived from the terms of its potential."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from engine import Potential
 
-# Numbers are shown exactly where they are this close to a fraction, or the root of one, of small denominator.
+# Numbers this close to a fraction with a small denominator, or to the square root of one, are shown as such.
 _ROUNDING = 1e-10
 _LARGEST_DENOMINATOR = 100
 _COORDINATE_DIGITS, _COEFFICIENT_DIGITS = 4, 12
@@ -20,10 +20,10 @@ _POWERS = {"2": "squared", "3": "cubed"}
 
 
 def equations(potential: Potential) -> str:
-    """HTML: Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles of a system."""
+    """HTML list of Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles."""
     rows = {
         "Hamiltonian": [_var("H") + _op("=") + _energy(_momentum_squared("x"), _momentum_squared("y"))],
-        "Potential": [_V_AT_POINT + _op("=") + _polynomial({(i, j): c for i, j, c in potential.terms})],
+        "Potential": [_potential(potential)],
         "Equations of motion": [_motion("x", potential.derivative(1, 0)), _motion("y", potential.derivative(0, 1))],
         "Energy integral": [_energy(_raised(_above("x", "˙"), 2), _raised(_above("y", "˙"), 2)) + _op("=") + _var("h")],
         **_exits(potential),
@@ -33,8 +33,17 @@ def equations(potential: Potential) -> str:
     return f"<dl style='margin:0;font-size:13px;color:inherit'>{body}</dl>"
 
 
+def potential_formula(potential: Potential) -> str:
+    """MathML of V(x, y) = …"""
+    return _math(_potential(potential))
+
+
+def _potential(potential: Potential) -> str:
+    return _V_AT_POINT + _op("=") + _polynomial({(i, j): c for i, j, c in potential.terms})
+
+
 def _exits(potential: Potential) -> dict[str, list[str]]:
-    """Escape energy and saddles, in the order of the channels; nothing where there are none."""
+    """Escape energy, and saddles in the order of the channels; empty if there are no channels."""
     if not potential.channels:
         return {}
     escape_energy = f"<msub>{_var('h')}<mtext>esc</mtext></msub>" + _op("=") + _number(potential.escape_energy)
@@ -44,7 +53,7 @@ def _exits(potential: Potential) -> dict[str, list[str]]:
 
 
 def _motion(axis: str, slope: Mapping[tuple[int, int], float]) -> str:
-    """Acceleration = −∂V/∂axis, as it stands and written out."""
+    """Acceleration = −∂V/∂axis, with the derivative written out."""
     partial = f"<mfrac>{_row(_op('∂') + _var('V'))}{_row(_op('∂') + _var(axis))}</mfrac>"
     force = _polynomial({powers: -c for powers, c in slope.items()})
     return _above(axis, "¨") + _op("=") + _row(_op("−") + partial) + _op("=") + force
@@ -69,7 +78,7 @@ def _signed(coefficient: float, monomial: str) -> str:
 
 
 def _number(value: float, digits: int = _COORDINATE_DIGITS) -> str:
-    """A fraction or the root of one where it is one, else a decimal number."""
+    """Fraction, square root of a fraction, or decimal number."""
     if value < 0.0:
         return _row(_op("−") + _number(-value, digits))
     for power in (1, 2):
@@ -81,12 +90,12 @@ def _number(value: float, digits: int = _COORDINATE_DIGITS) -> str:
 
 
 def _root(number: int) -> str:
-    """√number, with squares taken out of the root."""
+    """Square root of an integer, with square factors taken out."""
     outside = max(k for k in range(1, isqrt(number) + 1) if number % k**2 == 0)
     inside = number // outside**2
     if inside == 1:
         return _digits(outside)
-    # Not <msqrt>: without a mathematical font on the machine some browsers leave out its sign.
+    # Some browsers do not draw the sign of <msqrt> without a mathematical font.
     return _digits(f"√{inside}" if outside == 1 else f"{outside}√{inside}")
 
 
@@ -96,7 +105,7 @@ def _math(formula: str) -> str:
 
 
 def _words(node: ElementTree.Element) -> str:
-    """A formula as it is read aloud."""
+    """Text of a formula for screen readers."""
     parts = [_words(child) for child in node]
     if node.tag == "mfrac":
         return "/".join(parts) if all(part.isdecimal() for part in parts) else " over ".join(parts)
@@ -121,7 +130,7 @@ def _digits(number: int | str) -> str:
 
 
 def _row(formula: str) -> str:
-    """A formula as one whole: a sign at its beginning is a sign, not an operation on what stands before."""
+    """Group a formula, so that a sign at its start is unary."""
     return f"<mrow>{formula}</mrow>"
 
 

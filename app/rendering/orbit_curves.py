@@ -1,4 +1,4 @@
-"""Orbits made small enough to be sent: long paths as an image, histories as their envelopes, a moment with its trail."""
+"""Orbits reduced for the browser: long paths as images, histories as envelopes, and a moving point with its trail."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ History = tuple[np.ndarray, np.ndarray]
 """Times and values."""
 
 LEAST_SALI = 1e-17
-"""Where the axis of SALI ends; a logarithm knows no zero."""
+"""Lower end of the logarithmic axis of SALI."""
 
 LEAST_EXPONENT = 1e-7
-"""Where the axis of the Lyapunov exponent ends."""
+"""Lower end of the logarithmic axis of the Lyapunov exponent."""
 
 MOST_LINE_POINTS = 20_000
-"""Longer paths than this are shaded by how often they come by."""
+"""Paths with more points are drawn as density images."""
 
 TRAIL = 25.0
-"""Time that the trail behind the moving point shows: some four rounds of the well."""
+"""Length of the trail behind the moving point in time, about four periods of the well."""
 
-# Each of this many bins of a history shows its least and greatest value.
+# Bins of a history; each keeps its smallest and its largest value.
 _BINS = 1000
-# Twice the pixels of the figure, for sharp screens.
+# Twice the pixels of the plot, for high-density screens.
 _SHADED_PIXELS = 600
 _FAINTEST = 50
 
 
 @dataclass(frozen=True, eq=False)
 class OrbitCurves:
-    """An orbit with all that is drawn of it.
+    """An orbit and its curves.
 
     Attributes
     ----------
     orbit
-        The orbit itself.
+        The orbit.
     window
-        The part of (x, y) that the interior of its energy fills.
+        Window of the (x, y) plane that contains the interior at its energy.
     sali, exponent, r2
         (t, value) envelopes of its histories.
     section
         (n, 2) x and px of its upward crossings of y = 0.
     visits
-        Of a path too long for a line, how often it comes by: (n, n) uint8 opacity over the window, row 0 lowest; else None.
+        (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for shorter paths.
     """
 
     orbit: Orbit
@@ -68,13 +68,18 @@ class OrbitCurves:
 
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
-    """Everything that takes time, to be done once for an orbit and outside the session's lock."""
+    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
     window = default_window(potential, Plane.X_Y, orbit.energy)
     sali = envelope(orbit.t[1:], np.maximum(orbit.sali[1:], LEAST_SALI), logarithmic=True)
     visits = _visits(orbit, window) if orbit.t.size > MOST_LINE_POINTS else None
     r2 = envelope(orbit.t, orbit.r2, logarithmic=False)
     exponent = envelope(orbit.t[1:], np.maximum(orbit.lyapunov_exponent[1:], LEAST_EXPONENT), logarithmic=True)
     return OrbitCurves(orbit, window, sali, exponent, r2, find_section_crossings(potential, orbit), visits)
+
+
+def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
+    """(x, y, px, py) of the start of an orbit."""
+    return float(orbit.x[0]), float(orbit.y[0]), float(orbit.px[0]), float(orbit.py[0])
 
 
 def _visits(orbit: Orbit, window: Window) -> np.ndarray:
@@ -89,14 +94,14 @@ def _visits(orbit: Orbit, window: Window) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Moment:
-    """Where an orbit is at a time, and where it has just been: (n,) x and y of the trail, which ends there."""
+    """(n,) x and y of the trail of an orbit, which ends at its current position."""
 
     x: np.ndarray
     y: np.ndarray
 
 
 def moment(orbit: Orbit, t: float) -> Moment:
-    """An orbit at a time; at its end for times beyond it."""
+    """Trail of an orbit at a time; at its end for later times."""
     last = int(np.searchsorted(orbit.t, t, side="right")) - 1
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)
@@ -104,7 +109,7 @@ def moment(orbit: Orbit, t: float) -> Moment:
 
 
 def envelope(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> History:
-    """A history thinned to what can be seen: of each bin of time its least and greatest value, in order of time."""
+    """Thin a history to the smallest and the largest value of each bin of time, in order of time."""
     if t.size <= 2 * _BINS:
         return t, values
     scale = np.log(t) if logarithmic else t

@@ -1,19 +1,20 @@
-"""Every colour of the page and what it stands for, once: the paper's set, and one that the colour-blind can read."""
+"""Colours of the page and their meaning: the palette of the paper and a colour-blind safe one."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
+import numpy as np
 from bokeh.palettes import Cividis256, interp_palette
-from PIL import ImageColor
 
 from engine import Certificate, Fate, Regularity
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A line of a legend."""
+    """Entry of a legend."""
 
     label: str
     colour: str
@@ -26,58 +27,58 @@ OUTCOMES: dict[Fate, str] = {
     Fate.FORBIDDEN: "forbidden: no such orbit",
     Fate.BOUNDED: "bounded",
 }
-"""The pixel codes of all images: these outcomes first, in this order, then channels or classes."""
+"""Outcomes in the order of the pixel codes of all images; channels or classes follow."""
 
 CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (11, "> 10"))
 """(fewest crossings, label) of each class."""
 
 CHARACTERS: dict[Regularity, str] = {
-    Regularity.NO_QUESTION: "escapes",
+    Regularity.NOT_APPLICABLE: "escapes",
     Regularity.REGULAR: "bounded and regular",
     Regularity.CHAOTIC: "bounded and chaotic",
     Regularity.NOT_JUDGED: "bounded, not judged yet",
 }
-"""What the pixels of the picture of regular and chaotic orbits stand for, after the outcomes."""
+"""Classes of the picture of regular and chaotic orbits."""
 
 MOST_CHANNELS = 8
-"""As many exit channels have a colour."""
+"""Exit channels that have a colour."""
 
 MOST_ORBITS = 5
-"""As many orbits have a colour of their own."""
+"""Orbits that have a colour."""
 
-# Translucent, so that they go with a light page and with a dark one.
+# Translucent, for light and dark pages.
 _FORBIDDEN = "#ffffff00"
 _OUTSIDE = "#b0904a48"
 _NOT_COMPUTED = "#7f9cc855"
 _INTERIOR = "#7aa7d618"
 _FAILED = "#000000"
 
-# The colour of the exit, towards white (above 0) or black (below), for the origins 1 to 8 in turn.
+# For origins 1 to 8: share of white (positive) or black (negative) mixed into the colour of the exit.
 _ORIGIN_TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8)
-# An orbit that was inside all the time: towards the colour of bounded orbits.
+# For orbits that never entered: share of the colour of bounded orbits.
 _BOUNDED_ORIGIN = 0.65
 
 
 @dataclass(frozen=True)
 class Palette:
-    """A set of colours.
+    """Set of colours.
 
     Attributes
     ----------
     name
-        What a visitor reads.
+        Displayed name.
     channels
         Of the exit channels 1 to 8.
     bounded
-        Of orbits that stay.
+        Of bounded orbits.
     classes
         Of each of `CROSSING_CLASSES`.
     escape_time
-        From fast to slow, 256 of them.
+        256 colours, from fast to slow escapes.
     characters
-        Of orbits that escape, are regular, are chaotic; the rest have the colour of bounded ones.
+        Of escaping, regular and chaotic orbits; others have the colour of bounded ones.
     orbits
-        Of the orbits that a visitor has chosen, in turn.
+        Of the chosen orbits, in order.
     """
 
     name: str
@@ -90,7 +91,7 @@ class Palette:
 
     @cached_property
     def outcomes(self) -> dict[Fate, Entry]:
-        """Legend of what is no escape, in the order of the pixel codes."""
+        """Legend of outcomes other than escapes, in the order of the pixel codes."""
         colours = (_NOT_COMPUTED, _FAILED, _OUTSIDE, _FORBIDDEN, self.bounded)
         return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
 
@@ -105,7 +106,7 @@ class Palette:
         return [Entry(label, colour) for label, colour in zip(CHARACTERS.values(), (*self.characters, self.bounded), strict=True)]
 
     def passage_colour(self, origin: int, fate: int) -> str:
-        """Of orbits by where they come from and where they go, 0 for nowhere: the hue tells the exit, the tone the origin."""
+        """Colour of orbits from a channel to a channel, 0 for none: the hue shows the exit, the tone the origin."""
         colour = self.channels[fate - 1] if fate else self.bounded
         if origin == 0:
             return _mixed(colour, self.bounded, _BOUNDED_ORIGIN)
@@ -117,40 +118,40 @@ class Palette:
         return [Entry(f"channel {k + 1}", self.channels[k]) for k in range(channels)]
 
     def passage_entries(self, channels: int) -> list[Entry]:
-        """Legend of where orbits come from and where they go, for a list; a key in two directions says it with fewer words."""
+        """Legend of origin and exit, as a list."""
         pairs = ((origin, fate) for origin in range(channels + 1) for fate in range(1, channels + 1))
         names = ["inside", *map(str, range(1, channels + 1))]
         return [Entry(f"{names[origin]} to {fate}", self.passage_colour(origin, fate)) for origin, fate in pairs]
 
     @cached_property
     def fate_colours(self) -> list[str]:
-        """For each pixel code of the basins its colour."""
+        """Colours of the pixel codes of the basins."""
         return [*self._outcome_colours, *self.channels]
 
     @cached_property
     def crossing_colours(self) -> list[str]:
-        """For each pixel code of the crossings; bounded pixels have a code for each certificate."""
+        """Colours of the pixel codes of the crossings; bounded pixels have one code per certificate."""
         return [*self._outcome_colours, *self.classes, *(self.bounded for _ in Certificate)]
 
     @cached_property
     def character_colours(self) -> list[str]:
-        """For each pixel code of regular and chaotic orbits."""
+        """Colours of the pixel codes of regular and chaotic orbits."""
         return [*self._outcome_colours, *(entry.colour for entry in self.character_entries)]
 
     @cached_property
     def passage_colours(self) -> list[str]:
-        """For each pixel code of the picture of origins and exits: origin by origin, bounded first, and in each exit by exit."""
+        """Colours of the pixel codes of origins and exits: by origin, none first, then by exit."""
         ends = range(MOST_CHANNELS + 1)
         return [*self._outcome_colours, *(self.passage_colour(origin, fate) for origin in ends for fate in ends)]
 
     @cached_property
     def background_colours(self) -> list[str]:
-        """Under the escape times, which cover the escaped pixels."""
+        """Colours of the pixel codes under the escape times, which cover escaped pixels."""
         return [*self._outcome_colours, *([_FORBIDDEN] * len(self.channels))]
 
     @cached_property
     def region_colours(self) -> list[str]:
-        """The plain interior of the first picture."""
+        """Colours of the pixel codes of the picture of the exits, in which the interior has one colour."""
         plain = [self.outcomes[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else _INTERIOR for fate in OUTCOMES]
         return [*plain, *([_INTERIOR] * len(self.channels))]
 
@@ -159,9 +160,14 @@ class Palette:
         return [entry.colour for entry in self.outcomes.values()]
 
 
+def rgba(colours: Sequence[str]) -> np.ndarray:
+    """(n, 4) uint8 of colours ``#rrggbb`` or ``#rrggbbaa``."""
+    return np.array([list(bytes.fromhex(colour[1:].ljust(8, "f"))) for colour in colours], np.uint8)
+
+
 def _mixed(colour: str, other: str, share: float) -> str:
-    """A colour on its way to another."""
-    pairs = zip(ImageColor.getrgb(colour), ImageColor.getrgb(other), strict=True)
+    """Linear interpolation between two colours ``#rrggbb``."""
+    pairs = zip(bytes.fromhex(colour[1:]), bytes.fromhex(other[1:]), strict=True)
     return "#" + "".join(f"{round(one + share * (two - one)):02x}" for one, two in pairs)
 
 
@@ -174,7 +180,7 @@ PAPER = Palette(
     characters=("#f4ead2", "#1fb6d1", "#d81fa4"),
     orbits=("#0b84f3", "#e6007e", "#00a88f", "#f2a900", "#7b4fe0"),
 )
-"""Channels 1 to 4 green, red, blue, orange; fast escapes light red, slow ones dark; regular cyan, chaotic magenta."""
+"""Channels 1 to 4 green, red, blue, orange; fast escapes light red, slow escapes dark; regular cyan, chaotic magenta."""
 
 COLOUR_BLIND_SAFE = Palette(
     name="colour-blind safe",
@@ -185,15 +191,15 @@ COLOUR_BLIND_SAFE = Palette(
     characters=("#f3efe2", "#0072b2", "#e69f00"),
     orbits=("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9"),
 )
-"""After Okabe and Ito; classes along viridis, times along cividis."""
+"""Channels after Okabe and Ito, classes from viridis, times from cividis."""
 
 PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
-"""By the name that a link has for them."""
+"""Palettes by their names in links."""
 
 
 @dataclass(frozen=True)
 class Inks:
-    """Colours of lines on a page, light or dark."""
+    """Colours of lines and text on a light or a dark page."""
 
     limiting_curve: str
     equipotential: str
@@ -213,16 +219,16 @@ DARK = Inks(
 )  # fmt: skip
 
 DOUBT = "#000000c0"
-"""Over pixels that are not to be trusted."""
+"""Of doubtful pixels."""
 
 MANIFOLD = "#101010"
-"""Of stable manifolds over the basins they bound; they have a halo."""
+"""Of stable manifolds; they have a halo."""
 
 MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
-"""Of what was measured, and of that part of it which a fit leaves aside."""
+"""Of measured points, and of those that a fit leaves out."""
 
 LAW_COLOURS = {"exponential": "#d1495b", "power law": "#edae49"}
-"""Of fitted laws, by their names."""
+"""Of fitted decay laws."""
 
 PATCH_EDGE = "#999999"
 MARK_EDGE = "#111111"

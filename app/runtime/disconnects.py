@@ -1,4 +1,4 @@
-"""Pages that have lost their visitor: what was computed for them stops at once, long before their session ends."""
+"""Cancel the jobs of a page soon after its last connection closes, long before its session expires."""
 
 from __future__ import annotations
 
@@ -6,31 +6,31 @@ from collections.abc import Callable, Iterable
 from typing import Any
 from weakref import WeakKeyDictionary, WeakSet
 
-LOOKED_AT_EVERY = 0.25
-"""Seconds between two looks at all sessions."""
+CHECK_SECONDS = 0.25
+"""Interval between two calls of `DisconnectMonitor.check`."""
 
-_leaving: WeakKeyDictionary[Any, Callable[[], None]] = WeakKeyDictionary()
+_callbacks: WeakKeyDictionary[Any, Callable[[], None]] = WeakKeyDictionary()
 
 
-def when_left(document: Any, stop: Callable[[], None]) -> None:
-    """Have `stop` called when the last connection of a page's document is gone; at most once."""
-    _leaving[document] = stop
+def on_disconnect(document: Any, callback: Callable[[], None]) -> None:
+    """Register a callback for the close of the last connection to a document; it is called at most once."""
+    _callbacks[document] = callback
 
 
 class DisconnectMonitor:
-    """Tells which pages have been left since the last look."""
+    """Detects sessions that have lost their last connection."""
 
     def __init__(self, sessions: Callable[[], Iterable[Any]]) -> None:
         self._sessions = sessions
-        # A session without a connection may still wait for its first one.
-        self._visited: WeakSet[Any] = WeakSet()
+        # A new session has no connection yet.
+        self._connected: WeakSet[Any] = WeakSet()
 
-    def look(self) -> None:
-        """Stop what is computed for pages that have been left."""
+    def check(self) -> None:
+        """Call the callbacks of documents that were connected and are not any more."""
         for session in list(self._sessions()):
             if session.connection_count:
-                self._visited.add(session)
-            elif session in self._visited:
-                stop = _leaving.pop(session.document, None)
-                if stop is not None:
-                    stop()
+                self._connected.add(session)
+            elif session in self._connected:
+                callback = _callbacks.pop(session.document, None)
+                if callback is not None:
+                    callback()

@@ -1,39 +1,48 @@
-"""Whether the server should be sent more visitors."""
+"""Readiness of the server, and admission of new sessions."""
 
 from __future__ import annotations
 
-from app.runtime.memory import resident_bytes
-from app.runtime.process_state import ProcessState
-from app.runtime.settings import variable_of
+from typing import TYPE_CHECKING
+
+import psutil
+
+from app.runtime.settings import variable_name
+
+if TYPE_CHECKING:
+    from app.runtime.process_state import ProcessState
 
 
-def why_not_ready(site: ProcessState) -> str | None:
-    """What stands against more visitors, in one sentence; None when nothing does."""
-    if site.stopping.is_set():
+def resident_bytes() -> int:
+    """Return the resident memory of the process in bytes."""
+    return int(psutil.Process().memory_info().rss)
+
+
+def not_ready_reason(state: ProcessState) -> str | None:
+    """Return a sentence that says why a load balancer should send no more visitors; None when the server is ready."""
+    if state.stopping.is_set():
         return "The server is stopping."
-    if site.failed.is_set():
+    if state.kernels_failed.is_set():
         return "The integrators could not be compiled; the log says why."
-    if not site.prepared.is_set():
+    if not state.kernels_ready.is_set():
         return "The integrators are being compiled."
-    # Where the system does not tell, the ceiling is no objection.
-    ceiling, memory = site.settings.memory_ceiling, resident_bytes() or 0
+    ceiling, memory = state.settings.memory_ceiling, resident_bytes()
     if ceiling and memory > ceiling:
-        return f"The server holds {memory} bytes, above {variable_of('memory_ceiling')}={ceiling}."
-    return _why_full(site)
+        return f"The server holds {memory} bytes, above {variable_name('memory_ceiling')}={ceiling}."
+    return _full_reason(state)
 
 
-def why_no_entry(site: ProcessState) -> str | None:
-    """What stands against one more session, in one sentence; None when nothing does.
+def refusal_reason(state: ProcessState) -> str | None:
+    """Return a sentence that says why no session can be created; None when one can.
 
-    Less than for readiness: who asks while the integrators are compiled may wait on the page.
+    Weaker than readiness: sessions are created while the integrators are compiled, and wait on the page.
     """
-    if site.stopping.is_set():
+    if state.stopping.is_set():
         return "The server is stopping. Reload this page in a minute."
-    return _why_full(site)
+    return _full_reason(state)
 
 
-def _why_full(site: ProcessState) -> str | None:
-    most = site.settings.most_sessions
-    if site.count_sessions() < most:
+def _full_reason(state: ProcessState) -> str | None:
+    limit = state.settings.most_sessions
+    if len(list(state.sessions())) < limit:
         return None
-    return f"All {most} places are taken. Reload this page in a minute."
+    return f"All {limit} places are taken. Reload this page in a minute."

@@ -1,25 +1,24 @@
-"""How far the server is behind with its visitors' messages: while it is, finer pictures and quick looks wait."""
+"""Measure the delay of the event loop; while it is high, previews and refined frames are postponed."""
 
 from __future__ import annotations
 
 import time
-from functools import cache
 
-LOOKED_AT_EVERY = 0.1
-"""Seconds between two looks at the clock."""
+TICK_SECONDS = 0.1
+"""Interval between two calls of `LoadMonitor.tick`."""
 
-HIGH = 0.05
-"""Seconds by which a look may be late before the server counts as pressed."""
+HIGH_SECONDS = 0.05
+"""Delay of a tick above which the load is high."""
 
-# Of the last delay, what is left at the next look: half a second after a crowd has gone everything is as before.
-_MEMORY = 0.7
+# Factor by which a delay decays per tick: the load is normal again half a second after a peak.
+_DECAY = 0.7
 
 LONGEST_SECONDS = 2.0
-"""In a crowd that does not go, everything is computed for a moment each time this is over: nothing waits for ever."""
+"""A high load is reported as normal for one tick after this time, so that postponed work is delayed but never starved."""
 
 
 class LoadMonitor:
-    """The delay of a clock that ticks between the messages of all visitors."""
+    """Delay of a periodic callback on the event loop."""
 
     def __init__(self) -> None:
         self._due: float | None = None
@@ -27,22 +26,16 @@ class LoadMonitor:
         self.delay = 0.0
 
     def tick(self) -> None:
-        """To be called every `LOOKED_AT_EVERY` seconds, by the loop that handles messages."""
+        """Measure the delay; call every `TICK_SECONDS` on the event loop."""
         now = time.monotonic()
         late = max(0.0, now - self._due) if self._due is not None else 0.0
-        self.delay = max(late, _MEMORY * self.delay)
-        self._due = now + LOOKED_AT_EVERY
-        if not self.delay > HIGH or (self._high_since is not None and now - self._high_since > LONGEST_SECONDS):
+        self.delay = max(late, _DECAY * self.delay)
+        self._due = now + TICK_SECONDS
+        if not self.delay > HIGH_SECONDS or (self._high_since is not None and now - self._high_since > LONGEST_SECONDS):
             self._high_since = None
         elif self._high_since is None:
             self._high_since = now
 
     def is_high(self) -> bool:
-        """Whether all that nobody waits for before an empty page is too much."""
+        """Whether work other than first frames should be postponed."""
         return self._high_since is not None
-
-
-@cache
-def process_load_monitor() -> LoadMonitor:
-    """That of this process."""
-    return LoadMonitor()

@@ -1,50 +1,104 @@
-"""What all parts of the server know of it: its limits, where it is in its life, and whom it serves."""
+"""State that all sessions of a server process share: settings, background jobs, load, metrics and flags."""
 
 from __future__ import annotations
 
+import os
 import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any
 
-from app.runtime.settings import Settings, current_settings
+from app.runtime.load_monitor import LoadMonitor
+from app.runtime.metrics import ServerMetrics
+from app.runtime.settings import Settings, read_settings
 from engine import Jobs
+
+# Waiting calls per thread above which the process is overloaded; the map of one session queues two.
+_MOST_WAITING = 4
 
 
 @dataclass(eq=False)
 class ProcessState:
-    """One server process.
+    """State of one server process.
 
     Attributes
     ----------
     settings
-        Its limits.
-    prepared
-        Set when all kernels are compiled or loaded.
-    failed
-        Set when they cannot be.
-    stopping
-        Set when the server has been told to stop.
+        Settings of the process.
     sessions
-        The open Bokeh sessions; none before the server has started.
+        Returns the open Bokeh sessions; none until the server sets it.
     jobs
-        The background work of the process; None before the server has started.
+        Background jobs of all sessions.
+    load
+        Delay of the event loop.
+    metrics
+        Prometheus metrics.
+    kernels_ready
+        Set when all kernels are compiled or loaded from the disk cache.
+    kernels_failed
+        Set when a kernel could not be compiled.
+    stopping
+        Set when the server shuts down.
     """
 
-    settings: Settings
-    prepared: threading.Event = field(default_factory=threading.Event)
-    failed: threading.Event = field(default_factory=threading.Event)
-    stopping: threading.Event = field(default_factory=threading.Event)
+    settings: Settings = field(default_factory=Settings)
     sessions: Callable[[], Iterable[Any]] = tuple
-    jobs: Jobs | None = None
+    jobs: Jobs = field(init=False)
+    load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
+    metrics: ServerMetrics = field(init=False)
+    kernels_ready: threading.Event = field(default_factory=threading.Event, init=False)
+    kernels_failed: threading.Event = field(default_factory=threading.Event, init=False)
+    stopping: threading.Event = field(default_factory=threading.Event, init=False)
 
-    def count_sessions(self) -> int:
-        """How many sessions are open."""
-        return len(list(self.sessions()))
+    def __post_init__(self) -> None:
+        self.jobs = Jobs(
+            cache_bytes=self.settings.cache_bytes,
+            most_orbits=self.settings.most_orbits,
+            threads=self.settings.threads,
+            idle_priority=self.settings.only_idle,
+        )
+        self.metrics = ServerMetrics(self)
+
+    def is_overloaded(self) -> bool:
+        """Whether the event loop is delayed or many calls wait for a thread."""
+        stats = self.jobs.stats()
+        return self.load.is_high() or stats.calls_waiting > _MOST_WAITING * stats.threads
+
+    def is_busy(self) -> bool:
+        """Whether the event loop is delayed or any job is running."""
+        return self.load.is_high() or self.jobs.in_flight > 0
 
 
-@cache
+_lock = threading.Lock()
+_started: ProcessState | None = None
+
+
+def start_process_state(settings: Settings) -> ProcessState:
+    """Start the state of this process with explicit settings, as in a test, a script or a notebook.
+
+    Raises
+    ------
+    RuntimeError
+        The state has already been started.
+    """
+    global _started
+    with _lock:
+        if _started is not None:
+            raise RuntimeError("the state of this process has already been started")
+        _started = ProcessState(settings)
+        return _started
+
+
 def process_state() -> ProcessState:
-    """The one of this process."""
-    return ProcessState(current_settings())
+    """Return the state of this process; the first call starts it with the settings of the environment.
+
+    Raises
+    ------
+    ValueError
+        An environment variable is invalid; one sentence with its name, value and legal values.
+    """
+    global _started
+    with _lock:
+        if _started is None:
+            _started = ProcessState(read_settings(os.environ))
+        return _started

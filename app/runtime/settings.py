@@ -1,152 +1,159 @@
-"""What whoever runs the server may set: environment variables, read once and checked before anything is served."""
+"""Server settings, read from environment variables and validated before the first request."""
 
 from __future__ import annotations
 
-import os
 import reprlib
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
-from functools import cache
 from typing import Any
 
 from engine import MOST_REQUESTS, count_cores
 
 PREFIX = "ESCAPE_EXPLORER_"
-"""With what the names of the environment variables begin."""
+"""Prefix of the environment variables."""
 
 MIB = 2**20
 
 
 class LogFormat(StrEnum):
-    """How a line of the log is written."""
+    """Format of a log record."""
 
     TEXT = "text"
     JSON = "json"
 
 
-@dataclass(frozen=True)
-class _Reading:
-    """How the text of a variable becomes a value, and what is legal, in words."""
+class Tuning(StrEnum):
+    """Optional changes to Bokeh, Python and Tornado defaults (`app.server.tuning`); the server also works without them."""
 
-    read: Callable[[str], Any]
+    BATCHED_PATCHES = "batched_patches"
+    INLINE_CALLBACKS = "inline_callbacks"
+    TCP_NODELAY = "tcp_nodelay"
+    NO_VALIDATION = "no_validation"
+    EAGER_TASKS = "eager_tasks"
+    SWITCH_INTERVAL = "switch_interval"
+    GC_POLICY = "gc_policy"
+
+
+@dataclass(frozen=True)
+class _Parser:
+    """Converts the text of a variable; `legal` describes the legal values."""
+
+    parse: Callable[[str], Any]
     legal: str
 
 
-def _whole(low: int, high: int) -> _Reading:
-    return _Reading(lambda text: _within(int(text), low, high), f"a whole number from {low} to {high}")
+def _integer(low: int, high: int) -> _Parser:
+    return _Parser(lambda text: _in_range(int(text), low, high), f"a whole number from {low} to {high}")
 
 
-def _number(low: float, high: float) -> _Reading:
-    return _Reading(lambda text: _within(float(text), low, high), f"a number from {low:g} to {high:g}")
+def _number(low: float, high: float) -> _Parser:
+    return _Parser(lambda text: _in_range(float(text), low, high), f"a number from {low:g} to {high:g}")
 
 
-def _within[Number: (int, float)](value: Number, low: Number, high: Number) -> Number:
+def _in_range[Number: (int, float)](value: Number, low: Number, high: Number) -> Number:
     if not low <= value <= high:
         raise ValueError
     return value
 
 
-def _read_framers(text: str) -> tuple[str, ...]:
-    framers = tuple(text.split())
-    # What ends a directive, or a header, would begin another one.
-    if not all(framer.isascii() and framer.isprintable() and not set(framer) & set(";,'\"") for framer in framers):
+def _parse_origins(text: str) -> tuple[str, ...]:
+    origins = tuple(text.split())
+    # Reject separators of directives and headers, which could inject another one.
+    if not all(origin.isascii() and origin.isprintable() and not set(origin) & set(";,'\"") for origin in origins):
         raise ValueError
-    return framers
+    return origins
 
 
-_SWITCH = _Reading(lambda text: {"yes": True, "no": False}[text.lower()], "yes or no")
-_LOG_FORMATS = _Reading(LogFormat, "text or json")
-_FRAMERS = _Reading(_read_framers, "origins with spaces between")
+def _parse_tuning(text: str) -> frozenset[Tuning]:
+    named = {"all": frozenset(Tuning), "none": frozenset[Tuning]()}
+    return named[text] if text in named else frozenset(map(Tuning, text.split()))
 
 
-def _set(default: Any, reading: _Reading) -> Any:
-    made = {"default_factory": default} if callable(default) else {"default": default}
-    return field(**made, metadata={"reading": reading})
+_YES_OR_NO = _Parser(lambda text: {"yes": True, "no": False}[text.lower()], "yes or no")
+_LOG_FORMAT = _Parser(LogFormat, "text or json")
+_ORIGINS = _Parser(_parse_origins, "origins separated by spaces")
+_TUNING = _Parser(_parse_tuning, f"all, none, or names separated by spaces: {', '.join(Tuning)}")
+
+
+def _setting(default: Any, parser: _Parser) -> Any:
+    return field(default=default, metadata={"parser": parser})
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Limits and habits of one server process.
+    """Settings of one server process.
 
     Attributes
     ----------
     largest_resolution
-        Most pixels along a side of a map that a visitor may ask for.
+        Maximum number of pixels along a side of a map.
     longest_t_max
-        Longest time horizon that a visitor may ask for, dimensionless.
+        Maximum time horizon, dimensionless.
     most_orbits
-        Most orbits of all large jobs under way together: pixels of maps, and pixels times energies of sweeps.
+        Maximum number of orbits of all large running jobs: pixels of maps, and pixels times energies of sweeps.
     jobs_per_session
-        Most jobs of one visitor at a time.
+        Maximum number of concurrent jobs of a session.
     most_sessions
-        Most visitors at a time; the next one is asked to come back later.
+        Maximum number of sessions; further requests for the page get status 503.
     cache_bytes
-        Most memory for results that are kept, in bytes.
+        Size limit of the result cache, in bytes.
     memory_ceiling
-        Resident memory from which on the server calls itself not ready, in bytes; 0 for no ceiling.
+        Resident memory above which the server reports that it is not ready, in bytes; 0 for no limit.
     threads
-        Threads that compute; without it, one for each core of this process.
+        Number of compute threads; by default the number of cores available to the process.
     only_idle
-        Whether these run only while a processor has nothing else to do (Linux): in a crowd nobody is answered late because of
-        somebody's map, but another program that keeps all processors busy stops every map.
+        Whether compute threads have idle priority (Linux). Requests are then never delayed by a computation, but
+        another program that occupies all processors stops all computations.
     log
-        How a line of the log is written.
+        Format of the log.
     session_seconds
-        How long a session without a visitor is kept, in seconds: a connection that breaks may come back within it.
+        Lifetime of a session without a connection, in seconds; a broken connection can be resumed within it.
     keep_alive_seconds
-        Time between two pings through an idle connection, in seconds; less than the patience of any proxy on the way.
+        Interval between pings on an idle connection, in seconds; must be shorter than the timeout of any proxy.
     frame_ancestors
-        Origins whose pages may show this one in a frame; empty for none.
+        Origins that may embed the page in a frame; empty for none.
+    tuning
+        Enabled performance changes; all by default.
     """
 
-    largest_resolution: int = _set(1024, _whole(16, 4096))
-    longest_t_max: float = _set(1e6, _number(1.0, 1e8))
-    most_orbits: int = _set(4 * MIB, _whole(1000, 10**9))
-    jobs_per_session: int = _set(MOST_REQUESTS, _whole(1, 1000))
-    most_sessions: int = _set(200, _whole(1, 100_000))
-    cache_bytes: int = _set(512 * MIB, _whole(0, 2**50))
-    memory_ceiling: int = _set(0, _whole(0, 2**50))
-    threads: int = _set(count_cores, _whole(1, 1024))
-    only_idle: bool = _set(False, _SWITCH)
-    log: LogFormat = field(default=LogFormat.TEXT, metadata={"reading": _LOG_FORMATS})
-    session_seconds: int = _set(60, _whole(1, 86_400))
-    keep_alive_seconds: int = _set(20, _whole(1, 3600))
-    frame_ancestors: tuple[str, ...] = _set((), _FRAMERS)
+    largest_resolution: int = _setting(1024, _integer(16, 4096))
+    longest_t_max: float = _setting(1e6, _number(1.0, 1e8))
+    most_orbits: int = _setting(4 * MIB, _integer(1000, 10**9))
+    jobs_per_session: int = _setting(MOST_REQUESTS, _integer(1, 1000))
+    most_sessions: int = _setting(200, _integer(1, 100_000))
+    cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
+    memory_ceiling: int = _setting(0, _integer(0, 2**50))
+    threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
+    only_idle: bool = _setting(False, _YES_OR_NO)
+    log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
+    session_seconds: int = _setting(60, _integer(1, 86_400))
+    keep_alive_seconds: int = _setting(20, _integer(1, 3600))
+    frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
+    tuning: frozenset[Tuning] = _setting(frozenset(Tuning), _TUNING)
 
 
-def variable_of(name: str) -> str:
-    """The environment variable of a setting."""
-    return PREFIX + name.upper()
+def variable_name(setting: str) -> str:
+    """Return the environment variable of a setting."""
+    return PREFIX + setting.upper()
 
 
 def read_settings(environment: Mapping[str, str]) -> Settings:
-    """The settings that an environment holds; what is not there, or empty, has its default.
+    """Read the settings from environment variables; missing and empty variables keep their defaults.
 
     Raises
     ------
     ValueError
-        One sentence with the variable, its value and what is legal.
+        One sentence with the variable, its value and the legal values.
     """
     values: dict[str, Any] = {}
     for setting in fields(Settings):
-        variable, reading = variable_of(setting.name), setting.metadata["reading"]
+        variable, parser = variable_name(setting.name), setting.metadata["parser"]
         text = environment.get(variable, "")
         if not text:
             continue
         try:
-            values[setting.name] = reading.read(text)
+            values[setting.name] = parser.parse(text)
         except (ValueError, KeyError):
-            raise ValueError(f"{variable}={reprlib.repr(text)}: must be {reading.legal}") from None
+            raise ValueError(f"{variable}={reprlib.repr(text)}: must be {parser.legal}") from None
     return Settings(**values)
-
-
-@cache
-def current_settings() -> Settings:
-    """The settings of this process, which ends here, with a sentence and exit code 2, where one is of no use."""
-    try:
-        return read_settings(os.environ)
-    except ValueError as error:
-        sys.stderr.write(f"{error}\n")
-        sys.exit(2)

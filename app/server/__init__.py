@@ -1,1 +1,1 @@
-"""The page as a small public server: probes, figures, logs, headers, and a stop that loses nothing."""
+"""Parts of a public server: endpoints, admission, logs, security headers, warm-up, shutdown and tuning."""

@@ -1,103 +1,107 @@
-"""The pages for whoever runs the server: is it alive, is it ready, what does it count."""
+"""Endpoints for the operator: two probes, Prometheus metrics and a status page."""
 
 from __future__ import annotations
 
 import http.client
-from collections.abc import Callable
 from html import escape
 from typing import Any
 
 from prometheus_client import CollectorRegistry
 from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
-from tornado.web import RequestHandler
+from tornado.web import HTTPError
 
-from app.runtime.health import why_not_ready
-from app.runtime.metrics import process_metrics
+from app.runtime.health import not_ready_reason
 from app.runtime.process_state import process_state
-
-# Ours; a list of Bokeh's also holds those of Bokeh and Panel.
-ROUTES: list[tuple[str, type[RequestHandler]]] = []
+from app.server.security_headers import SecurityHeaders
 
 
-def _at[Page: type[RequestHandler]](path: str) -> Callable[[Page], Page]:
-    def note(page: Page) -> Page:
-        ROUTES.append((path, page))
-        return page
-
-    return note
-
-
-class _Fresh(RequestHandler):
-    """A page that nobody may keep."""
+class _Uncached(SecurityHeaders):
+    """A response that must not be cached."""
 
     def set_default_headers(self) -> None:
-        """Said of every answer."""
+        """Forbid caching."""
+        super().set_default_headers()
         self.set_header("Cache-Control", "no-store")
 
 
-@_at("/liveness")
-class LivenessPage(_Fresh):
-    """200 as long as the process answers; what Panel's own says."""
+class Liveness(_Uncached):
+    """200 while the process answers; the same answer as ``panel serve --liveness``."""
 
     def get(self) -> None:
-        """JSON."""
+        """Answer with JSON."""
         self.write({self.request.path: True})
 
 
-@_at("/readiness")
-class ReadinessPage(_Fresh):
-    """200 when more visitors are welcome, 503 with a sentence when not."""
+class Readiness(_Uncached):
+    """200 when the server takes more visitors, otherwise 503 with the reason."""
 
     def get(self) -> None:
-        """JSON."""
-        reason = why_not_ready(process_state())
+        """Answer with JSON."""
+        reason = not_ready_reason(process_state())
         if reason is not None:
             self.set_status(http.client.SERVICE_UNAVAILABLE)
         self.write({"ready": reason is None, "sentence": reason or "Ready."})
 
 
-@_at("/metrics")
-class MetricsPage(_Fresh):
-    """The figures in Prometheus' text form."""
+class Metrics(_Uncached):
+    """Metrics for Prometheus."""
 
     def get(self) -> None:
-        """Text."""
+        """Answer with the Prometheus text format."""
         self.set_header("Content-Type", CONTENT_TYPE_LATEST)
-        self.write(generate_latest(process_metrics().registry))
+        self.write(generate_latest(process_state().metrics.registry))
 
 
-@_at("/status")
-class StatusPage(_Fresh):
-    """The figures in a table."""
+class Status(_Uncached):
+    """The same metrics for people."""
 
     def get(self) -> None:
-        """HTML."""
-        self.write(status_page(why_not_ready(process_state()) or "Ready.", process_metrics().registry))
+        """Answer with HTML."""
+        state = process_state()
+        self.write(status_page(not_ready_reason(state) or "Ready.", state.metrics.registry))
+
+
+class NotFound(SecurityHeaders):
+    """404 for every path without a handler."""
+
+    def prepare(self) -> None:
+        """Refuse the request."""
+        raise HTTPError(http.client.NOT_FOUND)
+
+
+ROUTES: list[tuple[str, type[SecurityHeaders]]] = [
+    ("/liveness", Liveness),
+    ("/readiness", Readiness),
+    ("/metrics", Metrics),
+    ("/status", Status),
+]
+"""Paths and handlers, in the form of a ``panel serve --plugins`` module."""
 
 
 def status_page(sentence: str, registry: CollectorRegistry) -> str:
-    """A page with a sentence and the registry's figures, without the steps of histograms."""
+    """Return a page with a sentence and a table of metrics, without histogram buckets."""
     rows = "".join(
-        f"<tr><th scope=row style='text-align:left;font-weight:normal'>{escape(words)}</th>"
+        f"<tr><th scope=row style='text-align:left;font-weight:normal'>{escape(label)}</th>"
         f"<td style='text-align:right;padding-left:2em'>{value:,.10g}</td></tr>"
-        for words, value in _readings(registry)
+        for label, value in _samples(registry)
     )
     head = "<meta charset=utf-8><meta name=viewport content='width=device-width'><title>Escape Explorer: status</title>"
     body = f"<h1 style='font-size:20px'>Escape Explorer</h1><p>{escape(sentence)}</p><table>{rows}</table>"
     return f"<!doctype html><html lang=en><head>{head}</head><body style='font-family:sans-serif;margin:2em'>{body}</body></html>"
 
 
-def _readings(registry: CollectorRegistry) -> list[tuple[str, float]]:
-    found = []
-    for family in registry.collect():
-        for sample in family.samples:
-            if not sample.name.endswith(("_created", "_bucket")):
-                # A histogram has its count beside its sum.
-                which = ", ".join([*filter(None, sample.labels.values()), *(["count"] if sample.name.endswith("_count") else [])])
-                found.append((f"{family.documentation} ({which})" if which else family.documentation, sample.value))
-    return found
+def _samples(registry: CollectorRegistry) -> list[tuple[str, float]]:
+    return [
+        (_label(family.documentation, sample), sample.value)
+        for family in registry.collect()
+        for sample in family.samples
+        if not sample.name.endswith(("_created", "_bucket"))
+    ]
 
 
-def add_routes(patterns: list[Any]) -> None:
-    """Put the pages among those that a server has besides its apps; twice is once."""
-    patterns += [route for route in ROUTES if route not in patterns]
+def _label(documentation: str, sample: Any) -> str:
+    """The documentation of a metric, with the sample's labels in parentheses."""
+    labels = [label for label in sample.labels.values() if label]
+    if sample.name.endswith("_count"):
+        labels.append("count")
+    return f"{documentation} ({', '.join(labels)})" if labels else documentation

@@ -1,4 +1,4 @@
-"""Python's search for garbage, put off until nobody waits: with twenty-five pages it stops everything for two seconds."""
+"""Run full garbage collections when the process is idle: with 25 open pages one takes two seconds, and blocks everything."""
 
 from __future__ import annotations
 
@@ -6,50 +6,54 @@ import gc
 import time
 from collections.abc import Callable
 
-SEARCHED_EVERY = 120.0
-"""Seconds between two searches of everything at the least."""
+CHECK_SECONDS = 1.0
+"""Interval between two calls of `GarbagePolicy.check`."""
 
-QUIET_SECONDS = 3.0
-"""Nobody waits any more when nobody has waited for this long."""
+COLLECT_SECONDS = 120.0
+"""Minimum interval between two full collections."""
 
+IDLE_SECONDS = 3.0
+"""Time without activity after which the process counts as idle."""
+
+# Multiple of COLLECT_SECONDS after which a collection runs in any case.
 _LONGEST = 10.0
 
-# What is older than this is left out of searches by others, as Panel's some time after a page has gone.
-_OLD_SECONDS = 30.0
+# Interval of gc.freeze(), which exempts older objects from collections that others start, as Panel does when a page closes.
+_FREEZE_SECONDS = 30.0
 
-# Young objects, as always; the old ones never by count.
+# Generations 0 and 1 nearly as by default, generation 2 never by count.
 _THRESHOLDS = 5000, 20, 1_000_000
 
 
 class GarbagePolicy:
-    """Searches everything when nobody waits, and at the latest after ten times the usual pause.
+    """Collects all generations when the process is idle, and at the latest after ten times the usual interval.
 
     Parameters
     ----------
-    is_waited
-        Whether somebody waits for something.
+    is_busy
+        Whether requests or jobs are being processed.
     """
 
-    def __init__(self, is_waited: Callable[[], bool]) -> None:
-        self._is_waited = is_waited
-        self._searched = self._waited = self._set_aside = time.monotonic()
+    def __init__(self, is_busy: Callable[[], bool]) -> None:
+        self._is_busy = is_busy
+        self._collected = self._last_busy = self._frozen = time.monotonic()
         gc.set_threshold(*_THRESHOLDS)
 
-    def look(self) -> None:
-        """Search if it is time; to be called every second or so."""
+    def check(self) -> None:
+        """Collect if it is time; call every `CHECK_SECONDS`."""
         now = time.monotonic()
-        if self._is_waited():
-            self._waited = now
-        since = now - self._searched
-        is_quiet = now - self._waited >= QUIET_SECONDS
-        if since >= SEARCHED_EVERY and (is_quiet or since >= _LONGEST * SEARCHED_EVERY):
+        if self._is_busy():
+            self._last_busy = now
+        since = now - self._collected
+        is_idle = now - self._last_busy >= IDLE_SECONDS
+        if since >= COLLECT_SECONDS and (is_idle or since >= _LONGEST * COLLECT_SECONDS):
             gc.unfreeze()
             gc.collect()
-            self._searched = time.monotonic()
-            self._put_aside()
-        elif now - self._set_aside >= _OLD_SECONDS:
-            self._put_aside()
+            self._collected = time.monotonic()
+            self._freeze()
+        elif now - self._frozen >= _FREEZE_SECONDS:
+            self._freeze()
 
-    def _put_aside(self) -> None:
+    def _freeze(self) -> None:
         gc.freeze()
-        self._set_aside = time.monotonic()
+        self._frozen = time.monotonic()

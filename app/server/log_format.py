@@ -1,106 +1,100 @@
-"""The log: lines of text, or of JSON, that no visitor can forge."""
+"""Log records as lines of text or JSON; user input in messages cannot forge records."""
 
 from __future__ import annotations
 
-import json
 import logging
 import sys
 from collections.abc import Iterable
-from datetime import UTC, datetime
 from typing import Any
 
 import panel as pn
+from pythonjsonlogger.json import JsonFormatter
 from tornado.websocket import WebSocketClosedError
 
 from app.runtime.settings import LogFormat
 
-_SHOWN_OF_SESSION = 8
+_SESSION_CHARACTERS = 8
 _TRACEBACK_INDENT = "    "
 
 
-def session_mark() -> str | None:
-    """The beginning of the current session's id; None outside of sessions.
+def short_session_id() -> str | None:
+    """Return the first characters of the current session's id; None outside a session.
 
-    Whoever knows the whole id can join the session, so the log does not hold it.
+    The whole id would let readers of the log join the session.
     """
     document = pn.state.curdoc
     context = document.session_context if document is not None else None
-    return str(context.id)[:_SHOWN_OF_SESSION] if context is not None else None
+    return str(context.id)[:_SESSION_CHARACTERS] if context is not None else None
 
 
-def add_session_mark(record: logging.LogRecord) -> bool:
-    """Note whose session a record is of; a filter that lets all pass."""
-    record.session = session_mark()
+def add_session_id(record: logging.LogRecord) -> bool:
+    """Add the current session to a record; a filter that passes all records."""
+    if session := short_session_id():
+        record.session = session
     return True
 
 
-def is_worth_a_word(record: logging.LogRecord) -> bool:
-    """False for the report that a visitor left while a message was on its way to them: that is no fault."""
+def is_not_closed_socket(record: logging.LogRecord) -> bool:
+    """Filter out messages that could not be sent because the client had disconnected."""
     return record.exc_info is None or not isinstance(record.exc_info[1], WebSocketClosedError)
 
 
-def is_no_probe(record: logging.LogRecord) -> bool:
-    """False for a request whose answer, that the server is not ready, is no fault."""
+def is_not_probe(record: logging.LogRecord) -> bool:
+    """Filter out the 503 answers of the readiness probe."""
     return " /readiness " not in record.getMessage()
 
 
-def one_line(text: str) -> str:
-    """A text in which control characters, line ends among them, are written out."""
+def escape_control_characters(text: str) -> str:
+    """Escape all characters that are not printable, including line ends."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in text)
 
 
 class TextFormatter(logging.Formatter):
-    """Time, level, logger and message on a line; lines of a traceback are indented, so that none looks like a record."""
+    """Writes time, level, logger, session and message in one line; traceback lines are indented."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """The record as text."""
+        """Format a record."""
         session = getattr(record, "session", None)
-        where = f"{record.name} [{session}]" if session else record.name
-        line = f"{self.formatTime(record)} {record.levelname} {where}: {one_line(record.getMessage())}"
+        logger = f"{record.name} [{session}]" if session else record.name
+        line = f"{self.formatTime(record)} {record.levelname} {logger}: {escape_control_characters(record.getMessage())}"
         if record.exc_info:
-            trace = self.formatException(record.exc_info).splitlines()
-            line = "\n".join([line, *(_TRACEBACK_INDENT + one_line(traced) for traced in trace)])
+            traceback = self.formatException(record.exc_info).splitlines()
+            line = "\n".join([line, *(_TRACEBACK_INDENT + escape_control_characters(traced) for traced in traceback)])
         return line
 
 
-class JsonFormatter(logging.Formatter):
-    """One JSON object on a line."""
+class JsonLineFormatter(JsonFormatter):
+    """Writes a JSON object in one line: time (UTC), level, logger, message, session, exception and traceback."""
 
-    def format(self, record: logging.LogRecord) -> str:
-        """The record as JSON: time in UTC, level, logger, message, and where there are any session, exception and traceback."""
-        told: dict[str, Any] = {
-            "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
-            "level": record.levelname,
-            "logger": record.name,
-            "message": record.getMessage(),
-        }
-        if session := getattr(record, "session", None):
-            told["session"] = session
+    def __init__(self) -> None:
+        names = {"levelname": "level", "name": "logger", "exc_info": "traceback"}
+        super().__init__(["levelname", "name", "message"], rename_fields=names, timestamp="time")
+
+    def add_fields(self, log_data: dict[str, Any], record: logging.LogRecord, message_dict: dict[str, Any]) -> None:
+        """Add the class of the exception to the record's fields."""
+        super().add_fields(log_data, record, message_dict)
         if record.exc_info and record.exc_info[0] is not None:
-            told["exception"] = record.exc_info[0].__qualname__
-            told["traceback"] = self.formatException(record.exc_info)
-        # Escapes line ends, and all that is not ASCII.
-        return json.dumps(told)
+            log_data["exception"] = record.exc_info[0].__qualname__
 
 
-def set_up_logs(form: LogFormat, counter: logging.Handler, loggers: Iterable[logging.Logger]) -> None:
-    """Have all that is logged in this process written in one form, and counted.
+def set_up_logs(log_format: LogFormat, counter: logging.Handler, loggers: Iterable[logging.Logger]) -> None:
+    """Write all records of the process in one format, to stderr, and count them.
 
     Parameters
     ----------
-    form
-        Of a line.
+    log_format
+        Format of the records.
     counter
-        A handler that sees every record, too.
+        Additional handler that counts the records.
     loggers
-        Those with handlers of their own: the root, and Panel's. What writes to stdout is turned to stderr.
+        All loggers with handlers: the root logger and Panel's.
     """
     for logger in loggers:
         for handler in logger.handlers:
-            handler.setFormatter(JsonFormatter() if form is LogFormat.JSON else TextFormatter())
-            handler.addFilter(add_session_mark)
+            handler.setFormatter(JsonLineFormatter() if log_format is LogFormat.JSON else TextFormatter())
+            handler.addFilter(add_session_id)
             if isinstance(handler, logging.StreamHandler) and handler.stream is sys.stdout:
                 handler.setStream(sys.stderr)
         logger.addHandler(counter)
-    logging.getLogger("asyncio").addFilter(is_worth_a_word)
-    logging.getLogger("tornado.access").addFilter(is_no_probe)
+    logging.getLogger("asyncio").addFilter(is_not_closed_socket)
+    logging.getLogger("tornado.access").addFilter(is_not_probe)

@@ -1,9 +1,8 @@
-"""What browsers are told not to do with the page: headers of every response.
+"""Security headers of responses.
 
-Scripts come from this server, or stand in the page as it was served: those carry a number used once, so that nothing that is
-slipped into the page later runs. Bokeh and Panel leave three gaps that cannot be closed from here: `unsafe-eval`, as both make
-functions of text; `blob:`, from which Panel imports components; and `unsafe-inline` for styles, which Bokeh's views and MUI put
-into the page as they run.
+The Content-Security-Policy allows scripts from this server, and inline scripts of the served page by a nonce, so that
+injected scripts do not run. Bokeh and Panel need three exceptions: ``unsafe-eval``, as both create functions from text;
+``blob:``, from which Panel imports components; and ``unsafe-inline`` for styles, which Bokeh and MUI insert at run time.
 """
 
 from __future__ import annotations
@@ -11,28 +10,47 @@ from __future__ import annotations
 import re
 import secrets
 
-from tornado.httputil import HTTPHeaders, HTTPServerRequest
-from tornado.web import OutputTransform
+from tornado.web import RequestHandler
 
-from app.runtime.settings import current_settings
+from app.runtime.process_state import process_state
 
-_SCRIPT = re.compile(rb"<script(?=[\s>])", re.IGNORECASE)
-
-
-def mark_scripts(page: bytes, nonce: str) -> bytes:
-    """A page whose scripts carry a nonce; the module loader of Panel passes it on to the scripts that it writes."""
-    return _SCRIPT.sub(b'<script nonce="%b"' % nonce.encode(), page)
+_SCRIPT = re.compile(r"<script(?=[\s>])", re.IGNORECASE)
 
 
-def content_policy(framers: tuple[str, ...], nonce: str | None = None) -> str:
-    """The value of Content-Security-Policy.
+class SecurityHeaders(RequestHandler):
+    """Adds the headers to every response of a handler, error pages included; a mixin for other handlers."""
+
+    def set_default_headers(self) -> None:
+        """Set the headers and hide the name and version of the server software."""
+        super().set_default_headers()
+        self.set_security_headers()
+        self.clear_header("Server")
+
+    def set_security_headers(self, nonce: str | None = None) -> None:
+        """Set the headers for a response whose inline scripts have this nonce."""
+        for name, value in security_headers(process_state().settings.frame_ancestors, nonce).items():
+            self.set_header(name, value)
+
+
+def add_nonce(page: str, nonce: str) -> str:
+    """Return an HTML page with a nonce on all scripts; Panel's module loader passes it on to the scripts that it inserts."""
+    return _SCRIPT.sub(f'<script nonce="{nonce}"', page)
+
+
+def new_nonce() -> str:
+    """Return a random nonce."""
+    return secrets.token_urlsafe(16)
+
+
+def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -> str:
+    """Return the value of Content-Security-Policy.
 
     Parameters
     ----------
-    framers
-        Origins whose pages may show this one in a frame; empty for none.
+    frame_ancestors
+        Origins that may embed the page in a frame; empty for none.
     nonce
-        What the scripts of the page carry; None for an answer that has none.
+        Nonce of inline scripts; None to allow no inline scripts.
     """
     directives = {
         "default-src": ["'self'"],
@@ -44,42 +62,18 @@ def content_policy(framers: tuple[str, ...], nonce: str | None = None) -> str:
         "object-src": ["'none'"],
         "base-uri": ["'self'"],
         "form-action": ["'self'"],
-        "frame-ancestors": list(framers) or ["'none'"],
+        "frame-ancestors": list(frame_ancestors) or ["'none'"],
     }
     return "; ".join(f"{name} {' '.join(sources)}" for name, sources in directives.items())
 
 
-def security_headers(framers: tuple[str, ...], nonce: str | None = None) -> dict[str, str]:
-    """The headers of a response; parameters as those of `content_policy`."""
+def security_headers(frame_ancestors: tuple[str, ...], nonce: str | None = None) -> dict[str, str]:
+    """Return the headers of a response; parameters as in `content_policy`."""
     headers = {
-        "Content-Security-Policy": content_policy(framers, nonce),
+        "Content-Security-Policy": content_policy(frame_ancestors, nonce),
         "X-Content-Type-Options": "nosniff",
         "Referrer-Policy": "strict-origin-when-cross-origin",
         "Permissions-Policy": "camera=(), geolocation=(), microphone=(), payment=(), usb=()",
     }
-    # It knows no list of origins: where there is one, the policy alone speaks.
-    return headers if framers else {**headers, "X-Frame-Options": "DENY"}
-
-
-class SecurityTransform(OutputTransform):
-    """Adds the headers to whatever Tornado sends, errors included."""
-
-    def __init__(self, request: HTTPServerRequest) -> None:
-        super().__init__(request)
-        self._framers = current_settings().frame_ancestors
-
-    def transform_first_chunk(
-        self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
-    ) -> tuple[int, HTTPHeaders, bytes]:
-        """The same answer with more headers, and its scripts marked where it is a page."""
-        nonce = None
-        # Pages are short: one that comes in pieces is none of Bokeh's or ours.
-        if finishing and chunk and headers.get("Content-Type", "").startswith("text/html"):
-            nonce = secrets.token_urlsafe(16)
-            chunk = mark_scripts(chunk, nonce)
-            headers["Content-Length"] = str(len(chunk))
-        for name, value in security_headers(self._framers, nonce).items():
-            headers[name] = value
-        # Which software answers, in which version, is nobody's business.
-        headers.pop("Server", None)
-        return status_code, headers, chunk
+    # X-Frame-Options cannot list origins.
+    return headers if frame_ancestors else {**headers, "X-Frame-Options": "DENY"}

@@ -1,4 +1,4 @@
-"""The end: sessions are told, work is dropped, and the process is gone within seconds."""
+"""Graceful shutdown: notify the pages, cancel all jobs and end the process within seconds."""
 
 from __future__ import annotations
 
@@ -11,70 +11,62 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-import panel as pn
-from panel.io.state import set_curdoc
-
 from app.runtime.process_state import ProcessState
+from app.views.components.notice import show_lasting_notice
 
-FAREWELL = "The server is restarting. Reload this page in a minute: its address holds the view."
+RESTART_NOTICE = "The server is restarting. Reload this page in a minute: its address holds the view."
 
-# Messages to the pages need a moment to leave, and a proxy one to see that the server is not ready.
+# Time for messages to reach the pages, and for a proxy to notice that the server is not ready.
 _GRACE_SECONDS = 0.5
-# What computes looks every 50 ms or so whether it is still wanted; only a compiler does not.
+# Computations check for cancellation about every 50 ms; a compilation cannot be cancelled.
 _LAST_SECONDS = 4.0
 
 log = logging.getLogger(f"bokeh.{__name__}")
 
 
-def stop_gracefully_on_sigterm(site: ProcessState, stop_loop: Callable[[], None]) -> None:
-    """Take the place of Bokeh's own handler of SIGTERM, which only stops the loop; to be called on the loop's thread."""
+def stop_gracefully_on_sigterm(state: ProcessState, stop_loop: Callable[[], None]) -> None:
+    """Replace Bokeh's handler of SIGTERM, which only stops the event loop; call on the thread of the loop."""
     loop = asyncio.get_running_loop()
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
         return
 
     def stop() -> None:
-        begin_stop(site)
+        begin_shutdown(state)
         loop.call_later(_GRACE_SECONDS, stop_loop)
 
     loop.add_signal_handler(signal.SIGTERM, stop)
 
 
-def begin_stop(site: ProcessState) -> None:
-    """Let nobody in, tell those who are there, drop all jobs, and see to it that the process ends."""
-    if site.stopping.is_set():
+def begin_shutdown(state: ProcessState) -> None:
+    """Refuse new sessions, notify the pages, cancel all jobs and limit the time until the process ends."""
+    if state.stopping.is_set():
         return
-    site.stopping.set()
+    state.stopping.set()
     log.info("stopping")
-    _end_at_the_latest()
-    for session in list(site.sessions()):
-        _say_farewell(session.document)
-    if site.jobs is not None:
-        site.jobs.stop()
+    _exit_later()
+    for session in list(state.sessions()):
+        _notify(session.document)
+    state.jobs.stop()
 
 
-def end_stop(site: ProcessState) -> None:
-    """End the process now that Bokeh has let go of everything: the interpreter would take seconds to take itself apart."""
-    if site.stopping.is_set():
+def finish_shutdown(state: ProcessState) -> None:
+    """Exit after Bokeh has released its resources; a regular exit of the interpreter would take seconds."""
+    if state.stopping.is_set():
         logging.shutdown()
         sys.stdout.flush()
         os._exit(0)
 
 
-def _say_farewell(document: Any) -> None:
-    def say() -> None:
-        with set_curdoc(document):
-            if pn.state.notifications is not None:
-                pn.state.notifications.warning(FAREWELL, duration=0)
-
+def _notify(document: Any) -> None:
     try:
-        document.add_next_tick_callback(say)
+        document.add_next_tick_callback(lambda: show_lasting_notice(document, RESTART_NOTICE))
     except Exception:
-        # One page's fault keeps no other from hearing it.
-        log.exception("a page could not be told")
+        # Continue with the other pages.
+        log.exception("a page could not be notified")
 
 
-def _end_at_the_latest() -> None:
-    """End the process, should something not let go of it: nothing here writes a file that a sudden end could halve."""
+def _exit_later() -> None:
+    """End the process after `_LAST_SECONDS`; no file is written here that an exit could truncate."""
     timer = threading.Timer(_LAST_SECONDS, os._exit, [0])
     timer.daemon = True
     timer.start()

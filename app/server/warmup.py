@@ -1,4 +1,4 @@
-"""Kernels compiled in the background, while the server already answers."""
+"""Compile the kernels in the background while the server already answers."""
 
 from __future__ import annotations
 
@@ -11,44 +11,44 @@ from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
 from engine import CASES, prepare_kernels
 
-# Below Bokeh's logger, so that `panel serve` shows it: the first start takes long enough to want a word.
+# A child of Bokeh's logger, so that `panel serve` shows the messages: the first start takes minutes.
 log = logging.getLogger(f"bokeh.{__name__}")
 
 STEPS: Mapping[str, Callable[[], None]] = {
     **{f"the kernels of case {name}": partial(prepare_kernels, potential) for name, potential in CASES.items()},
     "the panes of an orbit": orbit_plots.prepare,
 }
-"""What has to be compiled, or loaded from the cache, before the first visitor is served without a wait."""
+"""Functions that compile kernels or load them from the disk cache, by what they prepare."""
 
 
-def prepare_in_background(site: ProcessState, steps: Mapping[str, Callable[[], None]] = STEPS) -> threading.Thread:
-    """Take the steps one after another in a thread of their own, then call the site prepared.
+def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], None]] = STEPS) -> threading.Thread:
+    """Run the steps in a thread, then set `state.kernels_ready`.
 
-    A step that fails ends it, and the site has failed; so does a stop of the server, between two steps.
+    A failed step ends the thread and sets `state.kernels_failed`. A shutdown ends it before the next step.
     """
-    # A daemon: nobody waits for a compiler when the server is to stop.
-    thread = threading.Thread(target=_prepare, args=(site, steps), name="preparation", daemon=True)
+    # A daemon thread, because a compilation cannot be cancelled.
+    thread = threading.Thread(target=_warm_up, args=(state, steps), name="warmup", daemon=True)
     thread.start()
     return thread
 
 
-def prepare_now(steps: Mapping[str, Callable[[], None]] = STEPS) -> None:
-    """Take the steps here and now, as for an image of a container that is to start without compiling."""
+def warm_up(steps: Mapping[str, Callable[[], None]] = STEPS) -> None:
+    """Run the steps in this thread, for example to fill the kernel cache of a container image."""
     for name, step in steps.items():
         log.info("preparing %s", name)
         step()
 
 
-def _prepare(site: ProcessState, steps: Mapping[str, Callable[[], None]]) -> None:
+def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> None:
     for name, step in steps.items():
-        if site.stopping.is_set():
+        if state.stopping.is_set():
             return
         log.info("preparing %s", name)
         try:
             step()
         except Exception:
             log.exception("%s could not be prepared", name)
-            site.failed.set()
+            state.kernels_failed.set()
             return
-    site.prepared.set()
+    state.kernels_ready.set()
     log.info("ready")

@@ -1,4 +1,4 @@
-"""Why the picture is as it is: second looks at each whole map, measures of its basins, curves against energy; for one session."""
+"""Analyses of one session: follow-up analyses of each map, measures of its basins, and curves against energy."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from engine import (
     EnergyCurvesSpec,
     EscapeMap,
     JobRequest,
+    JobSubmitter,
     MapSpec,
     OriginFateMap,
     OriginFateRequest,
     Plane,
     RegularityMap,
     RegularityRequest,
-    Requests,
     StableManifolds,
     StableManifoldsRequest,
     TrustMap,
@@ -47,23 +47,24 @@ from engine import (
 )
 
 IMAGES = 3
-"""Of the stable manifolds: later ones lie as close as pixels."""
+"""Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
 
 SWEPT_ENERGIES = 33
+"""Energies of the curves against energy."""
 
-# By its switch, what a second look adds to the findings.
-_FINDING_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
+# Attribute of `MapAnalyses` that each toggle controls.
+_ANALYSIS_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
 
 
 class AnalysisPresenter:
-    """The switches and what they switch; `on_findings(findings)` is told what is known of the map in view."""
+    """Toggles and the analyses that they control; `on_analyses(analyses)` receives the results for the current map."""
 
     def __init__(
-        self, state: ViewState, jobs: Requests, maps: MapsView, on_findings: Callable[[MapAnalyses], None], locked: Locked
+        self, state: ViewState, jobs: JobSubmitter, maps: MapsView, on_analyses: Callable[[MapAnalyses], None], locked: Locked
     ) -> None:
-        self._state, self._maps, self._on_findings = state, maps, on_findings
+        self._state, self._maps, self._on_analyses = state, maps, on_analyses
         self._spec: MapSpec | None = None
-        self._findings = NO_ANALYSES
+        self._analyses = NO_ANALYSES
         self._notes: dict[str, str] = {}
         self.switches = AnalysisToggles(state)
         self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10))
@@ -73,26 +74,26 @@ class AnalysisPresenter:
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
         self._connect()
 
-    def looks(self) -> list[FollowUp]:
-        """What is asked about each whole map."""
+    def follow_ups(self) -> list[FollowUp]:
+        """Analyses of each complete map."""
         return [
-            self._look("judge", lambda frame: RegularityRequest(frame.spec), self._show_regularity),
-            self._look("trust", lambda frame: TrustRequest(frame.spec), self._show_trust),
-            self._look("origins", lambda frame: OriginFateRequest(frame.spec), self._show_origins),
-            self._look("manifolds", _manifolds_of, self._show_manifolds),
-            self._look(
-                "measures", lambda frame: BasinMeasuresRequest(frame.spec), lambda _, found: self.measures.show_basins(found)
+            self._follow_up("judge", lambda frame: RegularityRequest(frame.spec), self._show_regularity),
+            self._follow_up("trust", lambda frame: TrustRequest(frame.spec), self._show_trust),
+            self._follow_up("origins", lambda frame: OriginFateRequest(frame.spec), self._show_origins),
+            self._follow_up("manifolds", _manifolds_request, self._show_manifolds),
+            self._follow_up(
+                "measures", lambda frame: BasinMeasuresRequest(frame.spec), lambda _, result: self.measures.show_basins(result)
             ),
-            self._look(
+            self._follow_up(
                 "measures",
                 lambda frame: DecayLawsRequest(frame.spec, self._state.box),
-                lambda _, found: self.measures.show_laws(found),
+                lambda _, result: self.measures.show_laws(result),
                 "box",
             ),
         ]
 
     def begin(self, spec: MapSpec) -> None:
-        """A picture of this map comes: what was found of another one goes."""
+        """Prepare for a new map: remove the results of another one."""
         if spec == self._spec:
             return
         self._spec = spec
@@ -100,30 +101,25 @@ class AnalysisPresenter:
         self._maps.overlays.begin(spec)
         if self._state.measures:
             self.measures.begin()
-        if self._findings != NO_ANALYSES:
-            self._find(**dict.fromkeys(_FINDING_OF.values()))
-        self._note(**dict.fromkeys(_FINDING_OF, ""))
+        if self._analyses != NO_ANALYSES:
+            self._update(**dict.fromkeys(_ANALYSIS_OF.values()))
+        self._note(**dict.fromkeys(_ANALYSIS_OF, ""))
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
+        """Change the colours."""
         self._maps.overlays.set_palette(palette)
         self.curves.set_palette(palette)
 
-    def set_dark(self, dark: bool) -> None:
-        """Dress for a dark page, or for a light one."""
-        for view in (self.measures, self.curves):
-            view.section.set_dark(dark)
-
     def close(self) -> None:
-        """The session is over."""
+        """Cancel all requests at the end of the session."""
         self._exponent.cancel()
         self._sweeping.cancel()
 
     def _connect(self) -> None:
         watch, state = self._state.param.watch, self._state
         watch(lambda *events: self._show_pictures(), list(ON_DEMAND.values()))
-        watch(lambda event: self._open_sections(), ["measures", "energies"])
-        watch(lambda event: None if event.new else self._forget(event.name), list(_FINDING_OF))
+        watch(lambda *events: self._open_sections(), ["measures", "energies"])
+        watch(self._remove_switched_off, list(_ANALYSIS_OF))
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
         watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
         watch(lambda *events: self.curves.show(None), list(SYSTEM))
@@ -131,68 +127,73 @@ class AnalysisPresenter:
         self._open_sections()
         self.curves.follow_energy(state.energy)
 
-    def _look(
+    def _follow_up(
         self,
-        switch: str,
-        ask: Callable[[EscapeMap], JobRequest[Any] | None],
+        toggle: str,
+        request: Callable[[EscapeMap], JobRequest[Any] | None],
         show: Callable[[EscapeMap, Any], None],
         *watched: str,
     ) -> FollowUp:
-        return FollowUp(lambda frame: ask(frame) if getattr(self._state, switch) else None, show, (switch, *watched))
+        return FollowUp(lambda frame: request(frame) if getattr(self._state, toggle) else None, show, (toggle, *watched))
 
-    # What is switched.
+    # Toggles.
 
     def _show_pictures(self) -> None:
-        shown = [picture for picture, switch in ON_DEMAND.items() if getattr(self._state, switch)]
+        shown = [picture for picture, toggle in ON_DEMAND.items() if getattr(self._state, toggle)]
         self._maps.show_pictures(frozenset(shown))
 
     def _open_sections(self) -> None:
         self.measures.section.open(self._state.measures)
         self.curves.section.open(self._state.energies)
 
-    def _forget(self, name: str) -> None:
-        """Nobody wants to see it any more."""
+    def _remove_switched_off(self, *events: Any) -> None:
+        for event in events:
+            if not event.new:
+                self._remove(event.name)
+
+    def _remove(self, name: str) -> None:
+        """Remove the results of an analysis."""
         if name == "trust":
             self._maps.overlays.show_trust(None)
         if name == "manifolds":
             self._maps.overlays.show_manifolds(None)
-        self._find(**{_FINDING_OF[name]: None})
+        self._update(**{_ANALYSIS_OF[name]: None})
         self._note(**{name: ""})
 
-    # What second looks answer.
+    # Results of follow-up analyses.
 
-    def _find(self, **found: Any) -> None:
-        self._findings = replace(self._findings, **found)
+    def _update(self, **results: Any) -> None:
+        self._analyses = replace(self._analyses, **results)
         self._maps.describe()
-        self._on_findings(self._findings)
+        self._on_analyses(self._analyses)
 
     def _note(self, **sentences: str) -> None:
         self._notes |= sentences
-        body = " ".join(escape(said) for said in self._notes.values() if said)
+        body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
         self.notes.object = f"<span style='font-size:14px'>{body}</span>" if body else ""
 
     def _show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         self._maps.show_regularity(frame, regularity)
         if regularity.complete:
-            self._find(regularity=regularity)
+            self._update(regularity=regularity)
 
     def _show_trust(self, frame: EscapeMap, trust: TrustMap) -> None:
         self._maps.overlays.show_trust(trust)
         self._note(trust=trust.describe())
         if trust.complete:
-            self._find(trust=trust)
+            self._update(trust=trust)
 
     def _show_origins(self, frame: EscapeMap, origins: OriginFateMap) -> None:
         self._maps.show_origins(origins)
         self._note(origins=origins.describe())
-        self._find(origins=origins)
+        self._update(origins=origins)
 
     def _show_manifolds(self, frame: EscapeMap, manifolds: StableManifolds) -> None:
         self._maps.overlays.show_manifolds(manifolds)
-        self._note(manifolds=_described(manifolds))
-        self._find(manifolds=manifolds)
+        self._note(manifolds=_describe_manifolds(manifolds))
+        self._update(manifolds=manifolds)
 
-    # What is measured when somebody presses a button.
+    # Measurements started by buttons.
 
     def _measure(self) -> None:
         try:
@@ -201,11 +202,11 @@ class AnalysisPresenter:
             self.measures.say(str(error))
             return
         self.measures.wait_for_exponent()
-        self._exponent.ask(spec)
+        self._exponent.submit(spec)
 
-    def _show_exponent(self, found: UncertaintyExponent) -> None:
+    def _show_exponent(self, exponent: UncertaintyExponent) -> None:
         self._exponent.cancel()
-        self.measures.show_exponent(found)
+        self.measures.show_exponent(exponent)
 
     def _sweep(self) -> None:
         if self.curves.running:
@@ -215,7 +216,7 @@ class AnalysisPresenter:
         plane = Plane.X_PX if state.plane is Plane.X_H else state.plane
         swept = np.round(np.linspace(energies.low, energies.high, SWEPT_ENERGIES), 4).tolist()
         self.curves.show_running(True)
-        self._sweeping.ask(EnergyCurvesRequest(EnergyCurvesSpec(state.potential, plane, tuple(swept), t_max=state.t_max)))
+        self._sweeping.submit(EnergyCurvesRequest(EnergyCurvesSpec(state.potential, plane, tuple(swept), t_max=state.t_max)))
 
     def _stop_sweep(self) -> None:
         self._sweeping.cancel()
@@ -231,14 +232,14 @@ class AnalysisPresenter:
         self.curves.show(curves)
 
     def _open_energy(self, energy: float) -> None:
-        """The map of this energy, on the plane that was swept."""
+        """Show the map of an energy on the plane of the curves."""
         curves = self.curves.shown
         if curves is not None:
             self._state.param.update(energy=energy, plane=curves.spec.plane)
 
 
-def _manifolds_of(frame: EscapeMap) -> StableManifoldsRequest | None:
-    """The stable manifolds that a map's plane shows."""
+def _manifolds_request(frame: EscapeMap) -> StableManifoldsRequest | None:
+    """Request for the stable manifolds in the plane of a map; None on planes other than (x, px)."""
     spec = frame.spec
     if isinstance(spec.energy, tuple) or spec.plane is not Plane.X_PX:
         return None
@@ -246,8 +247,8 @@ def _manifolds_of(frame: EscapeMap) -> StableManifoldsRequest | None:
     return StableManifoldsRequest(spec.potential, spec.energy, IMAGES, None if whole else spec.window)
 
 
-def _described(manifolds: StableManifolds) -> str:
+def _describe_manifolds(manifolds: StableManifolds) -> str:
     points = sum(arc.x.size for arc in manifolds.arcs)
-    left_out = " Some spirals are cut short." if manifolds.truncated else ""
+    truncated = " Some spirals are truncated." if manifolds.truncated else ""
     arcs = f"{len(manifolds.arcs)} arcs, {points} points"
-    return f"Stable manifolds of the Lyapunov orbits, images 1 to {manifolds.images}: {arcs}.{left_out}"
+    return f"Stable manifolds of the Lyapunov orbits, images 1 to {manifolds.images}: {arcs}.{truncated}"

@@ -1,89 +1,100 @@
-"""The page: where each view of an explorer stands."""
+"""The page: its frame, and where each view of an explorer stands in it."""
 
 from __future__ import annotations
 
+from functools import cache
 from html import escape
+from pathlib import Path
+from typing import Any
 
 import panel as pn
-import panel_material_ui as pmui
-import param
-from panel.util import edit_readonly
+from bokeh.document import Document
+from jinja2 import Template
+from panel.io.resources import parse_template
+from panel.template.base import BaseTemplate
 
-from app.bokeh_patches.echoes import echo_filter
 from app.rendering.mathml import equations
 from app.session.explorer import Explorer
 from app.state.system import SYSTEM
 from app.views.components.flex_row import flex_row
+from app.views.components.notice import watch_connection
+from app.views.components.theme import THEME_KEY, ExplorerDesign, ThemeButton, theme_css
+from app.views.components.widgets import button
 from app.views.panels.keyboard import key_legend
 
-_ON_BLUE = {"textTransform": "none", "color": "#ffffff", "fontSize": "15px"}
-# Maps are read along their axes, so figures keep them.
-_THEME = {"chart_style": "standard"}
+TITLE = "Escape Explorer"
 
 
-class _Idle(param.Parameterized):
-    """A state of its own that is never busy."""
+@cache
+def _frame() -> Template:
+    """The page's HTML without its widgets."""
+    frame: Template = parse_template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
+    return frame
 
-    busy = param.Boolean(default=False)
+
+class ExplorerPage(BaseTemplate):
+    """The page of one session: a header and one column."""
+
+    def __init__(self, header: pn.viewable.Viewable, main: pn.viewable.Viewable) -> None:
+        super().__init__(template=_frame(), design=ExplorerDesign, location=True)
+        self._render_items: dict[str, tuple[pn.viewable.Viewable, list[str]]] = {"header": (header, []), "main": (main, [])}
+        self._render_variables = {"theme_css": theme_css(), "theme_key": THEME_KEY}
+
+    def server_doc(self, doc: Document | None = None, title: str | None = TITLE, location: Any = True) -> Document:
+        """Fill a document with the page."""
+        document = super().server_doc(doc, title or TITLE, location)
+        watch_connection(document)
+        return document
 
 
-def explorer_page(explorer: Explorer) -> pmui.Page:
-    """The whole page of one visitor."""
+def explorer_page(explorer: Explorer) -> ExplorerPage:
+    """The page of one explorer."""
     gallery = explorer.gallery.layout()
     gallery.visible = False
     main = pn.Column(
         gallery,
         explorer.controls.layout(),
         explorer.potential.panel.layout(),
-        explorer.why.switches.layout(),
+        explorer.analyses.switches.layout(),
         explorer.progress.layout(),
         explorer.zoom_buttons.layout(),
-        explorer.why.notes,
+        explorer.analyses.notes,
         explorer.maps.layout(),
-        _row(explorer.desk.layout(explorer.time_bar.layout()), explorer.orbit_row.layout()),
-        _row(*explorer.numbers.layout()),
-        explorer.why.measures.section.layout(),
-        explorer.why.curves.section.layout(),
-        explorer.take_along.layout(),
+        flex_row(explorer.orbit_controls.layout(explorer.playback.layout()), explorer.orbit_layout.layout(), justify="center"),
+        flex_row(*explorer.statistics.layout(), justify="center"),
+        explorer.analyses.measures.section.layout(),
+        explorer.analyses.curves.section.layout(),
+        explorer.downloads.layout(),
         _equations(explorer),
         pn.pane.HTML(f"<details><summary>Keys</summary>{key_legend()}</details>", margin=(4, 10)),
-        explorer.words.layout(),
+        explorer.accessible_table.layout(),
         explorer.keyboard.layout(),
-        echo_filter(),
         explorer.tour.layout(),
+        explorer.notice.layout(),
         sizing_mode="stretch_width",
-        margin=(0, 10),
+        margin=0,
     )
-    page = pmui.Page(
-        title="Escape Explorer", main=[main], header=[_header(explorer, gallery)], busy_indicator=None, theme_config=_THEME
-    )
-    # A page that shows how busy the server is looks through all its models at the begin and end of every callback, which
-    # takes 50 ms each, and the server's state, which outlives every session, would hold on to the page for it.
-    with edit_readonly(page):
-        page.busy = _Idle().param.busy
-    page.param.watch(lambda event: explorer.set_dark(event.new), "dark_theme")
-    return page
-
-
-def _row(*columns: pn.viewable.Viewable) -> pn.FlexBox:
-    return flex_row(*columns, justify_content="center", gap="4px")
+    return ExplorerPage(_header(explorer, gallery), main)
 
 
 def _header(explorer: Explorer, gallery: pn.viewable.Viewable) -> pn.viewable.Viewable:
-    """Buttons at the top: where beginners begin."""
-    buttons = [pmui.Button(label=label, variant="text", size="small", sx=_ON_BLUE) for label in ("Gallery", "Tour")]
-    buttons[0].on_click(lambda event: gallery.param.update(visible=not gallery.visible))
-    buttons[1].on_click(lambda event: explorer.tour.start())
-    return pn.Row(*buttons, margin=(0, 20))
+    theme = ThemeButton(margin=0)
+    theme.param.watch(lambda event: explorer.set_dark(event.new), "dark")
+    return pn.Row(
+        button("Gallery", lambda: gallery.param.update(visible=not gallery.visible), kind="light", margin=0),
+        button("Tour", explorer.tour.start, kind="light", margin=0),
+        theme,
+        margin=0,
+    )
 
 
 def _equations(explorer: Explorer) -> pn.pane.HTML:
-    """The equations of the chosen case, folded away until they are wanted."""
+    """The equations of motion of the system in view, collapsed."""
     state = explorer.state
 
-    def written() -> str:
+    def html() -> str:
         return f"<details><summary>Equations: {escape(state.system.title)}</summary>{equations(state.potential)}</details>"
 
-    pane = pn.pane.HTML(written(), margin=(4, 10), sizing_mode="stretch_width")
-    state.param.watch(lambda *events: pane.param.update(object=written()), list(SYSTEM))
+    pane = pn.pane.HTML(html(), margin=(4, 10), sizing_mode="stretch_width")
+    state.param.watch(lambda *events: pane.param.update(object=html()), list(SYSTEM))
     return pane

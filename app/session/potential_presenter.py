@@ -1,4 +1,4 @@
-"""Another potential: looked over in the background, shown with what follows, and taken where nothing speaks against it."""
+"""Choice of the potential: validated in the background, shown with its properties, and used if it is valid."""
 
 from __future__ import annotations
 
@@ -7,71 +7,72 @@ from app.job_clients.locking import Locked
 from app.state.system import SYSTEM, TYPED, System, refusal
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import PotentialPanel
-from engine import CASES, Potential, PotentialReview, PotentialReviewAnswer, PotentialReviewRequest, Requests, review_potential
+from engine import CASES, Answer, JobSubmitter, Potential, PotentialReview, PotentialReviewRequest, review_potential
 
 
 class PotentialPresenter:
-    """One visitor's choice among all potentials; what they take goes to the view state."""
+    """Potential of one session; a chosen valid potential goes to the view state."""
 
-    def __init__(self, state: ViewState, jobs: Requests, locked: Locked) -> None:
+    def __init__(self, state: ViewState, jobs: JobSubmitter, locked: Locked) -> None:
         self._state = state
+        # The system under review, and whether it is to be used.
         self._proposed: tuple[System, bool] | None = None
-        self._reviewed: dict[Potential, PotentialReview] = {}
-        self.panel = PotentialPanel(self._look_at, self._take)
-        self._request = LatestRequest(jobs, self._answered, self.panel.say, locked)
+        self._reviews: dict[Potential, PotentialReview] = {}
+        self.panel = PotentialPanel(locked(self._preview), locked(self._choose))
+        self._request = LatestRequest(jobs, self._on_review, self.panel.say, locked)
         state.param.watch(lambda *events: self._follow(), list(SYSTEM))
         self._follow()
         self.panel.section.open(state.case not in CASES or bool(state.system.changed))
 
     def open(self) -> None:
-        """Show the choice, and what follows from the system in view."""
+        """Open the section and show the properties of the current system."""
         self.panel.section.open(True)
-        self._look_at(self._state.system)
+        self._preview(self._state.system)
 
     def close(self) -> None:
-        """The session is over."""
+        """Cancel the request at the end of the session."""
         self._request.cancel()
 
-    def _look_at(self, system: System) -> None:
-        self._propose(system, take=False)
+    def _preview(self, system: System) -> None:
+        self._propose(system, use=False)
 
-    def _take(self, system: System) -> None:
+    def _choose(self, system: System) -> None:
         if system != self._state.system:
-            self._propose(system, take=True)
+            self._propose(system, use=True)
 
-    def _propose(self, system: System, *, take: bool) -> None:
-        """Have a system looked over, unless that has been done."""
+    def _propose(self, system: System, *, use: bool) -> None:
+        """Review a system, unless its review is cached; `use` shows it if it is valid."""
         try:
             potential = system.potential
         except ValueError as error:
             self._request.cancel()
             self.panel.say(str(error))
             return
-        # The last letter may be heard after Enter.
-        self._proposed = system, take or self._proposed == (system, True)
-        if potential in self._reviewed:
-            self._show(self._reviewed[potential])
+        # The event of the last letter may arrive after that of Enter.
+        self._proposed = system, use or self._proposed == (system, True)
+        if potential in self._reviews:
+            self._show(self._reviews[potential])
         else:
-            self._request.ask(PotentialReviewRequest(potential))
+            self._request.submit(PotentialReviewRequest(potential))
 
-    def _answered(self, answer: PotentialReviewAnswer) -> None:
-        self._reviewed = {answer.review.potential: answer.review}
-        self._show(answer.review)
+    def _on_review(self, answer: Answer[PotentialReview]) -> None:
+        self._reviews = {answer.value.potential: answer.value}
+        self._show(answer.value)
 
-    def _show(self, found: PotentialReview) -> None:
+    def _show(self, review: PotentialReview) -> None:
         if self._proposed is None:
             return
-        system, take = self._proposed
+        system, use = self._proposed
         self._proposed = system, False
-        problem = refusal(found)
-        self.panel.show(found, problem)
-        if take and problem is None:
+        problem = refusal(review)
+        self.panel.show(review, problem)
+        if use and problem is None:
             self._state.show_system(system, self._energy_for(system))
-        elif take:
+        elif use:
             self.panel.follow(self._state.system)
 
     def _energy_for(self, system: System) -> float | None:
-        """Where only parameters change: as far above the escape energy as before."""
+        """Energy in the same ratio to the escape energy as before; None for another potential."""
         before = self._state.system
         if (system.case, system.formula) != (before.case, before.formula):
             return None
@@ -79,9 +80,9 @@ class PotentialPresenter:
         return round(float(self._state.energy * ratio), system.energies.decimals + 1)
 
     def _follow(self) -> None:
-        """Stand where the state stands."""
+        """Follow the view state."""
         system = self._state.system
         self.panel.follow(system)
         if system.case == TYPED or system.case not in CASES or system.changed:
-            found = review_potential(system.potential)
-            self.panel.show(found, refusal(found))
+            review = review_potential(system.potential)
+            self.panel.show(review, refusal(review))

@@ -1,4 +1,4 @@
-"""The energies at which Zotos (2014) draws its maps, and the ranges it scans: what the slider marks and spans."""
+"""Energies of the maps in Zotos (2014), and the energy ranges of the slider."""
 
 from __future__ import annotations
 
@@ -7,14 +7,25 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class EnergyRange:
-    """The slider's ends, the (x, h) plane's range, the energies to mark, such as the nine of the paper, and where to begin."""
+    """Energies of a system.
+
+    Attributes
+    ----------
+    low, high
+        Ends of the slider; `high` is also the upper end of the (x, h) plane.
+    marked
+        Energies marked on the slider, such as the nine of the paper.
+    first
+        Initial energy.
+    decimals
+        Decimals of the energies on the slider.
+    """
 
     low: float
     high: float
     marked: tuple[float, ...]
     first: float
     decimals: int = 3
-    """Of the energies that the slider stops at."""
 
 
 ENERGIES = {
@@ -22,3 +33,4 @@ ENERGIES = {
     "II": EnergyRange(0.14, 0.5, (0.17, 0.18, 0.19, 0.20, 0.22, 0.24, 0.26, 0.28, 0.30), 0.20),
     "III": EnergyRange(0.2, 1.0, (0.26, 0.28, 0.30, 0.35, 0.40, 0.45, 0.50, 0.55, 0.60), 0.35),
 }
+"""Energy ranges of the cases of Zotos (2014)."""

@@ -1,4 +1,4 @@
-"""Where to look next: windows moved and scaled, and the way back through those visited."""
+"""Pan and zoom of the window, with history."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from app.state.zoom_history import ZoomHistory
 from engine import Window
 
 PAN_SHARE = 0.25
-"""An arrow key moves the window by this share of its side."""
+"""Share of the side of the window by which an arrow key moves it."""
 
 ZOOM_FACTOR = 2.0
-"""A zoom key makes it smaller or larger by this factor."""
+"""Factor of a zoom key."""
 
 DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), "ArrowUp": (0, 1)}
-"""For each arrow key the way it goes, in x and in the ordinate."""
+"""Direction of each arrow key in x and in the ordinate."""
 
 
-def panned(window: Window, key: str) -> Window:
-    """The window to which an arrow key leads."""
+def pan(window: Window, key: str) -> Window:
+    """Move a window by an arrow key."""
     across, up = DIRECTIONS[key]
     dx = PAN_SHARE * across * (window.x_high - window.x_low)
     dy = PAN_SHARE * up * (window.ordinate_high - window.ordinate_low)
     return Window(window.x_low + dx, window.x_high + dx, window.ordinate_low + dy, window.ordinate_high + dy)
 
 
-def zoomed(window: Window, factor: float) -> Window:
-    """The window about the same centre, smaller by `factor`; ValueError where double precision ends."""
+def zoom(window: Window, factor: float) -> Window:
+    """Shrink a window about its centre by `factor`; ValueError if its edges become equal in double precision."""
     x, ordinate = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
     half_x = 0.5 * (window.x_high - window.x_low) / factor
     half = 0.5 * (window.ordinate_high - window.ordinate_low) / factor
@@ -36,7 +36,7 @@ def zoomed(window: Window, factor: float) -> Window:
 
 
 class Navigation:
-    """Moves the window of a view, and remembers where it was."""
+    """Moves the window of a view state and keeps its history."""
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
@@ -46,23 +46,23 @@ class Navigation:
         state.param.watch(lambda *events: self.history.clear(), [*SYSTEM, "plane"])
 
     def visit(self, window: Window | None) -> None:
-        """Look at a window; None is the whole plane."""
+        """Show a window; None is the whole interior."""
         self.history.visit(window)
         self._state.window = window
 
     def back(self) -> None:
-        """Look where one looked before."""
+        """Show the previous window."""
         self._state.window = self.history.back()
 
     def forward(self) -> None:
-        """Look where one came back from."""
+        """Show the next window of the history."""
         self._state.window = self.history.forward()
 
     def moves(self) -> dict[str, Callable[[], None]]:
-        """What each key does that moves the window; ValueError where double precision ends."""
+        """Actions of the keys that move the window; they raise ValueError at the limit of double precision."""
         return {
-            "+": lambda: self.visit(zoomed(self._window(), ZOOM_FACTOR)),
-            "-": lambda: self.visit(zoomed(self._window(), 1.0 / ZOOM_FACTOR)),
+            "+": lambda: self.visit(zoom(self._window(), ZOOM_FACTOR)),
+            "-": lambda: self.visit(zoom(self._window(), 1.0 / ZOOM_FACTOR)),
             "h": lambda: self.visit(None),
             "b": self.back,
             "f": self.forward,
@@ -70,7 +70,7 @@ class Navigation:
         }
 
     def _pan(self, arrow: str) -> Callable[[], None]:
-        return lambda: self.visit(panned(self._window(), arrow))
+        return lambda: self.visit(pan(self._window(), arrow))
 
     def _window(self) -> Window:
         return self._state.map_spec().window

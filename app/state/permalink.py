@@ -1,4 +1,4 @@
-"""The view as a link: everything that was chosen, at full precision, in the address of the page."""
+"""The view state as a link: all choices, at full precision, in the query string of the page."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ import numpy as np
 
 from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.system import SYSTEM, TYPED, System, refusal
-from app.state.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, Start, ViewState
+from app.state.view_state import SWITCHES, Start, ViewState, allowed_resolutions, allowed_t_max
 from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window, review_potential
 
 LONGEST_VALUE = LONGEST_TEXT
-"""Most characters that a value in a link may have."""
+"""Maximal length of a value in a link, in characters."""
 
 _SHOWN = 40
 
 
 def write_link(state: ViewState) -> str:
-    """The query string, with its question mark, that opens the page on this view."""
+    """Query string of a view state, with its question mark."""
     chosen: dict[str, Any] = {
         "case": state.case,
         **({"V": state.formula} if state.case == TYPED else {}),
@@ -44,13 +44,23 @@ def write_link(state: ViewState) -> str:
 
 
 def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
-    """What a link asks for, as values of the view state, and a sentence for each value that is of no use.
+    """Parse the parameters of a link.
 
-    Values that are of no use are left out, as are parameters that nobody here knows: other sites append their own.
+    Parameters
+    ----------
+    parameters
+        Names and values of the query string. Unknown names are ignored: other sites append their own.
+
+    Returns
+    -------
+    values : dict
+        Valid values by attribute of the view state.
+    problems : list of str
+        A message for each invalid value.
     """
     values: dict[str, Any] = {}
     problems: list[str] = []
-    for name, (attribute, read, legal) in _READERS.items():
+    for name, (attribute, read, legal) in (_READERS | _limited_readers()).items():
         if name not in parameters:
             continue
         text = parameters[name]
@@ -59,34 +69,34 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
                 raise ValueError
             values[attribute] = read(text)
         except (ValueError, KeyError):
-            problems.append(f"In the link, {name}={_shown(text)} is of no use: it must be {legal}.")
-    values, refused = _with_system(values)
-    problems += [refused] if refused else []
+            problems.append(f"Ignored {name}={_shown(text)} in the link: choose {legal}.")
+    values, problem = _with_system(values)
+    problems += [problem] if problem else []
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     return values, problems
 
 
 def _with_system(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
-    """The values with a system that can be shown and an energy for it, and the reason where the one asked for cannot."""
+    """Complete the values by a system and its energy; drop an invalid system and return the reason."""
     asked = {name: values[name] for name in SYSTEM if name in values}
     if not asked:
         return values, ""
-    plain: dict[str, Any] = {"case": TYPED if "formula" in asked else ViewState.param.case.default}
-    system = System(**(plain | asked))
+    defaults: dict[str, Any] = {"case": TYPED if "formula" in asked else ViewState.param.case.default}
+    system = System(**(defaults | asked))
     try:
-        why = None if system.case in CASES and not system.changed else refusal(review_potential(system.potential))
+        problem = None if system.case in CASES and not system.changed else refusal(review_potential(system.potential))
     except ValueError as error:
-        why = str(error)
-    if why is None:
+        problem = str(error)
+    if problem is None:
         return {"energy": system.energies.first} | values | asdict(system), ""
-    # Where another system takes its place, its energy, window and orbits mean nothing.
+    # Energy, window and starts are meaningless for the default system.
     others = {name: value for name, value in values.items() if name not in (*SYSTEM, "energy", "window", "starts", "chosen")}
-    return others, f"The potential in the link is of no use: {why}"
+    return others, f"Ignored the potential in the link: {problem}"
 
 
 def _shown(text: str) -> str:
-    """A visitor's text as it may be shown: short, and without a character that any markup gives a meaning to."""
+    """Text of a link for messages: truncated, and without markup characters."""
     safe = "".join(c if c.isascii() and (c.isalnum() or c in " .,+-") else "?" for c in text[:_SHOWN])
     return safe + " …" if len(text) > _SHOWN else safe
 
@@ -132,13 +142,11 @@ def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
 
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
 _PLANES = {plane.name.lower(): plane for plane in Plane}
-_TIMES = {f"{t_max:g}": t_max for t_max in T_MAX_CHOICES.values()}
-_RESOLUTIONS = {str(side): side for side in RESOLUTION_CHOICES.values()}
 _SWITCH = {"yes": True, "no": False}
 _PALETTES = {name: name for name in PALETTES}
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
-# For each parameter: what it sets, how it is read, and what is legal.
+# For each parameter: attribute of the view state, parser, and legal values.
 _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "case": ("case", _one_of(_CASES), f"one of {', '.join(_CASES)}"),
     "V": ("formula", str, f"a polynomial in x and y of at most {LONGEST_TEXT} characters"),
@@ -147,14 +155,23 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "epsilon": ("epsilon", _between(*STRENGTHS), f"a number from {STRENGTHS[0]:g} to {STRENGTHS[1]:g}"),
     "plane": ("plane", _one_of(_PLANES), f"one of {', '.join(_PLANES)}"),
     "h": ("energy", _read_number, "a finite number"),
-    "t_max": ("t_max", _one_of(_TIMES), f"one of {', '.join(_TIMES)}"),
-    "resolution": ("resolution", _one_of(_RESOLUTIONS), f"one of {', '.join(_RESOLUTIONS)}"),
     "window": ("window", lambda text: Window(*_read_numbers(text, 4)), "x_low,x_high,ordinate_low,ordinate_high"),
     **{name: (name, _one_of(_SWITCH), "yes or no") for name in SWITCHES},
     "palette": ("palette", _one_of(_PALETTES), f"one of {', '.join(_PALETTES)}"),
-    "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate with semicolons between"),
+    "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons"),
     "look": ("chosen", _one_of(_PLACES), f"one of {', '.join(_PLACES)}"),
 }
 
-LINKED = tuple(attribute for attribute, _, _ in _READERS.values())
-"""What a link holds of the view state."""
+
+def _limited_readers() -> dict[str, tuple[str, Callable[[str], Any], str]]:
+    """Readers of the parameters whose choices depend on the server's settings."""
+    times = {text: t_max for t_max in allowed_t_max().values() for text in (f"{t_max:g}", f"{t_max:.0f}")}
+    sides = {str(side): side for side in allowed_resolutions().values()}
+    return {
+        "t_max": ("t_max", _one_of(times), ", ".join(allowed_t_max())),
+        "resolution": ("resolution", _one_of(sides), ", ".join(sides)),
+    }
+
+
+LINKED = (*(attribute for attribute, _, _ in _READERS.values()), "t_max", "resolution")
+"""Attributes of the view state that a link contains."""

@@ -1,4 +1,4 @@
-"""The system in view: one of the known potentials or a typed one, with its parameters; and the energies worth a look."""
+"""The selected potential with its parameters, and its energy range."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from app.state.energy_ranges import ENERGIES, EnergyRange
 from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
 
 TYPED = "typed"
-"""Stands for a potential that a visitor typed, where others have their name."""
+"""Case of a potential that the user typed."""
 
 SYSTEM = ("case", "formula", "omega_1", "omega_2", "epsilon")
-"""The attributes of a view state that make up its system."""
+"""Attributes of a view state that define its system."""
 
-# Of the escape energy: where the slider begins, where a look begins, and where the slider ends.
+# In units of the escape energy: lower end of the slider, initial energy, upper end of the slider.
 _LOW, _FIRST, _HIGH = 0.8, 1.5, 4.0
-# Of the way from the escape energy to that above which the exits do not stay apart.
+# Upper limit of the slider, as a share of the way from the escape energy to the highest energy with separate exits.
 _BELOW_HIGHEST = 0.99
-# Of the escape energy: a span as narrow as this is all rounding.
+# Smallest span of the slider in units of the escape energy: narrower spans are dominated by rounding.
 _NARROWEST = 1e-9
 
 
 @dataclass(frozen=True)
 class System:
-    """Which potential, and the parameters ω1, ω2 and ε of Zotos (2014), V = ½(ω1² x² + ω2² y²) + ε V1.
+    """A potential with the parameters ω1, ω2 and ε of Zotos (2014), V = ½(ω1² x² + ω2² y²) + ε V1.
 
     Attributes
     ----------
     case
-        A key of `engine.POTENTIALS`, or TYPED.
+        A key of `engine.POTENTIALS`, or `TYPED`.
     formula
-        V as it was typed, for TYPED; else nothing.
+        V(x, y) as text for `TYPED`, else empty.
     omega_1, omega_2, epsilon
-        As of `Potential.with_parameters`.
+        As in `Potential.with_parameters`.
     """
 
     case: str
@@ -46,7 +46,7 @@ class System:
 
     @property
     def potential(self) -> Potential:
-        """The potential; ValueError, in a sentence, where the formula or a parameter is of no use."""
+        """The potential; ValueError if the formula or a parameter is invalid."""
         return _potential(self)
 
     @property
@@ -57,19 +57,19 @@ class System:
 
     @property
     def title(self) -> str:
-        """What people call it, its parameters left out."""
+        """Name of the potential without its parameters."""
         return "Typed potential" if self.case == TYPED else POTENTIALS[self.case].title
 
     @property
     def formula_shown(self) -> str:
-        """V as text, with the parameters put in."""
+        """V(x, y) as text, with the values of the parameters."""
         if self.case == TYPED or self.changed:
             return write_formula(self.potential)
         return POTENTIALS[self.case].formula
 
     @property
     def energies(self) -> EnergyRange:
-        """The energies that the slider spans: the paper's, or as many times the escape energy."""
+        """Energy range of the paper for its cases, else multiples of the escape energy."""
         if self.case in CASES and not self.changed:
             return ENERGIES[self.case]
         return _energies(self.potential)
@@ -86,14 +86,14 @@ def _energies(potential: Potential) -> EnergyRange:
     escape = potential.escape_energy
     span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * escape)
     first, high = min(_FIRST * escape, escape + 0.5 * span), min(_HIGH * escape, escape + span)
-    # So many that rounding keeps all of these apart.
+    # Enough decimals to keep all of these distinct.
     decimals = max(2 - math.floor(math.log10(escape)), 1 - math.floor(math.log10(high - escape)))
     low, first, high = (round(energy, decimals) for energy in (_LOW * escape, first, high))
     return EnergyRange(low, high, (), first, decimals)
 
 
 def refusal(found: PotentialReview) -> str | None:
-    """Why the page cannot show a potential, in a sentence; None when it can."""
+    """Reason why the page cannot show a potential; None if it can."""
     if found.refusal is None and found.channels > MOST_CHANNELS:
         return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
     if found.refusal is None and found.escape_energy <= 0.0:

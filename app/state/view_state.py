@@ -1,4 +1,4 @@
-"""What the user chose: one validated object that everything on the page follows."""
+"""View state: the validated choices of the user, which all views follow."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import param
 
 from app.rendering.palette import MOST_ORBITS, PALETTES, Palette
-from app.runtime.settings import current_settings
+from app.runtime.process_state import process_state
 from app.state.energy_ranges import ENERGIES
 from app.state.system import SYSTEM, TYPED, System
 from engine import (
@@ -27,23 +27,30 @@ from engine import (
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
-    """The choices that a limit allows, and in any case the least."""
+    """Return the choices up to a limit, and the smallest one in any case."""
     least = min(choices.values())
     return {name: value for name, value in choices.items() if value <= max(limit, least)}
 
 
-T_MAX_CHOICES = _up_to(
-    current_settings().longest_t_max, {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
-)
-RESOLUTION_CHOICES = _up_to(
-    current_settings().largest_resolution, {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
-)
+T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
+RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
+
+
+def allowed_t_max() -> dict[str, float]:
+    """Return the time horizons that the server's settings allow, by label."""
+    return _up_to(process_state().settings.longest_t_max, T_MAX_CHOICES)
+
+
+def allowed_resolutions() -> dict[str, int]:
+    """Return the resolutions that the server's settings allow, by label."""
+    return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
+
 
 SWITCHES = ("judge", "trust", "manifolds", "origins", "measures", "energies")
-"""What of a view state is shown on demand."""
+"""Attributes of the view state that turn analyses on."""
 
 Start = tuple[float, float]
-"""x and ordinate of a start on the plane."""
+"""x and ordinate of a start in the plane."""
 
 
 class _Starts(param.Parameter):
@@ -60,32 +67,38 @@ def _is_start(value: Any) -> bool:
 
 
 class ViewState(param.Parameterized):
-    """The view: which map, in which colours, and the starts of the orbits beside it."""
+    """Map, colours, analyses and starts of orbits that a session shows."""
 
     case = param.Selector(default="I", objects=[*POTENTIALS, TYPED])
-    formula = param.String(default="", doc="V(x, y) as it was typed, where the case is TYPED")
+    formula = param.String(default="", doc="V(x, y) as text if the case is TYPED")
     omega_1 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along x")
     omega_2 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along y")
-    epsilon = param.Number(default=1.0, bounds=STRENGTHS, doc="strength of what perturbs the well")
+    epsilon = param.Number(default=1.0, bounds=STRENGTHS, doc="strength of the perturbation")
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
-    energy = param.Number(default=ENERGIES["I"].first, doc="h; on (x, h) it is the ordinate instead")
-    t_max = param.Selector(default=min(1e5, max(T_MAX_CHOICES.values())), objects=list(T_MAX_CHOICES.values()))
-    resolution = param.Selector(default=min(225, max(RESOLUTION_CHOICES.values())), objects=list(RESOLUTION_CHOICES.values()))
+    energy = param.Number(default=ENERGIES["I"].first, doc="h; not used on (x, h)")
+    t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
+    resolution = param.Selector(default=225, objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
     box = param.ClassSelector(
-        class_=Window, default=None, allow_None=True, doc="part of the view to count in; None for all of it"
+        class_=Window, default=None, allow_None=True, doc="part of the window for the statistics; None for all of it"
     )
-    judge = param.Boolean(default=False, doc="whether bounded orbits are judged regular or chaotic")
-    trust = param.Boolean(default=False, doc="whether pixels are marked whose answer hangs on rounding")
+    judge = param.Boolean(default=False, doc="whether bounded orbits are classified as regular or chaotic")
+    trust = param.Boolean(default=False, doc="whether pixels that depend on rounding are marked")
     manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
-    origins = param.Boolean(default=False, doc="whether orbits are followed into the past, too")
-    measures = param.Boolean(default=False, doc="whether the basins are measured")
+    origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
+    measures = param.Boolean(default=False, doc="whether measures of the basins are shown")
     energies = param.Boolean(default=False, doc="whether curves against energy are shown")
-    palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the set of colours")
-    starts = _Starts(default=(), doc="of the orbits, up to MOST_ORBITS; each has its place and colour")
-    chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="place of the orbit that is looked at")
+    palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
+    starts = _Starts(default=(), doc="starts of up to MOST_ORBITS orbits")
+    chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="index of the chosen start")
+
+    def __init__(self, **values: Any) -> None:
+        t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
+        super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(225, resolutions[-1]))
+        self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
+        self.param.update(**values)
 
     @property
     def system(self) -> System:
@@ -99,37 +112,37 @@ class ViewState(param.Parameterized):
 
     @property
     def colours(self) -> Palette:
-        """The chosen set of colours."""
+        """The chosen palette."""
         return PALETTES[self.palette]
 
     @property
     def chosen_start(self) -> Start | None:
-        """The start that is looked at; None where there is none."""
+        """The chosen start; None if there are no starts."""
         return self.starts[self.chosen] if self.chosen < len(self.starts) else None
 
     def map_spec(self) -> MapSpec:
-        """The request for the map in view; ValueError names what is wrong with the choice."""
+        """Specification of the map; ValueError if a choice is invalid."""
         return self.unresolved_map_spec().spec()
 
     def unresolved_map_spec(self) -> UnresolvedMapSpec:
-        """The map in view."""
+        """Specification of the map whose window may not be known yet."""
         return self.unresolved_map_spec_at(self.energy)
 
     def unresolved_map_spec_at(self, h: float) -> UnresolvedMapSpec:
-        """The same at another energy."""
+        """The same at energy `h`."""
         energy: float | tuple[float, float] = h
         if self.plane is Plane.X_H:
             energy = (self.potential.escape_energy, self.system.energies.high)
         return UnresolvedMapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def orbit_spec(self, start: Start) -> OrbitRequest | None:
-        """The request for the orbit of a start; None where no orbit of this energy can start."""
+        """Request for the orbit of a start; None if the start is forbidden at this energy."""
         x, ordinate = (np.array([value]) for value in start)
         x0, y, px, py = (float(value) for value in start_states(self.potential, self.plane, self.energy, x, ordinate)[0])
         return OrbitRequest(self.potential, (x0, y, px, py), self.t_max) if np.isfinite(py) else None
 
     def add_start(self, start: Start) -> None:
-        """One more orbit, which is then looked at; with all places taken it takes the one after the last chosen."""
+        """Add a start and choose it; if there are `MOST_ORBITS` already, it replaces the one after the chosen one."""
         if start in self.starts:
             self.chosen = self.starts.index(start)
             return
@@ -139,12 +152,12 @@ class ViewState(param.Parameterized):
         self.param.update(starts=tuple(starts), chosen=place)
 
     def show_system(self, system: System, energy: float | None = None) -> None:
-        """Another system, all of it, at its first energy unless told otherwise, without the orbits of the last one."""
+        """Select a system at an energy, by default its initial energy, and remove window and starts."""
         chosen = {name: getattr(system, name) for name in SYSTEM}
         energy = system.energies.first if energy is None else energy
         self.param.update(**chosen, energy=energy, window=None, starts=(), chosen=0)
 
     def remove_start(self, place: int) -> None:
-        """Forget an orbit; those after it move up."""
+        """Remove the start at an index."""
         starts = self.starts[:place] + self.starts[place + 1 :]
         self.param.update(starts=starts, chosen=max(min(self.chosen, len(starts) - 1), 0))

@@ -1,4 +1,4 @@
-"""Where a visitor has been in a plane: back, forward, and the whole of it again."""
+"""History of windows: back, forward and home."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from engine import Window
 
 
 class ZoomHistory:
-    """Windows in the order of their visits; None is the whole interior, where every history begins."""
+    """Windows in the order of visits; None, the whole interior, is the first."""
 
     def __init__(self) -> None:
         self._windows: list[Window | None] = [None]
@@ -14,7 +14,7 @@ class ZoomHistory:
 
     @property
     def window(self) -> Window | None:
-        """Where the visitor is."""
+        """The current window."""
         return self._windows[self._at]
 
     @property
@@ -24,25 +24,25 @@ class ZoomHistory:
 
     @property
     def can_go_forward(self) -> bool:
-        """Whether the visitor has come back from a later window."""
+        """Whether there is a later window."""
         return self._at < len(self._windows) - 1
 
     def visit(self, window: Window | None) -> None:
-        """A new window; those that the visitor had come back from are forgotten."""
+        """Append a window and drop all later ones; no effect if it is the current one."""
         if window != self._windows[self._at]:
             self._windows[self._at + 1 :] = [window]
             self._at += 1
 
     def back(self) -> Window | None:
-        """The window before, or the first."""
+        """Go to the previous window, or stay at the first."""
         self._at = max(self._at - 1, 0)
         return self._windows[self._at]
 
     def forward(self) -> Window | None:
-        """The window after, or the last."""
+        """Go to the next window, or stay at the last."""
         self._at = min(self._at + 1, len(self._windows) - 1)
         return self._windows[self._at]
 
     def clear(self) -> None:
-        """Another plane: nothing has been visited but its whole."""
+        """Reset the history, for another plane."""
         self._windows, self._at = [None], 0

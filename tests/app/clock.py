@@ -1,4 +1,4 @@
-"""A clock that stands still until it is told to go on, in the place of `time`."""
+"""A manual clock in place of the module `time`."""
 
 from __future__ import annotations
 

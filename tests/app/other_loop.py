@@ -1,4 +1,4 @@
-"""Coroutines run on a loop of their own: in the test's thread a browser's may be running."""
+"""Run coroutines on an event loop of their own, because the browser tests leave one running in the main thread."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 
-def run_elsewhere[Result](make: Callable[[], Coroutine[Any, Any, Result]]) -> Result:
-    """What a coroutine comes to."""
+def run_on_new_loop[Result](make: Callable[[], Coroutine[Any, Any, Result]]) -> Result:
+    """Return the result of a coroutine."""
     with ThreadPoolExecutor(1) as thread:
         return thread.submit(lambda: asyncio.run(make())).result()

@@ -1,9 +1,13 @@
-"""Files to take along: whoever reads them back has the very numbers."""
+"""Downloaded files contain the same numbers as the results."""
 
 from __future__ import annotations
 
 import csv
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +17,6 @@ from PIL import Image
 
 from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import draw_picture
 from app.rendering.map_images import TITLES
 from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
 from app.state.system import TYPED, System
@@ -42,29 +45,39 @@ def orbit() -> Orbit:
 
 
 def test_a_png_has_the_pictures_side_by_side(escape_map: EscapeMap) -> None:
-    chosen = ["times", "basins"]
-    with Image.open(BytesIO(png_bytes(escape_map, chosen, COLOUR_BLIND_SAFE, 120, starts=[(0.1, 0.1)]))) as image:
-        page = np.asarray(image.convert("RGB"))
-    parts = [np.asarray(draw_picture(escape_map, name, COLOUR_BLIND_SAFE, 120, starts=[(0.1, 0.1)])) for name in chosen]
-    assert page.shape[1] == sum(part.shape[1] for part in parts)
-    for part, left in zip(parts, (0, parts[0].shape[1]), strict=True):
-        np.testing.assert_array_equal(page[: part.shape[0], left : left + part.shape[1]], part)
+    widths = []
+    for pictures in (["times"], ["times", "basins"], ["times", "basins", "crossings"]):
+        with Image.open(BytesIO(png_bytes(escape_map, pictures, COLOUR_BLIND_SAFE, 120, starts=[(0.1, 0.1)]))) as image:
+            widths.append(image.width)
+    assert min(np.diff(widths)) > 120
+    assert abs(widths[2] - 2 * widths[1] + widths[0]) < 60
 
 
-def test_a_png_says_what_made_it(escape_map: EscapeMap) -> None:
+def test_pictures_can_be_drawn_in_several_threads(escape_map: EscapeMap) -> None:
+    with ThreadPoolExecutor(4) as pool:
+        files = list(pool.map(lambda _: png_bytes(escape_map, ["basins"], PAPER, 100), range(4)))
+    assert len(set(files)) == 1
+
+
+def test_the_page_does_not_import_matplotlib_before_a_download() -> None:
+    script = "import sys, app.session.explorer; sys.exit('matplotlib.figure' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[2], check=False).returncode == 0
+
+
+def test_a_png_contains_its_provenance(escape_map: EscapeMap) -> None:
     with Image.open(BytesIO(png_bytes(escape_map, list(TITLES), PAPER, 100))) as image:
         notes = image.info
     assert notes["Software"].startswith("escape-explorer ")
     assert {name: notes[name] for name in escape_map.provenance()} == {k: str(v) for k, v in escape_map.provenance().items()}
 
 
-def test_a_png_without_pictures_is_refused(escape_map: EscapeMap) -> None:
+def test_a_png_without_pictures_is_rejected(escape_map: EscapeMap) -> None:
     with pytest.raises(ValueError, match=r"pictures=\[\]: must be at least one of curves"):
         png_bytes(escape_map, [], PAPER, 200)
 
 
 @pytest.mark.parametrize("name", SPECS)
-def test_netcdf_gives_the_map_back(name: str) -> None:
+def test_netcdf_contains_the_map(name: str) -> None:
     dataset = compute_map(SPECS[name]).to_xarray()
     with xr.open_dataset(BytesIO(netcdf_bytes(compute_map(SPECS[name]))), engine="h5netcdf") as back:
         xr.testing.assert_equal(back, dataset)
@@ -76,12 +89,12 @@ def test_netcdf_gives_the_map_back(name: str) -> None:
             assert back[key].attrs == variable.attrs
 
 
-def test_netcdf_takes_along_what_second_looks_have_found() -> None:
+def test_netcdf_contains_follow_up_analyses() -> None:
     frame = compute_map(SPECS["a window"])
-    findings = MapAnalyses(trust=compute_trust(frame), origins=compute_origin_fates(frame.spec))
-    with xr.open_dataset(BytesIO(netcdf_bytes(frame, findings)), engine="h5netcdf") as back:
-        np.testing.assert_array_equal(back["trust"], findings.trust.trust)
-        np.testing.assert_array_equal(back["origin"], findings.origins.origin)
+    analyses = MapAnalyses(trust=compute_trust(frame), origins=compute_origin_fates(frame.spec))
+    with xr.open_dataset(BytesIO(netcdf_bytes(frame, analyses)), engine="h5netcdf") as back:
+        np.testing.assert_array_equal(back["trust"], analyses.trust.trust)
+        np.testing.assert_array_equal(back["origin"], analyses.origins.origin)
         assert "character" not in back
         assert "3: doubtful" in back["trust"].attrs["codes"]
 
@@ -92,7 +105,7 @@ def table(text: str) -> tuple[list[str], list[dict[str, str]]]:
     return comments, list(csv.DictReader(lines[len(comments) :]))
 
 
-def test_a_table_of_orbits_gives_them_back_to_the_bit(orbit: Orbit) -> None:
+def test_a_table_of_orbits_contains_them_bit_for_bit(orbit: Orbit) -> None:
     other = integrate_orbit(CASES["III"], (0.1, 0.0, 0.05, 0.9), 50.0)
     comments, rows = table(orbits_csv([orbit, other]))
     for number, one in enumerate((orbit, other), 1):
@@ -104,7 +117,7 @@ def test_a_table_of_orbits_gives_them_back_to_the_bit(orbit: Orbit) -> None:
     assert "# orbit 1: start x = 0.1, y = 0.0, px = 0.05, py = 0.6" in comments
 
 
-def test_a_long_orbit_is_thinned_evenly_and_says_so(orbit: Orbit) -> None:
+def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
     comments, rows = table(orbits_csv([orbit, orbit], most_rows=100))
     assert 50 < len(rows) <= 100
     times = np.array([float(row["t"]) for row in rows if row["orbit"] == "2"])
@@ -114,18 +127,18 @@ def test_a_long_orbit_is_thinned_evenly_and_says_so(orbit: Orbit) -> None:
     assert f"# orbit 2: one in {stride} of {orbit.t.size} samples" in comments
 
 
-def test_too_few_rows_for_all_orbits_are_refused(orbit: Orbit) -> None:
+def test_too_few_rows_for_all_orbits_are_rejected(orbit: Orbit) -> None:
     with pytest.raises(ValueError, match="most_rows=1: must be at least 1, and one for each of 2 orbits"):
         orbits_csv([orbit, orbit], most_rows=1)
 
 
-def test_no_orbits_make_an_empty_table() -> None:
+def test_no_orbits_give_an_empty_table() -> None:
     comments, rows = table(orbits_csv([]))
     assert (len(comments), rows) == (1, [])
 
 
 @pytest.mark.parametrize("name", SPECS)
-def test_the_python_lines_make_the_same_map_and_orbits(name: str) -> None:
+def test_the_script_reproduces_the_map_and_the_orbits(name: str) -> None:
     spec = SPECS[name]
     made: dict[str, Any] = {}
     exec(python_lines(spec, System("II"), [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
@@ -143,21 +156,21 @@ def test_the_python_lines_make_the_same_map_and_orbits(name: str) -> None:
     "system",
     [System("C5"), System("One exit", epsilon=0.5), System("III", omega_1=1.1), System(TYPED, "x²/2 + y²/2 − x²y", 1.0, 0.9)],
 )
-def test_the_python_lines_make_the_same_potential(system: System) -> None:
+def test_the_script_reproduces_the_potential(system: System) -> None:
     head = python_lines(SPECS["a window"], system).split("spec = ")[0]
     made: dict[str, Any] = {}
     exec(head, made)
     assert made["potential"] == system.potential
 
 
-def test_the_python_lines_without_orbits_ask_for_none() -> None:
+def test_a_script_without_orbits_integrates_none() -> None:
     lines = python_lines(SPECS["a window"], System("II"))
     assert "integrate_orbit" not in lines
     assert "orbits" not in lines
 
 
 @pytest.mark.parametrize("start", [(0.1, 0.0, 0.0), (0.1, 0.0, 0.0, float("nan"))])
-def test_python_lines_for_a_start_that_is_none_are_refused(start: tuple[float, ...]) -> None:
+def test_a_script_with_an_invalid_start_is_rejected(start: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="must be four finite numbers x, y, px, py"):
         python_lines(SPECS["a window"], System("II"), [start])
 
@@ -174,5 +187,5 @@ def test_files_are_named_after_case_plane_and_energy(name: str, stem: str) -> No
     assert file_stem(SPECS[name], "II") == stem
 
 
-def test_a_file_name_has_no_character_that_a_disk_minds() -> None:
+def test_a_file_name_has_only_safe_characters() -> None:
     assert file_stem(SPECS["a window"], '../a "b"') == "escapes-.._a__b_-x_px-h0.18"

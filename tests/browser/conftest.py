@@ -1,4 +1,4 @@
-"""A served app on loopback and a Chromium that reports everything it dislikes."""
+"""The app, served on loopback, and pages in Chromium that record errors and external requests."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from playwright.sync_api import (
 
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
-from tests.conftest import PATIENCE_MS
+from tests.conftest import TIMEOUT_MS
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -29,41 +29,41 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The address of the app, whose log may hold no traceback."""
+    """The address of the app; its log must not have a traceback."""
     log = tmp_path_factory.mktemp("server") / "log"
     with served_app(log) as address:
         yield address
-        # Read before the end: Bokeh complains of pages that are still connecting when the server is stopped.
+        # Read before the server stops: Bokeh logs errors of pages that are still connecting then.
         text = log.read_text()
     assert "Traceback" not in text, text
 
 
 class Watch:
-    """Everything a page should not do: errors, failed answers, requests that leave the machine."""
+    """Records errors, failed requests, and requests to other hosts."""
 
     def __init__(self, page: Page) -> None:
-        self.complaints: list[str] = []
+        self.problems: list[str] = []
         page.on("console", self._console)
-        page.on("pageerror", lambda error: self.complaints.append(f"page error: {error}"))
+        page.on("pageerror", lambda error: self.problems.append(f"page error: {error}"))
         page.on("request", self._request)
         page.on("response", self._response)
 
     def _console(self, message: ConsoleMessage) -> None:
         if message.type == "error":
-            self.complaints.append(f"console: {message.text}")
+            self.problems.append(f"console: {message.text}")
 
     def _request(self, request: Request) -> None:
         if not request.url.startswith(("http://127.0.0.1:", "data:", "blob:")):
-            self.complaints.append(f"external request: {request.url}")
+            self.problems.append(f"external request: {request.url}")
 
     def _response(self, response: Response) -> None:
         if response.status >= 400:
-            self.complaints.append(f"{response.status}: {response.url}")
+            self.problems.append(f"{response.status}: {response.url}")
 
 
 @pytest.fixture
 def open_explorer(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerPage]]:
-    """Opens the page, or a link to a view, in a visitor of its own, at a given width and height of the screen."""
+    """Opens the page, or a link to a view, in a new browser context, at a given size of the window."""
     yield from _opening(chromium, server)
 
 
@@ -78,16 +78,25 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
     watches: list[Watch] = []
 
     def open_page(
-        width: int = 1600, height: int = 1400, link: str = "", *, first_visit: bool = False, touch: bool = False
+        width: int = 1600,
+        height: int = 1400,
+        link: str = "",
+        *,
+        first_visit: bool = False,
+        touch: bool = False,
+        theme: str = "light",
     ) -> ExplorerPage:
         context = chromium.new_context(
-            viewport={"width": width, "height": height}, has_touch=touch, permissions=["clipboard-read", "clipboard-write"]
+            viewport={"width": width, "height": height},
+            has_touch=touch,
+            color_scheme=theme,
+            permissions=["clipboard-read", "clipboard-write"],
         )
         contexts.append(context)
         if not first_visit:
             context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
         page = context.new_page()
-        page.set_default_timeout(PATIENCE_MS)
+        page.set_default_timeout(TIMEOUT_MS)
         watches.append(Watch(page))
         page.goto(server + link)
         explorer = ExplorerPage(page)
@@ -97,24 +106,24 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
     yield open_page
     for context in contexts:
         context.close()
-    assert [complaint for watch in watches for complaint in watch.complaints] == []
+    assert [problem for watch in watches for problem in watch.problems] == []
 
 
 @pytest.fixture
 def explorer(open_explorer: Callable[..., ExplorerPage]) -> ExplorerPage:
-    """The page on a wide screen, with its first map complete."""
+    """The page in a wide window, with its first map complete."""
     return open_explorer()
 
 
 @pytest.fixture(scope="module")
 def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
-    """The same page for all tests of a file that leave it as they find it: opening one takes longer than most of them."""
+    """One page for all tests of a file that leave it unchanged, as opening a page takes longer than most tests."""
     return open_for_all()
 
 
 @pytest.fixture
 def for_orbits(shared: ExplorerPage) -> Iterator[ExplorerPage]:
-    """The shared page, without orbits; those that a test chooses are taken away after it."""
+    """The shared page without orbits; orbits that a test adds are removed after it."""
     yield shared
     if shared.model_data("starts")["x"]:
         shared.press("Clear all")

@@ -1,4 +1,4 @@
-"""The page as a visitor uses it: what can be done on it and what can be read off it."""
+"""The page in a browser: actions of a user, and what the page shows."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _RANGES = """name => {
 
 
 class ExplorerPage:
-    """One visitor's page."""
+    """The page of one session."""
 
     def __init__(self, page: Page) -> None:
         self.page = page
@@ -53,7 +53,7 @@ class ExplorerPage:
         return self.page.evaluate(_DATA, name)
 
     def wait_for_data(self, name: str, condition: str) -> None:
-        """Until a JavaScript condition on a source's columns `data` holds."""
+        """Wait until a JavaScript condition on the columns `data` of a source holds."""
         self.page.wait_for_function(
             f"([name, test]) => {{ const model = {_DOCUMENT}.get_model_by_name(name);"
             " return model && new Function('data', 'return ' + test)(model.data) }",
@@ -61,7 +61,7 @@ class ExplorerPage:
         )
 
     def forget_pixels(self) -> None:
-        """Mark the source, so that a later change of it can be seen."""
+        """Store the present pixels for `wait_for_new_pixels`."""
         self.page.evaluate(f"() => {{ window.before = {_DOCUMENT}.get_model_by_name('maps').data }}")
 
     def wait_for_new_pixels(self) -> None:
@@ -74,7 +74,7 @@ class ExplorerPage:
         self.page.get_by_role("button", name=label, exact=True).click()
 
     def point(self, picture: str, x: float, ordinate: float) -> list[float]:
-        """Where a point of the plane is on the screen."""
+        """The position of a point of the plane on the screen."""
         return self.page.evaluate(_POINT, [picture, x, ordinate])
 
     def click(self, picture: str, x: float, ordinate: float) -> None:
@@ -88,10 +88,17 @@ class ExplorerPage:
     def text(self, pattern: str) -> Locator:
         return self.page.get_by_text(pattern).first
 
+    def radio(self, label: str) -> Locator:
+        """A button of a segmented control."""
+        return self.page.get_by_role("radio", name=label, exact=True)
+
+    def pick(self, label: str) -> None:
+        """Press a button of a segmented control."""
+        self.radio(label).click()
+
     def choose(self, label: str, option: str) -> None:
-        """Pick an option of a drop-down list."""
-        self.page.get_by_role("combobox", name=label).click()
-        self.page.get_by_role("menuitem", name=option, exact=True).click()
+        """Choose an option of a drop-down list."""
+        self.page.get_by_label(label, exact=True).select_option(label=option)
 
     def type_number(self, label: str, value: str) -> None:
         box = self.page.get_by_label(label, exact=True).first
@@ -99,9 +106,9 @@ class ExplorerPage:
         box.press("Enter")
 
     def drag_energy_to(self, share: float, *, steps: int = 5, let_go: bool = True, pause: float = 0.0) -> None:
-        """Drag the energy slider's thumb to a share of its length, with a pause, in ms, after each step."""
-        rail = self.page.locator(".MuiSlider-root").first.bounding_box()
-        thumb = self.page.locator(".MuiSlider-thumb").first.bounding_box()
+        """Drag the thumb of the energy slider to a share of its length, with a pause, in ms, after each step."""
+        rail = self.page.locator(".noUi-target").first.bounding_box()
+        thumb = self.page.locator(".noUi-handle").first.bounding_box()
         assert rail is not None
         assert thumb is not None
         self.page.mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)

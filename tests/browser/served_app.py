@@ -1,4 +1,4 @@
-"""The app, served on loopback as the README says, for as long as somebody looks at it."""
+"""The app, served on loopback as described in the README."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ START_SECONDS = 600
 
 @dataclass(frozen=True)
 class RunningApp:
-    """A server process, and where it serves: `root` ends without a slash."""
+    """A server process and its address; `root` ends without a slash."""
 
     root: str
     process: subprocess.Popen[bytes]
 
     @property
     def address(self) -> str:
-        """Of the page."""
+        """The address of the page."""
         return f"{self.root}/app"
 
     def figure(self, name: str) -> float:

@@ -1,4 +1,4 @@
-"""The energy, dragged and played: quick looks on the way, the map where it ends."""
+"""The energy, dragged and played: previews on the way, the map where it ends."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from tests.browser.explorer_page import ExplorerPage
 
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
-    window.looks = 0
-    source.connect(source.properties.data.change, () => { if (source.data.fate[0].shape[0] == 75) window.looks += 1 })
+    window.previews = 0
+    source.connect(source.properties.data.change, () => { if (source.data.fate[0].shape[0] == 75) window.previews += 1 })
 }"""
 
 
-def test_while_the_slider_is_dragged_quick_looks_follow_it(explorer: ExplorerPage) -> None:
+def test_previews_follow_the_slider_while_it_is_dragged(explorer: ExplorerPage) -> None:
     explorer.page.evaluate(WATCH)
     explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=100)
-    explorer.page.wait_for_function("() => window.looks >= 3")
-    expect(explorer.text("Quick looks, followed to t = 100 only")).to_be_visible()
+    explorer.page.wait_for_function("() => window.previews >= 3")
+    expect(explorer.text("Preview up to t = 100")).to_be_visible()
     explorer.page.wait_for_timeout(1000)
     shown = explorer.column("fate")
     expected = compute_preview(preview_spec(MapSpec(CASES["I"], Plane.X_PX, 0.46)))
@@ -32,11 +32,11 @@ def test_while_the_slider_is_dragged_quick_looks_follow_it(explorer: ExplorerPag
     first = list(OUTCOMES).index(Fate.BOUNDED)
     np.testing.assert_array_equal(shown[escaped] - first, expected.fate[escaped])
     explorer.page.mouse.up()
-    expect(explorer.text("Done to t = 100000")).to_be_visible()
+    expect(explorer.text("Done, t = 100 000")).to_be_visible()
     assert explorer.column("fate").shape == (225, 225)
 
 
-def test_a_drag_back_to_where_it_began_gives_the_map_again(explorer: ExplorerPage) -> None:
+def test_dragging_back_shows_the_map_again(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
     explorer.drag_energy_to(0.9, let_go=False, pause=100)
     explorer.wait_for_data("maps", "data.fate[0].shape[0] == 75")
@@ -48,9 +48,9 @@ def test_a_drag_back_to_where_it_began_gives_the_map_again(explorer: ExplorerPag
 def test_the_energy_can_be_played_and_stopped(explorer: ExplorerPage) -> None:
     explorer.page.evaluate(WATCH)
     explorer.press("▶ Play")
-    explorer.page.wait_for_function("() => window.looks >= 5")
+    explorer.page.wait_for_function("() => window.previews >= 5")
     explorer.press("■ Stop")
-    expect(explorer.text("Done to t = 100000")).to_be_visible()
+    expect(explorer.text("Done, t = 100 000")).to_be_visible()
     explorer.page.wait_for_url(re.compile(r"h=0\.(19\d|[2-5]\d*)"))
     expect(explorer.page.get_by_role("button", name="▶ Play")).to_be_visible()
 
@@ -64,7 +64,7 @@ def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callab
     explorer.wait_until_complete()
 
 
-def test_the_energy_plane_leads_to_the_plane_of_an_energy(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_the_energy_plane_opens_the_plane_of_an_energy(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link="?case=II&plane=x_h&t_max=1000")
     explorer.click("basins", 0.1, 0.3)
     expect(explorer.text(re.compile("Escaped through"))).to_be_visible()

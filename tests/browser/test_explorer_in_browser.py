@@ -1,4 +1,4 @@
-"""The explorer as a visitor meets it, in Chromium."""
+"""The main functions of the page."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ PICTURES = ("curves", "basins", "times", "crossings")
 
 
 def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
-    """Of what escapes: a certified orbit's count goes as far as it was followed, which an interruption may change."""
+    """Compare escaping orbits; the counts of certified orbits end where the certificate is found."""
     escaped = expected.fate >= 1
     np.testing.assert_array_equal(explorer.column("crossings")[escaped], expected.crossings[escaped])
     np.testing.assert_array_equal(np.isfinite(explorer.column("escape_time")), escaped)
 
 
-def test_the_first_map_is_the_engine_s(shared: ExplorerPage) -> None:
+def test_the_first_map_is_that_of_the_engine(shared: ExplorerPage) -> None:
     expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5))
     assert_same_crossings(shared, expected)
 
@@ -50,7 +50,7 @@ def test_dragging_the_energy_gives_another_map(explorer: ExplorerPage) -> None:
 @pytest.mark.parametrize(("button", "shown"), [("II", "Case II"), ("III", "Case III")])
 def test_the_case_can_be_changed(explorer: ExplorerPage, button: str, shown: str) -> None:
     explorer.forget_pixels()
-    explorer.press(button)
+    explorer.pick(button)
     explorer.wait_for_new_pixels()
     expect(explorer.text(shown)).to_be_visible()
     assert set(np.unique(explorer.column("fate"))) >= {5, 6, 7}
@@ -59,7 +59,7 @@ def test_the_case_can_be_changed(explorer: ExplorerPage, button: str, shown: str
 @pytest.mark.parametrize(("button", "ordinate"), [("(x, y)", "y"), ("(x, h)", "h")])
 def test_the_plane_can_be_changed(explorer: ExplorerPage, button: str, ordinate: str) -> None:
     explorer.forget_pixels()
-    explorer.press(button)
+    explorer.pick(button)
     explorer.wait_for_new_pixels()
     explorer.wait_until_complete()
     label = explorer.page.evaluate("() => Bokeh.documents[0].get_model_by_name('basins').left[0].axis_label")
@@ -85,16 +85,16 @@ def test_a_longer_t_max_leaves_fewer_bounded(explorer: ExplorerPage) -> None:
 
 def test_an_energy_can_be_typed(explorer: ExplorerPage) -> None:
     explorer.forget_pixels()
-    explorer.type_number("h exactly", "0.2345")
+    explorer.type_number("Exact h", "0.2345")
     explorer.wait_for_new_pixels()
     explorer.wait_until_complete()
     expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2345, t_max=1e5))
     assert_same_crossings(explorer, expected)
 
 
-def test_an_energy_without_exits_is_answered_with_a_sentence_and_the_picture_stays(explorer: ExplorerPage) -> None:
+def test_an_invalid_energy_gives_a_message_and_the_picture_stays(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
-    explorer.type_number("h exactly", "7")
+    explorer.type_number("Exact h", "7")
     expect(explorer.text("energy=7.0")).to_be_visible()
     np.testing.assert_array_equal(explorer.column("fate"), before)
 
@@ -127,7 +127,7 @@ def test_a_bounded_orbit_is_judged_by_its_sali(for_orbits: ExplorerPage) -> None
     expect(for_orbits.text(re.compile("Bounded until t = 100000 and (regular|chaotic)"))).to_be_visible()
 
 
-def test_a_click_on_a_forbidden_pixel_says_so(shared: ExplorerPage) -> None:
+def test_a_click_on_a_forbidden_pixel_gives_a_message(shared: ExplorerPage) -> None:
     x_low, _, low, _ = shared.ranges("basins")
     shared.click("basins", x_low + 0.02, low + 0.02)
     expect(shared.text("Forbidden: no orbit of this energy can start here")).to_be_visible()
@@ -136,7 +136,7 @@ def test_a_click_on_a_forbidden_pixel_says_so(shared: ExplorerPage) -> None:
 def test_a_start_can_be_typed(for_orbits: ExplorerPage) -> None:
     for_orbits.type_number("x", "0.1")
     for_orbits.type_number("px", "0.2")
-    for_orbits.press("Integrate this start")
+    for_orbits.press("Integrate")
     orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.2, np.sqrt(2 * (0.19 - 0.005) - 0.04)), 1e5)
     expect(for_orbits.text(f"Escaped through channel {orbit.fate} at t = {orbit.escape_time:.6g}")).to_be_visible()
 
@@ -173,34 +173,34 @@ def test_zooming_computes_the_region_and_back_returns(explorer: ExplorerPage) ->
 
 
 @pytest.mark.parametrize("picture", PICTURES)
-def test_hovering_reads_the_pixel_out(shared: ExplorerPage, picture: str) -> None:
+def test_hovering_describes_the_pixel(shared: ExplorerPage, picture: str) -> None:
     shared.hover(picture, 0.1, 0.05)
     expect(shared.text("escapes through channel 1")).to_be_visible()
     expect(shared.text(re.compile(r"escape time 3\.\d+, crossings of y = 0: 0"))).to_be_visible()
     expect(shared.text(re.compile(r"\(0\.\d+, 0\.0\d+\)"))).to_be_visible()
 
 
-def test_a_map_can_be_cancelled_and_gone_on_with(explorer: ExplorerPage) -> None:
+def test_a_map_can_be_stopped_and_continued(explorer: ExplorerPage) -> None:
     explorer.choose("t_max", "1 000 000")
     explorer.wait_until_complete()
     explorer.forget_pixels()
-    explorer.press("III")
+    explorer.pick("III")
     explorer.wait_for_new_pixels()
-    explorer.press("Cancel")
+    explorer.press("Stop")
     expect(explorer.text("Stopped:")).to_be_visible()
     assert explorer.column("complete") is False
     explorer.forget_pixels()
-    explorer.press("Go on")
+    explorer.press("Continue")
     explorer.wait_for_new_pixels()
-    expect(explorer.page.get_by_role("button", name="Cancel", exact=True)).to_be_enabled()
+    expect(explorer.page.get_by_role("button", name="Stop", exact=True)).to_be_enabled()
 
 
-def test_bounded_orbits_say_what_that_rests_on(shared: ExplorerPage) -> None:
+def test_bounded_orbits_show_their_certificate(shared: ExplorerPage) -> None:
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5)
     whole = compute_map(spec)
     row, column = np.argwhere(whole.certificate == Certificate.ENCLOSED)[0]
     shared.hover("basins", float(whole.x[column]), float(whole.ordinate[row]))
-    expect(shared.text("invariant curves part it from every exit")).to_be_visible()
+    expect(shared.text("invariant curves separate it from every exit")).to_be_visible()
 
 
 def test_regular_and_chaotic_orbits_can_be_told_apart(open_explorer: Callable[..., ExplorerPage]) -> None:
@@ -209,7 +209,7 @@ def test_regular_and_chaotic_orbits_can_be_told_apart(open_explorer: Callable[..
     expect(title).not_to_be_visible()
     explorer.page.get_by_label("Regular or chaotic").click()
     expect(title).to_be_visible()
-    expect(explorer.text(re.compile(r"\d% of the bounded orbits are chaotic"))).to_be_visible()
+    expect(explorer.text(re.compile(r"\d % of the bounded orbits are chaotic"))).to_be_visible()
     codes = explorer.column("character")
     expected = compute_regularity(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (113, 113), t_max=1e3)))
     chaotic = expected.character == Regularity.CHAOTIC
@@ -219,12 +219,12 @@ def test_regular_and_chaotic_orbits_can_be_told_apart(open_explorer: Callable[..
     expect(title).not_to_be_visible()
 
 
-def test_the_address_opens_the_same_view_elsewhere(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_the_address_opens_the_same_view(open_explorer: Callable[..., ExplorerPage]) -> None:
     here = open_explorer()
     here.forget_pixels()
-    here.press("III")
+    here.pick("III")
     here.wait_for_new_pixels()
-    here.type_number("h exactly", "0.4567")
+    here.type_number("Exact h", "0.4567")
     here.forget_pixels()
     here.choose("Resolution", "113 × 113")
     here.page.wait_for_url(re.compile(r"h=0\.4567.*resolution=113"))
@@ -238,23 +238,21 @@ def test_the_address_opens_the_same_view_elsewhere(open_explorer: Callable[..., 
     expect(there.text(re.compile("Escaped through|Bounded until"))).to_be_visible()
     np.testing.assert_array_equal(there.column("fate"), here.column("fate"))
     assert there.column("fate").shape == (113, 113)
-    assert there.page.get_by_label("h exactly", exact=True).first.input_value() == "0.4567"
+    assert there.page.get_by_label("Exact h", exact=True).first.input_value() == "0.4567"
 
 
-def test_a_bad_link_says_what_is_wrong_and_shows_the_rest(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_an_invalid_link_gives_a_message_and_shows_the_rest(open_explorer: Callable[..., ExplorerPage]) -> None:
     page = open_explorer(link="?case=II&h=%3Cimg%20src=x%20onerror=alert(1)%3E&t_max=100").page
-    expect(
-        page.get_by_text("In the link, h=?img src?x onerror?alert?1?? is of no use: it must be a finite number.")
-    ).to_be_visible()
+    expect(page.get_by_text("Ignored h=?img src?x onerror?alert?1?? in the link: choose a finite number.")).to_be_visible()
     expect(page.get_by_text("3 exit channels")).to_be_visible()
     assert page.locator("img[src=x]").count() == 0
 
 
-def test_two_visitors_do_not_disturb_each_other(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_two_sessions_are_independent(open_explorer: Callable[..., ExplorerPage]) -> None:
     one, other = open_explorer(), open_explorer()
     before = one.column("fate")
     other.forget_pixels()
-    other.press("III")
+    other.pick("III")
     other.wait_for_new_pixels()
     other.wait_until_complete()
     np.testing.assert_array_equal(one.column("fate"), before)
@@ -280,7 +278,7 @@ def test_pictures_are_square_and_fit_the_screen(open_explorer: Callable[..., Exp
     assert x_high - x_low == pytest.approx(high - low)
 
 
-def test_every_outcome_has_its_line_in_the_legend(shared: ExplorerPage) -> None:
+def test_the_legend_has_every_outcome(shared: ExplorerPage) -> None:
     for label in (
         "channel 1",
         "channel 2",

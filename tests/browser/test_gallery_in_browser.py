@@ -1,4 +1,4 @@
-"""The gallery opens, shows its cards, and each leads to its view."""
+"""The gallery opens, shows its cards, and each card opens its view."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from app.state.presets import PRESETS
 from tests.browser.explorer_page import ExplorerPage
 
 
-def test_every_preset_has_a_card_with_its_picture(shared: ExplorerPage) -> None:
+def test_every_preset_has_a_card_with_a_picture(shared: ExplorerPage) -> None:
     shared.press("Gallery")
     for preset in PRESETS:
         card = shared.page.get_by_role("button", name=re.compile(re.escape(preset.title)))
@@ -29,17 +29,17 @@ def test_every_preset_has_a_card_with_its_picture(shared: ExplorerPage) -> None:
     shared.press("Gallery")
 
 
-def test_a_card_leads_to_its_view(explorer: ExplorerPage) -> None:
+def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
     preset = next(preset for preset in PRESETS if preset.window is not None and preset.case == "III")
     explorer.press("Gallery")
     explorer.page.get_by_role("button", name=re.compile(re.escape(preset.title))).first.click()
     explorer.page.wait_for_url(
         re.compile(f"case=III&plane={preset.plane.name.lower()}&h={re.escape(repr(preset.energy))}.*window=")
     )
-    # The picture before is complete, too.
+    # The previous picture is complete, too.
     explorer.wait_for_data("maps", f"data.complete[0] && data.x[0] == {preset.window.x_low!r}")
     assert explorer.ranges("basins")[0] == preset.window.x_low
-    expect(explorer.page.get_by_role("button", name="III", exact=True)).to_have_attribute("aria-pressed", "true")
+    expect(explorer.radio("III")).to_be_checked()
 
 
 def test_the_gallery_can_be_closed_again(shared: ExplorerPage) -> None:

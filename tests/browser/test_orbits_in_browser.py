@@ -21,7 +21,7 @@ def click_all(explorer: ExplorerPage, starts: list[tuple[float, float]]) -> None
         explorer.wait_for_data("starts", f"data.x.length == {place + 1}")
 
 
-def test_five_orbits_are_kept_and_marked_in_their_colours(for_orbits: ExplorerPage) -> None:
+def test_five_orbits_are_marked_in_their_colours(for_orbits: ExplorerPage) -> None:
     click_all(for_orbits, STARTS)
     marks = for_orbits.model_data("starts")
     assert marks["text"] == ["1", "2", "3", "4", "5"]
@@ -34,7 +34,7 @@ def test_five_orbits_are_kept_and_marked_in_their_colours(for_orbits: ExplorerPa
         )
 
 
-def test_panes_stay_in_their_place_while_their_orbits_are_on_their_way(explorer: ExplorerPage) -> None:
+def test_plots_stay_on_the_page_while_their_orbits_are_integrated(explorer: ExplorerPage) -> None:
     explorer.click("basins", *STARTS[0])
     explorer.wait_for_data("paths", "data.xs.length == 1")
     explorer.page.evaluate("() => { window.gone = 0 }")
@@ -51,21 +51,21 @@ def test_panes_stay_in_their_place_while_their_orbits_are_on_their_way(explorer:
     assert explorer.page.evaluate("() => window.gone") == 0
 
 
-def test_a_sixth_start_takes_the_first_place(for_orbits: ExplorerPage) -> None:
+def test_a_sixth_start_replaces_the_first(for_orbits: ExplorerPage) -> None:
     click_all(for_orbits, STARTS)
     for_orbits.click("basins", 0.3, 0.1)
     for_orbits.wait_for_data("starts", "data.x.length == 5 && Math.abs(data.x[0] - 0.3) < 0.006")
 
 
-def test_another_orbit_can_be_looked_at_and_removed(for_orbits: ExplorerPage) -> None:
+def test_another_orbit_can_be_chosen_and_removed(for_orbits: ExplorerPage) -> None:
     click_all(for_orbits, STARTS[:2])
-    for_orbits.page.get_by_role("button", name="1", exact=True).click()
+    for_orbits.pick("1")
     for_orbits.page.wait_for_url(re.compile("look=1"))
     for_orbits.press("Remove")
     for_orbits.wait_for_data("starts", "data.x.length == 1")
     for_orbits.press("Clear all")
     for_orbits.wait_for_data("starts", "data.x.length == 0")
-    expect(for_orbits.text("Click a point of any map")).to_be_visible()
+    expect(for_orbits.text("Click any map")).to_be_visible()
 
 
 def test_the_section_of_an_orbit_is_drawn_on_its_plane(for_orbits: ExplorerPage) -> None:

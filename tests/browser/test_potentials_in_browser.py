@@ -1,4 +1,4 @@
-"""Any potential, as a visitor meets it."""
+"""The choice of potential."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tests.browser.explorer_page import ExplorerPage
 
 pytestmark = pytest.mark.browser
 
-# Another number than any other test has: its code is compiled already, as it is that of the same terms.
+# A coefficient that no other test uses; the kernels are those of the same terms.
 WEAKER = "½(x² + y²) − 0.5xy²"
 
 
-def test_a_typed_potential_is_looked_over_taken_and_kept_in_the_link(explorer: ExplorerPage) -> None:
+def test_a_typed_potential_is_reviewed_applied_and_written_to_the_link(explorer: ExplorerPage) -> None:
     explorer.press("Other …")
     box = explorer.page.get_by_label("V(x, y) =")
     box.fill("½(x² + y²) − x<y")
@@ -40,5 +40,5 @@ def test_a_link_opens_a_potential_with_its_parameters(open_explorer: Callable[..
 
 def test_a_link_with_a_potential_of_no_use_says_so_and_shows_case_one(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link="?V=" + urllib.parse.quote("x²y² <img src=x onerror=alert(1)>"))
-    expect(explorer.text("The potential in the link is of no use")).to_be_visible()
+    expect(explorer.text("Ignored the potential in the link")).to_be_visible()
     expect(explorer.text("Case I")).to_be_visible()

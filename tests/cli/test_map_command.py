@@ -1,4 +1,4 @@
-"""``map``: whoever reads its files has the engine's own numbers."""
+"""Command ``map``: its files contain the results of the engine."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ from engine import (
 Run = Callable[..., tuple[int, str, str]]
 
 REQUESTS = {
-    "a window": (
+    "window": (
         ("II", "--energy", 0.18, "--window", -0.3, 0.9, -0.5, 0.4, "--resolution", "12x9", "--t-max", 200),
         MapSpec(CASES["II"], Plane.X_PX, 0.18, (12, 9), (-0.3, 0.9, -0.5, 0.4), 200.0),  # type: ignore[arg-type]
     ),
-    "the other plane, all followed": (
+    "(x, y) without certificates": (
         ("III", "--energy", 0.3, "--plane", "x_y", "--resolution", 10, "--t-max", 300, "--no-certify", "--threads", 1),
         MapSpec(CASES["III"], Plane.X_Y, 0.3, (10, 10), t_max=300.0, certify=False),
     ),
-    "energies": (
+    "(x, h)": (
         ("I", "--energies", 0.13, 0.4, "--plane", "x_h", "--resolution", 8, "--t-max", 100),
         MapSpec(CASES["I"], Plane.X_H, (0.13, 0.4), (8, 8), t_max=100.0),
     ),
-    "the past": (
+    "backward": (
         ("I", "--energy", 0.2, "--resolution", 8, "--t-max", 100, "--backward"),
         MapSpec(CASES["I"], Plane.X_PX, 0.2, (8, 8), t_max=100.0, backward=True),
     ),
@@ -51,30 +51,30 @@ BOUNDED = ("I", "--energy", 0.13, "--resolution", 9, "--t-max", 1000)
 BOUNDED_SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.13, (9, 9), t_max=1000.0)
 
 
-def opened(path: Path) -> xr.Dataset:
+def load(path: Path) -> xr.Dataset:
     with xr.open_dataset(path, engine="h5netcdf") as dataset:
         return dataset.load()
 
 
-@pytest.mark.parametrize("asked", REQUESTS)
-def test_the_numbers_are_the_engines(asked: str, run: Run, tmp_path: Path) -> None:
-    arguments, spec = REQUESTS[asked]
+@pytest.mark.parametrize("name", REQUESTS)
+def test_netcdf_equals_the_engine_result(name: str, run: Run, tmp_path: Path) -> None:
+    arguments, spec = REQUESTS[name]
     assert run("map", *arguments, "--output", tmp_path / "map", "--format", "nc")[0] == 0
-    found, wanted = opened(tmp_path / "map.nc"), compute_map(spec).to_xarray()
-    for name in wanted.variables:
-        np.testing.assert_array_equal(found[name], wanted[name])
+    found, wanted = load(tmp_path / "map.nc"), compute_map(spec).to_xarray()
+    for variable in wanted.variables:
+        np.testing.assert_array_equal(found[variable], wanted[variable])
     assert found.attrs["potential"] == spec.potential.name
 
 
-def test_second_looks_go_into_the_file(run: Run, tmp_path: Path) -> None:
+def test_netcdf_contains_the_follow_up_analyses(run: Run, tmp_path: Path) -> None:
     assert run("map", *BOUNDED, "--judge", "--trust", "--origins", "--format", "nc", "--output", tmp_path / "map")[0] == 0
-    found, frame = opened(tmp_path / "map.nc"), compute_map(BOUNDED_SPEC)
+    found, frame = load(tmp_path / "map.nc"), compute_map(BOUNDED_SPEC)
     np.testing.assert_array_equal(found["character"], compute_regularity(frame).character)
     np.testing.assert_array_equal(found["trust"], compute_trust(frame).trust)
     np.testing.assert_array_equal(found["origin"], compute_origin_fates(BOUNDED_SPEC).origin)
 
 
-def test_manifolds_go_into_a_table_at_full_precision(run: Run, tmp_path: Path) -> None:
+def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
     arguments = ("map", "I", "--energy", 0.19, "--resolution", 5, "--t-max", 50, "--manifolds", 1, "--format", "nc")
     assert run(*arguments, "--output", tmp_path / "map")[0] == 0
     with (tmp_path / "map-manifolds.csv").open() as file:
@@ -86,17 +86,17 @@ def test_manifolds_go_into_a_table_at_full_precision(run: Run, tmp_path: Path) -
     assert [int(row["arc"]) for row in rows] == [n for n, arc in enumerate(arcs, 1) for _ in range(arc.x.size)]
 
 
-def test_the_pictures_are_those_of_the_page(run: Run, tmp_path: Path) -> None:
-    shown = ("--picture", "times", "--picture", "characters", "--side", 120, "--palette", "safe", "--format", "png")
-    assert run("map", *BOUNDED, *shown, "--output", tmp_path / "map")[0] == 0
+def test_png_equals_the_download_of_the_page(run: Run, tmp_path: Path) -> None:
+    options = ("--picture", "times", "--picture", "characters", "--side", 120, "--palette", "safe", "--format", "png")
+    assert run("map", *BOUNDED, *options, "--output", tmp_path / "map")[0] == 0
     frame = compute_map(BOUNDED_SPEC)
-    findings = MapAnalyses(regularity=compute_regularity(frame))
-    wanted = png_bytes(frame, ("times", "characters"), COLOUR_BLIND_SAFE, 120, findings=findings)
+    analyses = MapAnalyses(regularity=compute_regularity(frame))
+    wanted = png_bytes(frame, ("times", "characters"), COLOUR_BLIND_SAFE, 120, analyses=analyses)
     with Image.open(tmp_path / "map.png") as found, Image.open(BytesIO(wanted)) as expected:
         np.testing.assert_array_equal(np.asarray(found), np.asarray(expected))
 
 
-def test_without_a_choice_three_pictures_are_drawn_in_the_papers_colours(run: Run, tmp_path: Path) -> None:
+def test_default_png_has_three_pictures_in_the_paper_palette(run: Run, tmp_path: Path) -> None:
     assert run("map", *BOUNDED, "--side", 100, "--output", tmp_path / "map")[0] == 0
     wanted = png_bytes(compute_map(BOUNDED_SPEC), ("basins", "times", "crossings"), PAPER, 100)
     with Image.open(tmp_path / "map.png") as found, Image.open(BytesIO(wanted)) as expected:
@@ -104,7 +104,7 @@ def test_without_a_choice_three_pictures_are_drawn_in_the_papers_colours(run: Ru
 
 
 @pytest.mark.parametrize("count_outside", [False, True])
-def test_json_tells_the_shares_and_the_files(count_outside: bool, run: Run, tmp_path: Path) -> None:
+def test_json_contains_shares_and_files(count_outside: bool, run: Run, tmp_path: Path) -> None:
     arguments = ("map", "II", "--energy", 0.5, "--resolution", 9, "--t-max", 100, "--window", -1, 2, -1, 1, "--format", "nc")
     more = ("--count-outside",) if count_outside else ()
     code, out, err = run(*arguments, *more, "--json", "--output", tmp_path / "map")
@@ -116,13 +116,13 @@ def test_json_tells_the_shares_and_the_files(count_outside: bool, run: Run, tmp_
     assert [answer["shares"][f"channel {k}"] for k in (1, 2, 3)] == [wanted[k] for k in (1, 2, 3)]
 
 
-def test_without_a_name_the_files_are_named_after_the_map(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_default_file_names_describe_the_map(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run("map", *BOUNDED, "--side", 100)[0] == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13.nc", "escapes-I-x_px-h0.13.png"]
 
 
-def test_a_pipe_gets_the_table_and_no_progress(run: Run, tmp_path: Path) -> None:
+def test_output_without_a_terminal_is_the_table_alone(run: Run, tmp_path: Path) -> None:
     code, out, err = run("map", *BOUNDED, "--format", "nc", "--output", tmp_path / "map")
     share = compute_map(BOUNDED_SPEC).fractions()[0]
     assert (code, err) == (0, "")

@@ -1,4 +1,4 @@
-"""``lyapunov``, ``measures`` and ``curves``: the engine's numbers in tables, sentences and JSON."""
+"""Commands ``lyapunov``, ``measures`` and ``curves``: results of the engine as tables, text and JSON."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SWEEP = ("I", "--low", 0.12, "--high", 0.2, "--count", 3, "--resolution", 15, "-
 SWEEP_SPEC = EnergyCurvesSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.12, 0.2, 3)), (15, 15), 50.0, exponent=False)
 
 
-def test_lyapunov_orbits_come_as_numbers(run: Run, tmp_path: Path) -> None:
+def test_lyapunov_json_and_csv_equal_the_engine_result(run: Run, tmp_path: Path) -> None:
     _, out, _ = run("lyapunov", "III", "--energy", 0.3, "--json", "--output", tmp_path / "paths.csv")
     wanted = find_lyapunov_orbits(CASES["III"], 0.3)
     found = json.loads(out)["orbits"]
@@ -52,18 +52,18 @@ def test_lyapunov_orbits_end_on_the_zero_velocity_curve(run: Run) -> None:
     np.testing.assert_allclose(CASES["II"].value(ends[..., 0], ends[..., 1]), 0.2, rtol=0, atol=1e-12)
 
 
-def test_lyapunov_orbits_come_as_a_table(run: Run) -> None:
+def test_lyapunov_table_lists_all_orbits(run: Run) -> None:
     _, out, _ = run("lyapunov", "II", "--energy", 0.2)
     assert out.count(f"{find_lyapunov_orbits(CASES['II'], 0.2)[0].period:.11g}") == 3
 
 
-def test_below_the_escape_energy_there_is_no_lyapunov_orbit(run: Run) -> None:
+def test_no_lyapunov_orbits_below_the_escape_energy(run: Run) -> None:
     code, out, _ = run("lyapunov", "I", "--energy", 0.1)
     assert code == 0
     assert out == "No Lyapunov orbits: h = 0.1 is not above the escape energy 0.125.\n"
 
 
-def test_measures_are_the_engines_sentences(run: Run) -> None:
+def test_measures_prints_the_descriptions_of_the_engine(run: Run) -> None:
     _, out, _ = run("measures", *MAP)
     frame = compute_map(SPEC)
     assert out.splitlines() == [
@@ -74,24 +74,24 @@ def test_measures_are_the_engines_sentences(run: Run) -> None:
     ]
 
 
-def test_measures_come_as_numbers(run: Run) -> None:
+def test_measures_json_equals_the_engine_result(run: Run) -> None:
     _, out, _ = run("measures", *MAP, "--no-exponent", "--json")
-    answer, frame = json.loads(out), compute_map(SPEC)
-    assert answer["basin_entropy"]["s_b"] == compute_basin_entropy(*exit_labels(frame.fate, bounded=True)).s_b
-    assert answer["merging"]["radius"] == compute_wada_test(*exit_labels(frame.fate, bounded=False)).radius
+    result, frame = json.loads(out), compute_map(SPEC)
+    assert result["basin_entropy"]["s_b"] == compute_basin_entropy(*exit_labels(frame.fate, bounded=True)).s_b
+    assert result["merging"]["radius"] == compute_wada_test(*exit_labels(frame.fate, bounded=False)).radius
     laws = fit_decay_laws(compute_statistics(frame), 100.0)
     assert laws.exponential is not None
-    assert answer["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
-    assert "uncertainty_exponent" not in answer
+    assert result["escape_laws"]["exponential"]["rate"] == laws.exponential.rate
+    assert "uncertainty_exponent" not in result
 
 
-def test_curves_are_the_engines(run: Run, tmp_path: Path) -> None:
+def test_curves_netcdf_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     assert run("curves", *SWEEP, "--output", tmp_path / "curves")[0] == 0
     with xr.open_dataset(tmp_path / "curves.nc", engine="h5netcdf") as found:
         xr.testing.assert_equal(found.load(), compute_energy_curves(SWEEP_SPEC).to_xarray())
 
 
-def test_the_table_of_curves_holds_the_same_numbers(run: Run, tmp_path: Path) -> None:
+def test_curves_csv_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     run("curves", *SWEEP, "--output", tmp_path / "curves")
     with (tmp_path / "curves.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -100,7 +100,7 @@ def test_the_table_of_curves_holds_the_same_numbers(run: Run, tmp_path: Path) ->
         assert [float(row[name]) for row in rows] == wanted.tolist()
 
 
-def test_numbers_that_are_not_there_are_null(run: Run, tmp_path: Path) -> None:
+def test_nan_is_null_in_json(run: Run, tmp_path: Path) -> None:
     _, out, _ = run("curves", *SWEEP, "--json", "--output", tmp_path / "curves")
     lowest = json.loads(out)["points"][0]
     assert math.isnan(compute_energy_curves(SWEEP_SPEC).curve("mean_escape_time")[0])
@@ -109,7 +109,7 @@ def test_numbers_that_are_not_there_are_null(run: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [("measures", *MAP), ("curves", *SWEEP)])
-def test_a_pipe_hears_of_no_progress(
+def test_no_progress_without_a_terminal(
     command: tuple[object, ...], run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,4 @@
-"""``orbit``: its verdict, its table and its picture."""
+"""Command ``orbit``: verdicts, table and picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from PIL import Image
 
 from app.exports import orbits_csv
 from app.rendering.palette import COLOUR_BLIND_SAFE
-from cli.orbit_pictures import SIDE
 from engine import CASES, Plane, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, start_states
 
 Run = Callable[..., tuple[int, str, str]]
@@ -20,7 +19,7 @@ Run = Callable[..., tuple[int, str, str]]
 STATE = (0.1, 0.0, 0.05, 0.6)
 
 
-def test_the_table_is_that_of_the_engines_orbit(run: Run, tmp_path: Path) -> None:
+def test_csv_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     assert run("orbit", "I", "--state", *STATE, "--t-max", 100, "--output", tmp_path / "orbit")[0] == 0
     assert (tmp_path / "orbit.csv").read_text() == orbits_csv([integrate_orbit(CASES["I"], STATE, 100.0)])
 
@@ -28,7 +27,7 @@ def test_the_table_is_that_of_the_engines_orbit(run: Run, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("plane", "energy", "start"), [("x_px", 0.19, (0.1, -0.2)), ("x_y", 0.19, (-0.1, 0.2)), ("x_h", None, (0.2, 0.3))]
 )
-def test_a_point_of_a_plane_is_the_state_that_the_engine_starts_from(
+def test_start_on_a_plane_becomes_the_engine_state(
     plane: str, energy: float | None, start: tuple[float, float], run: Run
 ) -> None:
     at = () if energy is None else ("--energy", energy)
@@ -37,7 +36,7 @@ def test_a_point_of_a_plane_is_the_state_that_the_engine_starts_from(
     assert json.loads(out)["start"] == start_states(CASES["I"], Plane[plane.upper()], energy or 0.0, x, ordinate)[0].tolist()
 
 
-def test_a_bounded_orbit_gets_the_verdicts_of_all_indicators(run: Run) -> None:
+def test_bounded_orbit_has_verdicts_of_all_indicators(run: Run) -> None:
     state = (0.1, 0.0, 0.0, 0.4)
     code, out, _ = run("orbit", "III", "--state", *state, "--t-max", 2500)
     orbit = integrate_orbit(CASES["III"], state, 2500.0)
@@ -47,33 +46,33 @@ def test_a_bounded_orbit_gets_the_verdicts_of_all_indicators(run: Run) -> None:
     assert [verdict.name for verdict in verdicts if verdict.sentence in out] == ["SALI", "Lyapunov exponent", "Birkhoff digits"]
 
 
-def test_json_holds_the_numbers_behind_the_sentences(run: Run) -> None:
+def test_json_contains_fate_crossings_energy_and_escape_time(run: Run) -> None:
     _, out, _ = run("orbit", "I", "--state", *STATE, "--t-max", 100, "--json")
-    answer, orbit = json.loads(out), integrate_orbit(CASES["I"], STATE, 100.0)
-    assert (answer["fate"], answer["crossings"], answer["energy"]) == (orbit.fate, orbit.crossings, orbit.energy)
-    assert answer["escape_time"] == (orbit.escape_time if orbit.fate >= 1 else None)
+    result, orbit = json.loads(out), integrate_orbit(CASES["I"], STATE, 100.0)
+    assert (result["fate"], result["crossings"], result["energy"]) == (orbit.fate, orbit.crossings, orbit.energy)
+    assert result["escape_time"] == (orbit.escape_time if orbit.fate >= 1 else None)
 
 
-def test_an_orbit_without_a_name_for_files_writes_none(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_files_without_output_option(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run("orbit", "I", "--state", *STATE, "--t-max", 20)[0] == 0
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("t_max", [20, 1000], ids=["as a line", "as a shade"])
-def test_the_path_is_drawn_where_the_orbit_goes(t_max: int, run: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize("t_max", [20, 1000], ids=["line", "datashader"])
+def test_picture_shows_the_path(t_max: int, run: Run, tmp_path: Path) -> None:
     state = (0.1, 0.0, 0.0, 0.4)
     arguments = ("orbit", "III", "--state", *state, "--t-max", t_max, "--palette", "safe", "--output", tmp_path / "orbit")
     assert run(*arguments)[0] == 0
     colour = tuple(bytes.fromhex(COLOUR_BLIND_SAFE.orbits[0][1:]))
     with Image.open(tmp_path / "orbit.png") as image:
-        inked = np.all(np.asarray(image.convert("RGB"))[:, : SIDE + 80] == colour, axis=2)
+        inked = np.all(np.asarray(image.convert("RGB"))[:, : image.width // 2] == colour, axis=2)
     rows, columns = np.nonzero(inked)
-    # The orbit stays near the y axis, the longer side of what it covers.
+    # The orbit stays near the y axis, the longer side of its bounding box.
     assert np.ptp(rows) > 1.5 * np.ptp(columns) > 0
 
 
-def test_a_start_beyond_an_exit_has_files_too(run: Run, tmp_path: Path) -> None:
+def test_start_outside_writes_files(run: Run, tmp_path: Path) -> None:
     code, out, _ = run("orbit", "II", "--state", 1.3, 0, 0.1, 0, "--output", tmp_path / "orbit")
     assert code == 0
     assert "Outside" in out

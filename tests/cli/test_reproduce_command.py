@@ -1,4 +1,4 @@
-"""``reproduce``: what is asked for is written, whole and at once."""
+"""Command ``reproduce``: selection, files and interruption."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.main import STOPPED, WRONG_REQUEST
+from cli.main import INTERRUPTED, INVALID_REQUEST
 from engine import Plane
 from reproduction import members, quality
 from reproduction.figures import FIGURES
@@ -18,7 +18,7 @@ from reproduction.quality import Quality
 
 Run = Callable[..., tuple[int, str, str]]
 
-TINY = Quality("tiny", resolution=9, t_max=100.0, curve_points=7, hunt_resolution=9, hunt_t_max=200.0)
+TINY = Quality("tiny", resolution=9, t_max=100.0, curve_points=7, search_resolution=9, search_t_max=200.0)
 
 
 @pytest.fixture(autouse=True)
@@ -35,16 +35,16 @@ def test_named_figures_are_written_as_png_and_pdf(run: Run, tmp_path: Path) -> N
     assert "tiny quality: 9 x 9 starts" in out
 
 
-def test_json_tells_files_and_seconds(run: Run, tmp_path: Path) -> None:
+def test_json_contains_files_and_seconds(run: Run, tmp_path: Path) -> None:
     code, out, _ = run("reproduce", "II-xh", "--quick", "--json", "--output", tmp_path)
-    answer = json.loads(out)
-    (figure,) = answer["figures"]
-    assert (code, answer["quality"], figure["name"]) == (0, "tiny", "II-xh")
+    result = json.loads(out)
+    (figure,) = result["figures"]
+    assert (code, result["quality"], figure["name"]) == (0, "tiny", "II-xh")
     assert figure["files"] == [str(tmp_path / "II-xh.png"), str(tmp_path / "II-xh.pdf")]
-    assert 0.0 < figure["seconds"] <= answer["seconds"]
+    assert 0.0 < figure["seconds"] <= result["seconds"]
 
 
-def test_the_list_names_everything_and_makes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_list_names_all_figures_and_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     code, out, _ = run("reproduce", "--list", "--json")
     assert code == 0
@@ -52,32 +52,32 @@ def test_the_list_names_everything_and_makes_nothing(run: Run, tmp_path: Path, m
     assert not any(tmp_path.iterdir())
 
 
-def test_an_unknown_name_is_refused_before_anything_is_made(run: Run, tmp_path: Path) -> None:
+def test_unknown_figure_is_rejected_before_any_is_made(run: Run, tmp_path: Path) -> None:
     code, out, err = run("reproduce", "I-xh", "IV-xh", "--output", tmp_path / "new")
-    assert (code, out, err.count("\n")) == (WRONG_REQUEST, "", 1)
+    assert (code, out, err.count("\n")) == (INVALID_REQUEST, "", 1)
     assert "IV-xh" in err
     assert not any(tmp_path.iterdir())
 
 
-def test_a_folder_in_no_folder_is_refused(run: Run, tmp_path: Path) -> None:
-    assert run("reproduce", "I-xh", "--output", tmp_path / "no" / "such")[0] == WRONG_REQUEST
+def test_output_without_parent_folder_is_rejected(run: Run, tmp_path: Path) -> None:
+    assert run("reproduce", "I-xh", "--output", tmp_path / "no" / "such")[0] == INVALID_REQUEST
 
 
-def test_what_is_made_stays_when_the_rest_is_stopped(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_keeps_finished_figures(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def make(name: str, shelf: MapShelf) -> dict[str, str | bytes]:
         if name == "I-xh":
             signal.raise_signal(signal.SIGINT)
             shelf.map("I", Plane.X_PX, 0.13)
-        return {f"{name}.png": b"whole"}
+        return {f"{name}.png": b"data"}
 
     monkeypatch.setattr(members, "make_files", make)
     code, out, err = run("reproduce", "I-potential", "I-xh", "--quick", "--output", tmp_path)
-    assert (code, out) == (STOPPED, "")
+    assert (code, out) == (INTERRUPTED, "")
     assert "1 of 2" in err
     assert [path.name for path in tmp_path.iterdir()] == ["I-potential.png"]
 
 
-def test_help_holds_examples(run: Run) -> None:
+def test_help_contains_examples(run: Run) -> None:
     code, out, _ = run("reproduce", "--help")
     assert code == 0
     assert "escape-explorer reproduce --quick" in out.partition("Examples:")[2]

@@ -1,4 +1,4 @@
-"""``serve``: Panel's server, told where the page lies."""
+"""Command ``serve``: the command line and environment of the server."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from cli.serve_command import app_folder, serve_arguments, server_environment
 Run = Callable[..., tuple[int, str, str]]
 
 
-def test_the_page_is_found_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_app_folder_does_not_depend_on_the_working_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert (app_folder() / "main.py").is_file()
     assert app_folder().is_absolute()
 
 
-def test_nobody_else_can_reach_the_page_unless_asked_for() -> None:
+def test_default_address_is_local_only() -> None:
     command = serve_arguments(5006, "127.0.0.1", [], show=False, settings=Settings())
     assert command[command.index("--address") + 1] == "127.0.0.1"
     assert not any("origin" in argument or argument == "--show" for argument in command)
 
 
-def test_the_server_gets_what_was_asked_for(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_options_are_passed_to_the_server(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[tuple[Any, ...]] = []
     monkeypatch.setattr(os, "name", "posix")
     monkeypatch.setattr(os, "execve", lambda *call: calls.append(call))
@@ -55,25 +55,25 @@ def test_the_server_gets_what_was_asked_for(run: Run, monkeypatch: pytest.Monkey
     assert environment == server_environment()
 
 
-def test_the_server_finds_the_packages_though_another_app_lies_where_it_starts(tmp_path: Path) -> None:
+def test_folder_named_app_in_the_working_directory_is_not_imported(tmp_path: Path) -> None:
     (tmp_path / "app").mkdir()
     (tmp_path / "app" / "__init__.py").write_text("")
     command = serve_arguments(5006, "127.0.0.1", [], show=False, settings=Settings())
     python = command[: command.index("-m")]
     script = "import importlib.util as u; print(u.find_spec('app').origin)"
-    ended = subprocess.run(
+    process = subprocess.run(
         [*python, "-c", script], cwd=tmp_path, env=server_environment(), capture_output=True, text=True, check=True
     )
-    assert ended.stdout.strip() == str(app_folder() / "__init__.py")
+    assert process.stdout.strip() == str(app_folder() / "__init__.py")
 
 
 @pytest.mark.parametrize("port", [0, 70000])
-def test_a_port_that_is_none_is_refused(port: int, run: Run) -> None:
+def test_invalid_port_is_rejected(port: int, run: Run) -> None:
     assert run("serve", "--port", port)[0] == 2
 
 
-def test_a_setting_that_is_none_is_refused_before_the_server_starts(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_setting_is_rejected_before_the_server_starts(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ESCAPE_EXPLORER_MOST_SESSIONS", "many")
-    code, _, said = run("serve")
+    code, _, err = run("serve")
     assert code == 2
-    assert "ESCAPE_EXPLORER_MOST_SESSIONS='many': must be a whole number from 1 to 100000" in said
+    assert "ESCAPE_EXPLORER_MOST_SESSIONS='many': must be a whole number from 1 to 100000" in err

@@ -1,4 +1,4 @@
-"""``sweep``: a store that holds the engine's maps, and can be gone on with."""
+"""Command ``sweep``: contents of the store, interruption and resumption."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import engine
-from cli.main import STOPPED, WENT_WRONG, WRONG_REQUEST
+from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
 from engine import CASES, Plane, SweepSpec
 
 Run = Callable[..., tuple[int, str, str]]
@@ -23,26 +23,26 @@ SWEEP = ("sweep", "I", "--low", 0.13, "--high", 0.2, "--count", 3, "--resolution
 SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist()), (9, 7), t_max=50.0)
 
 
-def opened(store: Path) -> xr.Dataset:
+def load(store: Path) -> xr.Dataset:
     return xr.open_zarr(store, chunks=None, consolidated=False).load()
 
 
-def test_the_store_holds_the_engines_maps(run: Run, tmp_path: Path) -> None:
+def test_store_equals_the_maps_of_the_engine(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(*SWEEP, "--json", "--store", tmp_path / "store.zarr")
-    found = opened(tmp_path / "store.zarr")
+    found = load(tmp_path / "store.zarr")
     assert (code, json.loads(out)["dimensions"]) == (0, {"h": 3, "px": 7, "x": 9})
     for place, energy in enumerate(SPEC.energies):
         np.testing.assert_array_equal(found["escape_time"][place], engine.compute_map(SPEC.map_spec(energy)).escape_time)
 
 
-def test_energies_can_be_listed(run: Run, tmp_path: Path) -> None:
+def test_listed_energies_equal_spaced_ones(run: Run, tmp_path: Path) -> None:
     listed = [argument for energy in SPEC.energies for argument in ("--energy", energy)]
     run("sweep", "I", *listed, "--resolution", "9x7", "--t-max", 50, "--store", tmp_path / "listed.zarr")
     run(*SWEEP, "--store", tmp_path / "spaced.zarr")
-    xr.testing.assert_identical(opened(tmp_path / "listed.zarr"), opened(tmp_path / "spaced.zarr"))
+    xr.testing.assert_identical(load(tmp_path / "listed.zarr"), load(tmp_path / "spaced.zarr"))
 
 
-def test_ctrl_c_leaves_a_store_to_go_on_with(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_sweep = engine.run_sweep
 
     def interrupted(spec: SweepSpec, store: Path, *, on_progress: Any, cancel: Any, executor: Any) -> xr.Dataset:
@@ -56,22 +56,22 @@ def test_ctrl_c_leaves_a_store_to_go_on_with(run: Run, tmp_path: Path, monkeypat
     with monkeypatch.context() as patch:
         patch.setattr(engine, "run_sweep", interrupted)
         code, out, err = run(*SWEEP, "--store", store)
-    assert (code, out) == (STOPPED, "")
-    assert f"stay in {store}" in err
-    assert opened(store)["done"].values.tolist() == [True, False, False]
+    assert (code, out) == (INTERRUPTED, "")
+    assert f"are kept in {store}" in err
+    assert load(store)["done"].values.tolist() == [True, False, False]
     assert run(*SWEEP, "--store", store)[0] == 0
-    assert opened(store)["done"].values.all()
+    assert load(store)["done"].values.all()
 
 
-def test_a_store_of_another_sweep_is_refused(run: Run, tmp_path: Path) -> None:
+def test_store_of_another_sweep_is_rejected(run: Run, tmp_path: Path) -> None:
     run(*SWEEP, "--store", tmp_path / "store.zarr")
     code, _, err = run(*SWEEP[:-1], 60, "--store", tmp_path / "store.zarr")
-    assert (code, err.count("\n")) == (WRONG_REQUEST, 1)
+    assert (code, err.count("\n")) == (INVALID_REQUEST, 1)
     assert "t_max" in err
 
 
 @pytest.mark.parametrize(
-    "wrong",
+    "options",
     [
         ("--low", 0.13, "--high", 0.2),
         ("--energy", 0.2, "--low", 0.13),
@@ -80,21 +80,21 @@ def test_a_store_of_another_sweep_is_refused(run: Run, tmp_path: Path) -> None:
         (),
     ],
 )
-def test_half_a_request_is_refused(wrong: tuple[object, ...], run: Run, tmp_path: Path) -> None:
-    code, _, err = run("sweep", "I", *wrong, "--store", tmp_path / "store.zarr")
-    assert (code, err.count("\n")) == (WRONG_REQUEST, 1)
+def test_incomplete_or_contradictory_options_are_rejected(options: tuple[object, ...], run: Run, tmp_path: Path) -> None:
+    code, _, err = run("sweep", "I", *options, "--store", tmp_path / "store.zarr")
+    assert (code, err.count("\n")) == (INVALID_REQUEST, 1)
     assert not any(tmp_path.iterdir())
 
 
-def test_a_plan_computes_no_sweep(run: Run, tmp_path: Path) -> None:
+def test_plan_computes_nothing(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(*SWEEP, "--plan", "--store", tmp_path / "store.zarr")
     assert (code, out.count("\n")) == (0, 1)
     assert "189 orbits" in out
     assert not any(tmp_path.iterdir())
 
 
-def test_without_dask_a_cluster_says_how_to_get_it(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     code, _, err = run(*SWEEP, "--local-cluster", 1, "--store", tmp_path / "store.zarr")
-    assert code == WENT_WRONG
+    assert code == FAILED
     assert err == "escape-explorer: a cluster needs Dask: pip install 'escape-explorer[cluster]'\n"

@@ -1,4 +1,4 @@
-"""The proxy's configuration as it is printed, on loopback: its places replaced, and nothing else."""
+"""Run nginx with deploy/nginx.conf on the loopback interface; only names, paths and ports are replaced."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ http {{
 
 @dataclass(frozen=True)
 class Proxy:
-    """Where it listens, and what its clients need."""
+    """Ports and certificate of a running proxy."""
 
     plain_port: int
     port: int
@@ -46,13 +46,13 @@ class Proxy:
     def origin(self) -> str:
         return f"https://127.0.0.1:{self.port}"
 
-    def trusting(self) -> ssl.SSLContext:
-        """What a client checks the certificate with."""
+    def ssl_context(self) -> ssl.SSLContext:
+        """Return an SSL context that accepts the certificate."""
         return ssl.create_default_context(cafile=str(self.certificate))
 
 
 def nginx() -> str | None:
-    """The program; Debian keeps it where only root's PATH leads."""
+    """Return the path of nginx, which Debian installs outside the PATH of normal users."""
     return shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin:/usr/local/sbin")
 
 
@@ -69,12 +69,12 @@ def free_port() -> int:
 
 @contextmanager
 def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) -> Iterator[Proxy]:
-    """nginx before two backends, with a certificate and a password of its own."""
+    """Run nginx in front of two backends with a new certificate and password."""
     proxy = Proxy(free_port(), port, folder / "certificate.pem")
     _make_certificate(folder)
     hashed = subprocess.run(["openssl", "passwd", "-apr1", PASSWORD], check=True, capture_output=True, text=True).stdout
     (folder / "passwords").write_text(f"{NAME}:{hashed}")
-    (folder / "site.conf").write_text(_placed(proxy, folder, backends))
+    (folder / "site.conf").write_text(_configured(proxy, folder, backends))
     (folder / "nginx.conf").write_text(_CONFIGURATION.format(folder=folder, user=_user()))
     process = subprocess.Popen([program, "-e", str(folder / "error.log"), "-c", str(folder / "nginx.conf")])
     try:
@@ -86,7 +86,7 @@ def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) ->
 
 
 def _user() -> str:
-    """Root's nginx would read the password's file as nobody, who may not enter the folders of tests."""
+    """Keep the workers of root's nginx as root, because the default user cannot read the test folder."""
     return "user root root;" if os.getuid() == 0 else ""
 
 
@@ -96,9 +96,9 @@ def _make_certificate(folder: Path) -> None:
     subprocess.run(command.split(), check=True, capture_output=True)
 
 
-def _placed(proxy: Proxy, folder: Path, backends: tuple[int, int]) -> str:
+def _configured(proxy: Proxy, folder: Path, backends: tuple[int, int]) -> str:
     text = (ROOT / "deploy" / "nginx.conf").read_text()
-    places = {
+    replacements = {
         "listen 80;": f"listen 127.0.0.1:{proxy.plain_port};",
         "listen 443 ssl;": f"listen 127.0.0.1:{proxy.port} ssl;",
         "server_name maps.example.org;": "server_name 127.0.0.1;",
@@ -108,9 +108,9 @@ def _placed(proxy: Proxy, folder: Path, backends: tuple[int, int]) -> str:
         "server 127.0.0.1:5006;": f"server 127.0.0.1:{backends[0]};",
         "server 127.0.0.1:5007;": f"server 127.0.0.1:{backends[1]};",
     }
-    for printed, here in places.items():
-        assert printed in text, f"deploy/nginx.conf has no {printed!r} any more"
-        text = text.replace(printed, here)
+    for old, new in replacements.items():
+        assert old in text, f"deploy/nginx.conf has no {old!r} any more"
+        text = text.replace(old, new)
     return text
 
 
@@ -122,4 +122,4 @@ def _wait_for_port(port: int, process: subprocess.Popen[bytes]) -> None:
             return
         except OSError:
             time.sleep(0.05)
-    raise RuntimeError(f"nginx does not listen at {port}: {process.poll()}")
+    raise RuntimeError(f"nginx does not listen on port {port}: {process.poll()}")

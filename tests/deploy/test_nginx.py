@@ -1,4 +1,4 @@
-"""The explorer behind nginx with TLS and a password, configured as `deploy/nginx.conf` has it."""
+"""The explorer behind nginx with TLS and a password, configured by `deploy/nginx.conf`."""
 
 from __future__ import annotations
 
@@ -28,18 +28,21 @@ START_SECONDS = 240.0
 
 @pytest.fixture(scope="module")
 def proxy(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
-    """Before the explorer."""
-    folder, port, place = tmp_path_factory.mktemp("nginx"), free_port(), free_port()
-    with explorer(folder / "log", place, f"127.0.0.1:{port}"), proxied(nginx() or "", folder, port, (place, place)) as proxy:
+    """A proxy in front of the explorer."""
+    folder, port, backend = tmp_path_factory.mktemp("nginx"), free_port(), free_port()
+    with (
+        explorer(folder / "log", backend, f"127.0.0.1:{port}"),
+        proxied(nginx() or "", folder, port, (backend, backend)) as proxy,
+    ):
         yield proxy
 
 
 @pytest.fixture(scope="module")
 def proxy_before_two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy]:
-    """Before two servers that say which of them they are."""
+    """A proxy in front of two servers that answer with their port."""
     with ExitStack() as stack:
-        places = stack.enter_context(self_naming()), stack.enter_context(self_naming())
-        yield stack.enter_context(proxied(nginx() or "", tmp_path_factory.mktemp("two"), free_port(), places))
+        backends = stack.enter_context(port_server()), stack.enter_context(port_server())
+        yield stack.enter_context(proxied(nginx() or "", tmp_path_factory.mktemp("two"), free_port(), backends))
 
 
 @contextmanager
@@ -66,8 +69,8 @@ def wait_until_ready(port: int, process: subprocess.Popen[bytes]) -> None:
     raise RuntimeError(f"the server was not ready within {START_SECONDS:g} s, or ended: {process.poll()}")
 
 
-class NamePage(http.server.BaseHTTPRequestHandler):
-    """Says where it is."""
+class PortHandler(http.server.BaseHTTPRequestHandler):
+    """Answers with the port of the server."""
 
     def do_GET(self) -> None:
         text = str(self.connection.getsockname()[1]).encode()
@@ -76,13 +79,13 @@ class NamePage(http.server.BaseHTTPRequestHandler):
         self.end_headers()
         self.wfile.write(text)
 
-    def log_message(self, format: str, *words: object) -> None:
+    def log_message(self, format: str, *args: object) -> None:
         pass
 
 
 @contextmanager
-def self_naming() -> Iterator[int]:
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), NamePage)
+def port_server() -> Iterator[int]:
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), PortHandler)
     thread = threading.Thread(target=server.serve_forever)
     thread.start()
     try:
@@ -94,7 +97,7 @@ def self_naming() -> Iterator[int]:
 
 
 def ask(proxy: Proxy, path: str, headers: dict[str, str]) -> tuple[int, http.client.HTTPMessage, bytes]:
-    connection = http.client.HTTPSConnection("127.0.0.1", proxy.port, timeout=60, context=proxy.trusting())
+    connection = http.client.HTTPSConnection("127.0.0.1", proxy.port, timeout=60, context=proxy.ssl_context())
     try:
         connection.request("GET", path, headers=headers)
         answer = connection.getresponse()
@@ -103,8 +106,8 @@ def ask(proxy: Proxy, path: str, headers: dict[str, str]) -> tuple[int, http.cli
         connection.close()
 
 
-def opened(proxy: Proxy) -> tuple[str, str]:
-    """The page's token and the visitor's cookie."""
+def open_page(proxy: Proxy) -> tuple[str, str]:
+    """Open the page; return its session token and the cookie."""
     status, headers, page = ask(proxy, "/app", authorization())
     assert status == 200
     token = re.search(rb'"token":"([^"]+)"', page)
@@ -112,19 +115,19 @@ def opened(proxy: Proxy) -> tuple[str, str]:
     return token[1].decode(), headers["Set-Cookie"].split(";")[0]
 
 
-async def first_words(proxy: Proxy, origin: str, password: dict[str, str]) -> dict[str, str]:
-    """The header of the first message that a socket of the page gets."""
-    token, cookie = await asyncio.to_thread(opened, proxy)
+async def first_message_header(proxy: Proxy, origin: str, password: dict[str, str]) -> dict[str, str]:
+    """Open the page and its WebSocket; return the header of the first message."""
+    token, cookie = await asyncio.to_thread(open_page, proxy)
     request = HTTPRequest(
         f"wss://127.0.0.1:{proxy.port}/app/ws",
         headers={"Origin": origin, "Cookie": cookie, **password},
-        ssl_options=proxy.trusting(),
+        ssl_options=proxy.ssl_context(),
     )
     socket = await websocket_connect(request, subprotocols=["bokeh", token])
     first = await socket.read_message()
     assert isinstance(first, str)
     socket.close()
-    # Until it is closed; an open one would be complained of at the end of the loop.
+    # Wait for the close: an open connection causes a warning when the loop ends.
     while await socket.read_message() is not None:
         pass
     header: dict[str, str] = json.loads(first)
@@ -133,34 +136,34 @@ async def first_words(proxy: Proxy, origin: str, password: dict[str, str]) -> di
 
 @pytest.mark.parametrize("headers", [{}, authorization("guessed")], ids=["none", "wrong"])
 @pytest.mark.parametrize("path", ["/app", "/app/ws", "/static/js/bokeh.min.js"])
-def test_without_the_password_there_is_nothing(proxy: Proxy, path: str, headers: dict[str, str]) -> None:
+def test_password_is_required(proxy: Proxy, path: str, headers: dict[str, str]) -> None:
     assert ask(proxy, path, headers)[0] == 401
 
 
-def test_with_the_password_the_page_and_its_scripts_are_there(proxy: Proxy) -> None:
+def test_page_and_scripts_are_served_with_the_password(proxy: Proxy) -> None:
     status, _, page = ask(proxy, "/app", authorization())
     assert status == 200
     assert b"Escape Explorer" in page
     assert ask(proxy, "/static/js/bokeh.min.js", authorization())[0] == 200
 
 
-def test_a_session_runs_over_a_web_socket_through_tls(proxy: Proxy) -> None:
-    assert asyncio.run(first_words(proxy, proxy.origin, authorization()))["msgtype"] == "ACK"
+def test_websocket_works_through_tls(proxy: Proxy) -> None:
+    assert asyncio.run(first_message_header(proxy, proxy.origin, authorization()))["msgtype"] == "ACK"
 
 
-def test_a_foreign_page_gets_no_socket_even_with_the_password(proxy: Proxy) -> None:
+def test_websocket_of_another_origin_is_refused(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
-        asyncio.run(first_words(proxy, "https://elsewhere.example.org", authorization()))
+        asyncio.run(first_message_header(proxy, "https://elsewhere.example.org", authorization()))
     assert refused.value.code == 403
 
 
-def test_a_socket_wants_the_password_too(proxy: Proxy) -> None:
+def test_websocket_requires_the_password(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
-        asyncio.run(first_words(proxy, proxy.origin, {}))
+        asyncio.run(first_message_header(proxy, proxy.origin, {}))
     assert refused.value.code == 401
 
 
-def test_plain_http_leads_to_https(proxy: Proxy) -> None:
+def test_http_redirects_to_https(proxy: Proxy) -> None:
     connection = http.client.HTTPConnection("127.0.0.1", proxy.plain_port, timeout=10)
     connection.request("GET", "/app?case=II")
     answer = connection.getresponse()
@@ -169,24 +172,24 @@ def test_plain_http_leads_to_https(proxy: Proxy) -> None:
     assert (answer.status, answer.getheader("Location")) == (301, "https://127.0.0.1/app?case=II")
 
 
-def test_pages_for_whoever_runs_the_server_are_not_shown_outside(proxy: Proxy) -> None:
+def test_operator_endpoints_are_not_public(proxy: Proxy) -> None:
     assert {ask(proxy, f"/{name}", authorization())[0] for name in ("liveness", "readiness", "metrics", "status")} == {404}
 
 
-def test_visitors_keep_their_process_and_processes_share_the_visitors(proxy_before_two: Proxy) -> None:
-    places = []
+def test_sessions_are_sticky_and_distributed(proxy_before_two: Proxy) -> None:
+    backends = []
     for _ in range(16):
         status, headers, first = ask(proxy_before_two, "/app", authorization())
         assert status == 200
         cookie = {"Cookie": headers["Set-Cookie"].split(";")[0]}
         answers = [ask(proxy_before_two, path, {**authorization(), **cookie}) for path in ("/app/ws", "/static/a.js")]
         assert {answer for _, _, answer in answers} == {first}
-        places.append(first)
-    # All sixteen at one of two: once in 33 000 runs.
-    assert len(set(places)) == 2
+        backends.append(first)
+    # All sixteen on the same backend: once in 33 000 runs.
+    assert len(set(backends)) == 2
 
 
-def test_nobody_opens_pages_without_end(proxy_before_two: Proxy) -> None:
-    # Last in this file: it uses up what one address may ask for.
+def test_page_rate_is_limited(proxy_before_two: Proxy) -> None:
+    # Must be the last test in this file, as it exhausts the limit of this address.
     statuses = [ask(proxy_before_two, "/app", authorization())[0] for _ in range(25)]
     assert statuses[-1] == 429

@@ -1,19 +1,19 @@
-"""What can be typed: every command answers, or refuses in one line with an exit code of its own."""
+"""Any command line either runs or prints one line to stderr and returns a documented exit code."""
 
 from __future__ import annotations
 
 import contextlib
 import io
-import os
 import resource
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cli.main import STOPPED, WENT_WRONG, WRONG_REQUEST, main
+from cli.main import FAILED, INVALID_REQUEST, main
 from tests.fuzz.hostile import EXTREMES, MOST_BYTES, MOST_SECONDS, case_strings, texts
 
 SMALL = {
@@ -22,57 +22,46 @@ SMALL = {
     "lyapunov": ("lyapunov", "I", "--energy", "0.19"),
     "measures": ("measures", "I", "--energy", "0.19", "--resolution", "12", "--t-max", "10", "--no-exponent"),
     "curves": (
-        "curves",
-        "I",
-        "--low",
-        "0.18",
-        "--high",
-        "0.19",
-        "--count",
-        "2",
-        "--resolution",
-        "6",
-        "--t-max",
-        "5",
-        "--no-exponent",
+        "curves", "I", "--low", "0.18", "--high", "0.19", "--count", "2", "--resolution", "6", "--t-max", "5", "--no-exponent",
     ),
     "potential": ("potential", "C5@epsilon=0.8", "--json"),
     "sweep": ("sweep", "I", "--energy", "0.19", "--resolution", "4", "--t-max", "5", "--store", "store.zarr"),
-}
+}  # fmt: skip
 FLAGS = (
     "--backward", "--no-certify", "--json", "--origins", "--window", "--energies", "--state", "--palette", "--picture",
     "--output", "--plane", "--manifolds", "--threads", "--most-rows", "--side", "--unknown", "--", "-",
 )  # fmt: skip
-HARMLESS_NUMBERS = [repr(number) for number in EXTREMES if not 20.0 < number < 1e300]
+CHEAP_NUMBERS = [repr(number) for number in EXTREMES if not 20.0 < number < 1e300]
 
 
-def as_handed_over(text: str) -> str:
-    """Surrogates stand for bytes that are no text: that is how Python hands them over."""
+def as_argument(text: str) -> str:
+    """Replace a surrogate by the one that Python uses for undecodable bytes of an argument; shorten long text."""
     return text[:200].replace("\ud800", "\udcff")
 
 
-words = texts.map(as_handed_over) | st.sampled_from(HARMLESS_NUMBERS)
+words = texts.map(as_argument) | st.sampled_from(CHEAP_NUMBERS)
 
 
 @pytest.fixture(scope="module", autouse=True)
-def in_a_folder_of_its_own(tmp_path_factory: pytest.TempPathFactory) -> None:
-    os.chdir(tmp_path_factory.mktemp("typed"))
+def temporary_working_directory(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with contextlib.chdir(tmp_path_factory.mktemp("cli")):
+        yield
 
 
 def run(arguments: list[str]) -> None:
     out, err = io.StringIO(), io.StringIO()
     begun = time.process_time()
-    around = set(Path("..").iterdir())
+    parent_files = set(Path("..").iterdir())
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         code = main(arguments)
-    assert code in (0, WRONG_REQUEST, WENT_WRONG), (code, err.getvalue())
-    assert code != STOPPED
+    assert code in (0, INVALID_REQUEST, FAILED), (code, err.getvalue())
     if code:
-        said = err.getvalue()
-        assert said.startswith("escape-explorer: "), said
-        assert said.count("\n") == 1, said
-        assert "Error: " not in said.partition(":")[2][:30] or "OSError" in said, f"{arguments}: {said}"
-    assert set(Path("..").iterdir()) == around
+        message = err.getvalue()
+        assert message.startswith("escape-explorer: "), message
+        assert message.count("\n") == 1, message
+        # Unexpected exceptions are printed with the name of their class.
+        assert "Error: " not in message.partition(":")[2][:30] or "OSError" in message, f"{arguments}: {message}"
+    assert set(Path("..").iterdir()) == parent_files
     assert not [path for path in Path().iterdir() if path.name.endswith(".part")]
     assert time.process_time() - begun < MOST_SECONDS
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 < MOST_BYTES
@@ -80,7 +69,7 @@ def run(arguments: list[str]) -> None:
 
 @given(st.sampled_from(list(SMALL)), st.data())
 @settings(suppress_health_check=[HealthCheck.too_slow])
-def test_one_word_is_another(command: str, data: st.DataObject) -> None:
+def test_one_argument_replaced(command: str, data: st.DataObject) -> None:
     arguments = list(SMALL[command])
     arguments[data.draw(st.integers(1, len(arguments) - 1))] = data.draw(words)
     run(arguments)
@@ -88,16 +77,16 @@ def test_one_word_is_another(command: str, data: st.DataObject) -> None:
 
 @given(st.sampled_from(list(SMALL)), st.lists(st.sampled_from(FLAGS) | words, max_size=4))
 @settings(suppress_health_check=[HealthCheck.too_slow])
-def test_more_words(command: str, more: list[str]) -> None:
-    run([*SMALL[command], *more])
+def test_extra_arguments(command: str, extra: list[str]) -> None:
+    run([*SMALL[command], *extra])
 
 
 @given(case_strings)
 @settings(suppress_health_check=[HealthCheck.too_slow])
-def test_a_potential_by_name_or_formula(case: str) -> None:
-    run(["potential", as_handed_over(case)])
+def test_any_potential_argument(case: str) -> None:
+    run(["potential", as_argument(case)])
 
 
-@given(st.lists(st.sampled_from([*SMALL, *FLAGS]) | words, max_size=5).filter(lambda typed: "serve" not in typed))
-def test_anything_at_all(arguments: list[str]) -> None:
+@given(st.lists(st.sampled_from([*SMALL, *FLAGS]) | words, max_size=5).filter(lambda arguments: "serve" not in arguments))
+def test_any_arguments(arguments: list[str]) -> None:
     run(arguments)

@@ -1,4 +1,4 @@
-"""What a link may hold: read, or named in a sentence without a character that any markup gives a meaning to."""
+"""Any link gives a valid view state; invalid values are reported in messages that are safe to display."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from app.state.permalink import LINKED, read_link, write_link
 from app.state.system import SYSTEM, TYPED
 from app.state.view_state import ViewState
 from engine import CASES
-from tests.fuzz.hostile import LONGEST_SENTENCE, STRINGS, answer_or_refusal, floats, formulas, texts
+from tests.fuzz.hostile import LONGEST_MESSAGE, STRINGS, floats, formulas, result_or_error, texts
 
 NAMES = (
     "case", "plane", "h", "t_max", "resolution", "window", "judge", "trust", "manifolds", "origins", "measures", "energies",
@@ -26,13 +26,13 @@ LEGAL = {
     "case": "II", "plane": "x_y", "h": "0.2", "t_max": "1000", "resolution": "225", "window": "-1,1,-1,1", "orbits": "0.1,0.2",
 }  # fmt: skip
 SAFE = re.compile(r"[A-Za-z0-9_ .,;:+()=?…-]*")
-ON_THE_POTENTIAL = "The potential in the link is of no use: "
+POTENTIAL_PROBLEM = "Ignored the potential in the link: "
 MARKUP = set("<>[]()*_`~|\"'\\!")
 
 numbers = floats.map(repr) | st.sampled_from(["1e999", "-inf", "1_0", "0x10", "١", " 1", "1e-400", "9" * 400])
-in_a_row = st.lists(numbers, min_size=1, max_size=6).map(",".join)
-values = texts | formulas | st.sampled_from(STRINGS) | numbers | in_a_row | st.lists(in_a_row, max_size=7).map(";".join)
-settings_of_a_view = (
+number_lists = st.lists(numbers, min_size=1, max_size=6).map(",".join)
+values = texts | formulas | st.sampled_from(STRINGS) | numbers | number_lists | st.lists(number_lists, max_size=7).map(";".join)
+attribute_values = (
     floats | texts | st.none() | st.tuples(floats, floats) | st.lists(st.tuples(floats, floats), max_size=7).map(tuple)
 )
 links = st.dictionaries(st.sampled_from(NAMES), values, max_size=5)
@@ -42,20 +42,20 @@ def check(parameters: dict[str, str]) -> None:
     values, problems = read_link(parameters)
     assert set(values) <= set(LINKED)
     for problem in problems:
-        # What is said of a formula quotes it, and the page shows it as text.
-        if not problem.startswith(ON_THE_POTENTIAL):
+        # A message about a formula quotes it; the page escapes it.
+        if not problem.startswith(POTENTIAL_PROBLEM):
             assert SAFE.fullmatch(problem), problem
         assert not set(as_markdown(problem)) & MARKUP
-        assert len(problem) <= LONGEST_SENTENCE
+        assert len(problem) <= LONGEST_MESSAGE
     assert len(problems) <= len(parameters) + 1
     state = ViewState(**values)
     assert state.potential.channels
     assert state.system.energies.low < state.system.energies.first < state.system.energies.high
-    # The interior of a system that is new here would want kernels compiled for it.
+    # Other systems would have to be compiled first.
     if state.case in CASES and not state.system.changed:
-        answer_or_refusal(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
+        result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     for start in state.starts:
-        spec = answer_or_refusal(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
+        spec = result_or_error(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
         assert spec is None or len(spec.state) == 4
     assert read_link(dict(parse_qsl(write_link(state)[1:])))[1] == []
 
@@ -66,29 +66,29 @@ def test_any_link(parameters: dict[str, str]) -> None:
 
 
 @given(st.sampled_from([name for name in NAMES if name]), values)
-def test_a_link_with_one_bad_value(name: str, value: str) -> None:
+def test_link_with_one_arbitrary_value(name: str, value: str) -> None:
     check({**LEGAL, name: value})
 
 
 @given(formulas, st.dictionaries(st.sampled_from(["case", "omega_1", "omega_2", "epsilon", "h", "orbits"]), values, max_size=3))
-def test_a_link_with_a_formula(formula: str, others: dict[str, str]) -> None:
+def test_link_with_a_formula(formula: str, others: dict[str, str]) -> None:
     check({"case": TYPED, **others, "V": formula})
 
 
 @given(st.dictionaries(st.sampled_from(NAMES), st.binary(max_size=60), max_size=3))
-def test_bytes_that_are_no_text(parameters: dict[str, bytes]) -> None:
-    """As the server hands them over."""
+def test_undecodable_bytes(parameters: dict[str, bytes]) -> None:
+    # Decoded as in the session.
     check({name: value.decode(errors="replace") for name, value in parameters.items()})
 
 
 @given(st.sampled_from([name for name in NAMES if name]), texts)
-def test_what_a_link_holds_comes_back_from_an_address(name: str, value: str) -> None:
+def test_link_survives_url_encoding(name: str, value: str) -> None:
     encoded = urlencode({name: value}, errors="replace")
     check(dict(parse_qsl(encoded, keep_blank_values=True)))
 
 
-@given(st.sampled_from([name for name in LINKED if name not in SYSTEM]), settings_of_a_view)
-def test_the_view_takes_no_value_that_it_cannot_show(name: str, value: Any) -> None:
+@given(st.sampled_from([name for name in LINKED if name not in SYSTEM]), attribute_values)
+def test_view_state_accepts_only_valid_values(name: str, value: Any) -> None:
     state = ViewState()
     try:
         with warnings.catch_warnings():
@@ -96,7 +96,7 @@ def test_the_view_takes_no_value_that_it_cannot_show(name: str, value: Any) -> N
             setattr(state, name, value)
     except (ValueError, TypeError):
         return
-    answer_or_refusal(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
+    result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     for start in state.starts:
-        answer_or_refusal(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
+        result_or_error(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
     write_link(state)

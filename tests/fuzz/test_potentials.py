@@ -1,4 +1,4 @@
-"""Potentials from anywhere: looked over without an error, and what is let through can be shown."""
+"""Any potential can be reviewed, and every accepted one can be displayed."""
 
 from __future__ import annotations
 
@@ -12,72 +12,72 @@ from hypothesis import strategies as st
 from app.state.permalink import read_link, write_link
 from app.state.system import TYPED, System, refusal
 from app.state.view_state import ViewState
-from cli.potentials import PARAMETERS, find_potential, name_in_files
+from cli.potential_argument import PARAMETERS, file_name_part, find_potential
 from engine import POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
-from tests.fuzz.hostile import LONGEST_SENTENCE, answer_or_refusal, anything, case_strings, either, formulas
+from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
 
 LONGEST_REVIEW = 3.0
-"""Seconds of processor time; a page waits for it where a link holds a formula."""
+"""Processor time in seconds; the page waits for the review of a formula in its link."""
 
 exponents = st.integers(0, 6)
 sizes = st.floats(1e-6, 1e6) | st.floats(0.1, 3.0)
-coefficients = either(sizes | sizes.map(lambda size: -size), st.just(0.0))
-some_terms = st.lists(st.tuples(exponents, exponents, coefficients), max_size=6)
+coefficients = mostly(sizes | sizes.map(lambda size: -size), st.just(0.0))
+term_lists = st.lists(st.tuples(exponents, exponents, coefficients), max_size=6)
 
 
-def looked_over(potential: Potential) -> PotentialReview:
+def reviewed(potential: Potential) -> PotentialReview:
     begun = time.process_time()
-    found = review_potential(potential)
+    review = review_potential(potential)
     assert time.process_time() - begun < LONGEST_REVIEW
-    assert found.refusal is None or (found.refusal.endswith(".") and len(found.refusal) <= LONGEST_SENTENCE)
-    return found
+    assert review.refusal is None or (review.refusal.endswith(".") and len(review.refusal) <= LONGEST_MESSAGE)
+    return review
 
 
-def check_shown(system: System, found: PotentialReview) -> None:
-    """What the page lets through has a slider, a link and starts of orbits."""
-    if refusal(found) is not None:
+def check_display(system: System, review: PotentialReview) -> None:
+    """Check the energy range, starts and link of an accepted potential."""
+    if refusal(review) is not None:
         return
     state = ViewState()
     state.show_system(system)
     energies = system.energies
     assert energies.low < energies.first < energies.high
-    assert found.escape_energy < energies.first < found.highest_energy
+    assert review.escape_energy < energies.first < review.highest_energy
     assert state.orbit_spec((0.0, 0.0)) is not None
     values, problems = read_link(dict(parse_qsl(write_link(state)[1:])))
     assert problems == []
     assert ViewState(**values).potential == system.potential
 
 
-@given(some_terms)
-def test_a_potential_of_any_terms(terms: list[tuple[Any, ...]]) -> None:
-    potential = answer_or_refusal(lambda: Potential("any", tuple(terms)), ["terms"])
+@given(term_lists)
+def test_potential_with_any_terms(terms: list[tuple[Any, ...]]) -> None:
+    potential = result_or_error(lambda: Potential("any", tuple(terms)), ["terms"])
     if potential is not None:
-        looked_over(potential)
+        reviewed(potential)
 
 
 @given(formulas)
-def test_a_formula(text: str) -> None:
-    potential = answer_or_refusal(lambda: parse_formula(text), ["formula"])
+def test_any_formula(text: str) -> None:
+    potential = result_or_error(lambda: parse_formula(text), ["formula"])
     if potential is not None:
         assert parse_formula(write_formula(potential)).terms == potential.terms
-        check_shown(System(TYPED, text), looked_over(potential))
+        check_display(System(TYPED, text), reviewed(potential))
 
 
-@given(st.sampled_from(list(POTENTIALS)), *[either(st.floats(0.5, 2.0))] * 3)
-def test_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: Any, epsilon: Any) -> None:
+@given(st.sampled_from(list(POTENTIALS)), *[mostly(st.floats(0.5, 2.0))] * 3)
+def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: Any, epsilon: Any) -> None:
     plain = POTENTIALS[name].potential
-    changed = answer_or_refusal(lambda: plain.with_parameters(omega_1, omega_2, epsilon), PARAMETERS)
+    changed = result_or_error(lambda: plain.with_parameters(omega_1, omega_2, epsilon), PARAMETERS)
     if changed is not None:
-        check_shown(System(name, "", float(omega_1), float(omega_2), float(epsilon)), looked_over(changed))
+        check_display(System(name, "", float(omega_1), float(omega_2), float(epsilon)), reviewed(changed))
 
 
 @given(case_strings)
-def test_a_case_as_it_is_typed(case: str) -> None:
-    answer_or_refusal(lambda: find_potential(case), ["case", *PARAMETERS])
-    assert not set(name_in_files(case)) & set("/\\\0 \n")
+def test_any_potential_argument(case: str) -> None:
+    result_or_error(lambda: find_potential(case), ["case", *PARAMETERS])
+    assert not set(file_name_part(case)) & set("/\\\0 \n")
 
 
 @given(anything)
-def test_what_is_no_text_is_no_formula(text: Any) -> None:
+def test_formula_must_be_text(text: Any) -> None:
     if not isinstance(text, str):
-        assert answer_or_refusal(lambda: parse_formula(text), ["text", "formula"]) is None
+        assert result_or_error(lambda: parse_formula(text), ["text", "formula"]) is None

@@ -1,4 +1,4 @@
-"""What can be asked of the engine with any values: it is answered, or refused in a sentence that names the parameter."""
+"""Any arguments of the engine give a result or an error that names the parameter."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from engine import (
     compute_uncertainty_exponent,
     compute_wada_test,
     default_window,
+    find_divergent_start,
     find_lyapunov_orbits,
     find_stable_manifolds,
-    find_twin,
     fit_decay_laws,
     fit_direct_shares,
     fit_escape_shares,
@@ -44,22 +44,22 @@ from engine import (
     trace_equipotentials,
     trace_zero_velocity_curve,
 )
-from tests.fuzz.hostile import answer_or_refusal, anything, either, floats
+from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]
-energies = either(st.floats(0.05, 0.3))
-times = either(st.floats(1e-3, 50.0))
-planes = either(st.sampled_from(list(Plane)))
-coordinates = either(st.floats(-0.5, 0.5))
-edges = either(st.tuples(*[st.floats(-1.0, 1.0)] * 4), st.tuples(floats, floats, floats, floats) | anything)
-sides = either(st.integers(1, 12))
-resolutions = either(st.tuples(sides, sides))
-states = either(st.tuples(*[st.floats(-0.3, 0.3)] * 4), st.tuples(*[floats] * 4) | anything)
-counts = either(st.integers(0, 6))
-powers = either(st.integers(0, 4))
-numbers_in_a_row = either(st.lists(st.floats(0.0, 1.0), max_size=8), st.lists(floats, max_size=8) | anything)
-counts_in_a_row = either(st.lists(st.integers(0, 300), max_size=8), st.lists(st.integers() | floats, max_size=8) | anything)
-labels = st.lists(st.lists(either(st.integers(0, 3)), max_size=7), max_size=7) | anything
+energies = mostly(st.floats(0.05, 0.3))
+times = mostly(st.floats(1e-3, 50.0))
+planes = mostly(st.sampled_from(list(Plane)))
+coordinates = mostly(st.floats(-0.5, 0.5))
+edges = mostly(st.tuples(*[st.floats(-1.0, 1.0)] * 4), st.tuples(floats, floats, floats, floats) | anything)
+sides = mostly(st.integers(1, 12))
+resolutions = mostly(st.tuples(sides, sides))
+states = mostly(st.tuples(*[st.floats(-0.3, 0.3)] * 4), st.tuples(*[floats] * 4) | anything)
+counts = mostly(st.integers(0, 6))
+powers = mostly(st.integers(0, 4))
+number_lists = mostly(st.lists(st.floats(0.0, 1.0), max_size=8), st.lists(floats, max_size=8) | anything)
+count_lists = mostly(st.lists(st.integers(0, 300), max_size=8), st.lists(st.integers() | floats, max_size=8) | anything)
+labels = st.lists(st.lists(mostly(st.integers(0, 3)), max_size=7), max_size=7) | anything
 
 
 @functools.cache
@@ -67,163 +67,166 @@ def small_map() -> EscapeMap:
     return compute_map(MapSpec(CASE, Plane.X_PX, 0.2, (12, 12), t_max=50.0))
 
 
+def shortened(time: Any) -> Any:
+    """A shorter time in place of a valid one that would take long."""
+    return 100.0 if isinstance(time, int | float) and 100.0 < time <= LONGEST_TIME else time
+
+
 @given(floats | anything, floats | anything, floats | anything, floats | anything)
-def test_a_window(x_low: Any, x_high: Any, low: Any, high: Any) -> None:
-    window = answer_or_refusal(lambda: Window(x_low, x_high, low, high), ["window"])
+def test_window(x_low: Any, x_high: Any, low: Any, high: Any) -> None:
+    window = result_or_error(lambda: Window(x_low, x_high, low, high), ["window"])
     if window is not None:
-        centres = answer_or_refusal(lambda: window.pixel_centres(3, 4), ["window"])
+        centres = result_or_error(lambda: window.pixel_centres(3, 4), ["window"])
         assert all(np.isfinite(row).all() and np.all(np.diff(row) >= 0) for row in centres)
 
 
 @given(planes, energies | st.tuples(energies, energies), resolutions, st.none() | edges, times)
-def test_a_map(plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any) -> None:
+def test_map(plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any) -> None:
     names = ["plane", "energy", "resolution", "window", "t_max", "Plane"]
-    spec = answer_or_refusal(lambda: MapSpec(CASE, plane, energy, resolution, window, t_max), names)
+    spec = result_or_error(lambda: MapSpec(CASE, plane, energy, resolution, window, t_max), names)
     if spec is None:
         return
     assert hash(spec) == hash(spec)
     assert spec.provenance()
-    answer_or_refusal(lambda: spec.pixel_at(spec.window.x_low, spec.window.ordinate_high), names)
+    result_or_error(lambda: spec.pixel_at(spec.window.x_low, spec.window.ordinate_high), names)
     assert preview_spec(spec).t_max <= LONGEST_TIME
     if spec.t_max <= 100.0 and np.prod(spec.resolution) <= 144:
-        frame = answer_or_refusal(lambda: compute_map(spec), names)
+        frame = result_or_error(lambda: compute_map(spec), names)
         if frame is not None:
             assert frame.complete
             assert np.isin(frame.fate, range(-4, CASE.channels + 1)).all()
-            answer_or_refusal(lambda: compute_statistics(frame).shares, names)
+            result_or_error(lambda: compute_statistics(frame).shares, names)
 
 
 @given(
-    st.lists(st.tuples(either(st.integers(0, 4)), either(st.integers(0, 4)), either(st.floats(-2.0, 2.0))), max_size=5) | anything
+    st.lists(st.tuples(mostly(st.integers(0, 4)), mostly(st.integers(0, 4)), mostly(st.floats(-2.0, 2.0))), max_size=5) | anything
 )
-def test_a_potential(terms: Any) -> None:
+def test_potential(terms: Any) -> None:
     terms = tuple(terms) if isinstance(terms, list) else terms
-    potential = answer_or_refusal(lambda: Potential("odd", terms), ["terms"])
+    potential = result_or_error(lambda: Potential("odd", terms), ["terms"])
     if potential is not None:
         hash(potential)
-        answer_or_refusal(lambda: potential.value(0.1, 0.2), ["terms"])
-        answer_or_refusal(lambda: potential.saddles, ["terms", "isolated"])
+        result_or_error(lambda: potential.value(0.1, 0.2), ["terms"])
+        result_or_error(lambda: potential.saddles, ["terms", "isolated"])
 
 
 @given(energies, st.lists(states, max_size=3) | anything, times)
-def test_a_list_of_orbits(energy: Any, rows: Any, t_max: Any) -> None:
+def test_classify_orbits(energy: Any, rows: Any, t_max: Any) -> None:
     on_shell = [(0.1, 0.0, 0.0, 0.5)]
-    for tried in (rows, on_shell):
-        answer_or_refusal(functools.partial(classify_orbits, CASE, energy, tried, t_max), ["energy", "states", "t_max"])
+    for states in (rows, on_shell):
+        result_or_error(functools.partial(classify_orbits, CASE, energy, states, t_max), ["energy", "states", "t_max"])
 
 
 @given(states, times)
-def test_an_orbit_in_full(state: Any, t_max: Any) -> None:
-    short = t_max if not (isinstance(t_max, int | float) and 100.0 < t_max <= LONGEST_TIME) else 100.0
-    orbit = answer_or_refusal(lambda: integrate_orbit(CASE, state, short), ["state", "t_max", "energy"])
+def test_integrate_orbit(state: Any, t_max: Any) -> None:
+    orbit = result_or_error(lambda: integrate_orbit(CASE, state, shortened(t_max)), ["state", "t_max", "energy"])
     if orbit is not None:
         assert orbit.describe()
         assert orbit.t.size == orbit.x.size == orbit.sali.size
 
 
 @given(states, states, times)
-def test_two_orbits(first: Any, second: Any, t_end: Any) -> None:
-    short = t_end if not (isinstance(t_end, int | float) and 100.0 < t_end <= LONGEST_TIME) else 100.0
-    answer_or_refusal(lambda: compute_separation(CASE, first, second, short), ["first", "second", "t_max", "t_end"])
+def test_separation(first: Any, second: Any, t_end: Any) -> None:
+    result_or_error(lambda: compute_separation(CASE, first, second, shortened(t_end)), ["first", "second", "t_max", "t_end"])
 
 
 @given(states, times)
-def test_digits(state: Any, t_max: Any) -> None:
-    answer_or_refusal(lambda: compute_birkhoff_digits(CASE, state, t_max), ["state", "t_max", "energy"])
+def test_birkhoff_digits(state: Any, t_max: Any) -> None:
+    result_or_error(lambda: compute_birkhoff_digits(CASE, state, t_max), ["state", "t_max", "energy"])
 
 
-@given(states, times, either(st.integers(1, 20)))
-def test_the_envelope_of_r2(state: Any, t_max: Any, intervals: Any) -> None:
-    short = t_max if not (isinstance(t_max, int | float) and 100.0 < t_max <= LONGEST_TIME) else 100.0
-    answer_or_refusal(lambda: compute_radius_envelope(CASE, state, short, intervals), ["state", "t_max", "intervals", "energy"])
+@given(states, times, mostly(st.integers(1, 20)))
+def test_radius_envelope(state: Any, t_max: Any, intervals: Any) -> None:
+    result_or_error(
+        lambda: compute_radius_envelope(CASE, state, shortened(t_max), intervals), ["state", "t_max", "intervals", "energy"]
+    )
 
 
 @given(energies)
-def test_exits(energy: Any) -> None:
-    orbits = answer_or_refusal(lambda: find_lyapunov_orbits(CASE, energy), ["energy"])
+def test_lyapunov_orbits(energy: Any) -> None:
+    orbits = result_or_error(lambda: find_lyapunov_orbits(CASE, energy), ["energy"])
     assert all(np.isfinite(orbit.curve).all() and np.isfinite(orbit.period) for orbit in orbits or ())
 
 
 @given(planes, energies | st.tuples(energies, energies))
-def test_the_window_of_the_interior(plane: Any, energy: Any) -> None:
-    answer_or_refusal(lambda: default_window(CASE, plane, energy), ["energy", "plane"])
+def test_default_window(plane: Any, energy: Any) -> None:
+    result_or_error(lambda: default_window(CASE, plane, energy), ["energy", "plane"])
 
 
 @given(st.sampled_from(list(Plane)), st.floats(), st.lists(st.floats(), min_size=1, max_size=4))
-def test_starts_on_a_plane(plane: Plane, energy: float, x: list[float]) -> None:
+def test_start_states(plane: Plane, energy: float, x: list[float]) -> None:
     row = np.array(x)
-    found = answer_or_refusal(lambda: start_states(CASE, plane, energy, row, row[::-1]), ["energy"])
-    assert found is None or found.shape == (row.size, 4)
+    states = result_or_error(lambda: start_states(CASE, plane, energy, row, row[::-1]), ["energy"])
+    assert states is None or states.shape == (row.size, 4)
 
 
 @given(planes, energies, st.tuples(floats, floats, floats, floats))
 def test_equipotentials(plane: Any, energy: Any, corners: Any) -> None:
     names = ["window", "energy", "energies", "plane"]
-    window = answer_or_refusal(lambda: Window(*corners), names) or small_map().spec.window
-    answer_or_refusal(lambda: trace_zero_velocity_curve(CASE, plane, energy, window), names)
-    answer_or_refusal(lambda: trace_equipotentials(CASE, plane, (energy, energy), window), names)
+    window = result_or_error(lambda: Window(*corners), names) or small_map().spec.window
+    result_or_error(lambda: trace_zero_velocity_curve(CASE, plane, energy, window), names)
+    result_or_error(lambda: trace_equipotentials(CASE, plane, (energy, energy), window), names)
 
 
-@given(planes, energies, coordinates, coordinates, times, either(st.floats(1e-6, 0.01)))
-def test_a_twin(plane: Any, energy: Any, x: Any, ordinate: Any, t_max: Any, furthest: Any) -> None:
+@given(planes, energies, coordinates, coordinates, times, mostly(st.floats(1e-6, 0.01)))
+def test_divergent_start(plane: Any, energy: Any, x: Any, ordinate: Any, t_max: Any, furthest: Any) -> None:
     names = ["plane", "energy", "x", "y", "px", "h", "ordinate", "t_max", "furthest"]
-    short = t_max if not (isinstance(t_max, int | float) and 100.0 < t_max <= LONGEST_TIME) else 100.0
-    answer_or_refusal(lambda: find_twin(CASE, plane, energy, x, ordinate, short, furthest=furthest), names)
+    result_or_error(lambda: find_divergent_start(CASE, plane, energy, x, ordinate, shortened(t_max), furthest=furthest), names)
 
 
-@given(planes, either(st.lists(energies, max_size=4), anything), resolutions, st.none() | edges, times)
-def test_sweeps(plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any) -> None:
+@given(planes, mostly(st.lists(energies, max_size=4), anything), resolutions, st.none() | edges, times)
+def test_sweep_specs(plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any) -> None:
     names = ["plane", "Plane", "energies", "energy", "resolution", "window", "t_max"]
-    answer_or_refusal(lambda: EnergyCurvesSpec(CASE, plane, swept, resolution, t_max), names)
-    answer_or_refusal(lambda: SweepSpec(CASE, plane, swept, resolution, window, t_max), names)
+    result_or_error(lambda: EnergyCurvesSpec(CASE, plane, swept, resolution, t_max), names)
+    result_or_error(lambda: SweepSpec(CASE, plane, swept, resolution, window, t_max), names)
 
 
 @given(anything.filter(lambda cores: cores is not None))
-def test_the_plan_of_a_sweep(cores: Any) -> None:
+def test_sweep_plan(cores: Any) -> None:
     if isinstance(cores, int | np.integer) and 1 <= cores <= 10**6:
         return
     spec = SweepSpec(CASE, Plane.X_PX, (0.2,), (4, 4), t_max=5.0)
-    assert answer_or_refusal(lambda: plan_sweep(spec, cores=cores), ["cores"]) is None
+    assert result_or_error(lambda: plan_sweep(spec, cores=cores), ["cores"]) is None
 
 
-@given(labels, labels | st.none(), either(st.integers(1, 5)))
-def test_measures_of_a_picture(picture: Any, valid: Any, box: Any) -> None:
+@given(labels, labels | st.none(), mostly(st.integers(1, 5)))
+def test_basin_measures(pixels: Any, valid: Any, box: Any) -> None:
     names = ["labels", "valid", "box"]
-    answer_or_refusal(lambda: compute_basin_entropy(picture, valid, box), names)
-    answer_or_refusal(lambda: compute_wada_test(picture, valid), names)
+    result_or_error(lambda: compute_basin_entropy(pixels, valid, box), names)
+    result_or_error(lambda: compute_wada_test(pixels, valid), names)
     frame = small_map()
-    answer_or_refusal(lambda: compute_basin_entropy(frame.fate, frame.fate >= 0, box), names)
+    result_or_error(lambda: compute_basin_entropy(frame.fate, frame.fate >= 0, box), names)
 
 
-@given(numbers_in_a_row, counts_in_a_row, counts_in_a_row, counts)
-def test_fits_of_shares(h: Any, part: Any, whole: Any, degree: Any) -> None:
+@given(number_lists, count_lists, count_lists, counts)
+def test_share_fits(h: Any, part: Any, whole: Any, degree: Any) -> None:
     names = ["h", "escaped", "direct", "counts", "starts", "degree", "separations", "pairs", "uncertain"]
-    answer_or_refusal(lambda: fit_escape_shares(h, part, whole), names)
-    answer_or_refusal(lambda: fit_direct_shares(h, part, whole, degree), names)
-    answer_or_refusal(lambda: fit_uncertainty(h, whole, part), names)
-    answer_or_refusal(lambda: measure_deviation(np.cos, h, part, whole), names)
+    result_or_error(lambda: fit_escape_shares(h, part, whole), names)
+    result_or_error(lambda: fit_direct_shares(h, part, whole, degree), names)
+    result_or_error(lambda: fit_uncertainty(h, whole, part), names)
+    result_or_error(lambda: measure_deviation(np.cos, h, part, whole), names)
 
 
-@given(times, st.none() | st.tuples(floats, floats) | anything, either(st.just(500)), counts)
-def test_fits_of_escape_times(t_max: Any, window: Any, resamples: Any, seed: Any) -> None:
+@given(times, st.none() | st.tuples(floats, floats) | anything, mostly(st.just(500)), counts)
+def test_decay_laws(t_max: Any, window: Any, resamples: Any, seed: Any) -> None:
     if isinstance(resamples, int | float) and resamples > 1000:
         return
     statistics = compute_statistics(small_map())
     names = ["t_max", "window", "resamples", "seed"]
-    answer_or_refusal(lambda: fit_decay_laws(statistics, t_max, window=window, resamples=resamples, seed=seed), names)
+    result_or_error(lambda: fit_decay_laws(statistics, t_max, window=window, resamples=resamples, seed=seed), names)
 
 
-@given(either(st.integers(5, 12)), either(st.integers(3, 6)), either(st.floats(1.0, 10.0)), counts)
-def test_the_uncertainty_exponent(pairs: Any, separations: Any, work: Any, seed: Any) -> None:
+@given(mostly(st.integers(5, 12)), mostly(st.integers(3, 6)), mostly(st.floats(1.0, 10.0)), counts)
+def test_uncertainty_exponent(pairs: Any, separations: Any, work: Any, seed: Any) -> None:
     if any(isinstance(value, int | float) and value > 100 for value in (pairs, separations, work)):
         return
     names = ["pairs", "separations", "work", "seed"]
     options = {"pairs": pairs, "separations": separations, "work": work, "seed": seed}
-    answer_or_refusal(lambda: compute_uncertainty_exponent(small_map().spec, **options), names)
+    result_or_error(lambda: compute_uncertainty_exponent(small_map().spec, **options), names)
 
 
-@given(either(st.just(0.05), anything), either(st.just(0), anything))
+@given(mostly(st.just(0.05), anything), mostly(st.just(0), anything))
 def test_stable_manifolds(energy: Any, images: Any) -> None:
     if isinstance(images, int | float) and images == 1 and isinstance(energy, int | float) and energy > 0.125:
         return
-    answer_or_refusal(lambda: find_stable_manifolds(CASE, energy, images), ["energy", "images"])
+    result_or_error(lambda: find_stable_manifolds(CASE, energy, images), ["energy", "images"])

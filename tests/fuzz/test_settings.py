@@ -1,4 +1,4 @@
-"""What whoever runs the server may have set: read within its limits, or refused by name in one sentence."""
+"""Any environment gives settings within their limits, or an error that names the variable."""
 
 from __future__ import annotations
 
@@ -8,19 +8,24 @@ from dataclasses import asdict, fields
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.runtime.settings import Settings, read_settings, variable_of
-from tests.fuzz.hostile import answer_or_refusal, floats, texts
+from app.runtime.settings import Settings, read_settings, variable_name
+from tests.fuzz.hostile import floats, result_or_error, texts
 
-VARIABLES = [variable_of(setting.name) for setting in fields(Settings)]
-values = texts | floats.map(repr) | st.integers().map(str) | st.sampled_from(["1e5", "json", "https://a.example", "12 ", "0x10"])
+VARIABLES = [variable_name(setting.name) for setting in fields(Settings)]
+values = (
+    texts
+    | floats.map(repr)
+    | st.integers().map(str)
+    | st.sampled_from(["1e5", "json", "none", "https://a.example", "12 ", "0x10"])
+)
 
 
 @given(st.dictionaries(st.sampled_from([*VARIABLES, "ESCAPE_EXPLORER_CACHE", "PATH"]), values, max_size=4))
 def test_any_environment(environment: dict[str, str]) -> None:
-    settings = answer_or_refusal(lambda: read_settings(environment), VARIABLES)
+    settings = result_or_error(lambda: read_settings(environment), VARIABLES)
     if settings is None:
         return
     numbers = {name: value for name, value in asdict(settings).items() if isinstance(value, int | float)}
     assert all(math.isfinite(value) and value >= 0 for value in numbers.values())
     assert min(numbers[name] for name in ("threads", "most_sessions", "jobs_per_session", "most_orbits", "session_seconds")) >= 1
-    assert not any(set(framer) & set(";,'\"\r\n ") for framer in settings.frame_ancestors)
+    assert not any(set(origin) & set(";,'\"\r\n ") for origin in settings.frame_ancestors)

@@ -1,4 +1,4 @@
-"""Ours beside the paper's, on maps of a few hundred starts."""
+"""Comparisons with the paper, on maps of a few hundred starts."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from reproduction.quality import Quality
 from reproduction.stated_numbers import Counting, Quantity, Relation, StatedNumber
 from reproduction.unknown_windows import fit_window
 
-SMALL = Quality("small", resolution=21, t_max=300.0, curve_points=7, hunt_resolution=9, hunt_t_max=400.0)
+SMALL = Quality("small", resolution=21, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=400.0)
 
 
-def some_hunt(fate: list[int], times: list[float]) -> SuperStickySearch:
+def make_search(fate: list[int], times: list[float]) -> SuperStickySearch:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.26, (9, 9))
     n = len(fate)
     zeros = np.zeros(n)
@@ -26,12 +26,12 @@ def some_hunt(fate: list[int], times: list[float]) -> SuperStickySearch:
     )
 
 
-HUNT = some_hunt([0, 2, 1, 2], [np.nan, 1.2e6, 9e5, 8e5])
+SEARCH = make_search([0, 2, 1, 2], [np.nan, 1.2e6, 9e5, 8e5])
 DIRECT = StatedNumber("I", Plane.X_PX, (0.5,), "0.5", Quantity.DIRECT, Relation.MORE_THAN, 90.0)
 
 
 def measure(number: StatedNumber) -> Comparison:
-    return compare_all(MapShelf(SMALL), HUNT, (number,))[0]
+    return compare_all(MapShelf(SMALL), SEARCH, (number,))[0]
 
 
 def share_of(channels: tuple[int, ...], energies: tuple[float, ...] = (0.5,)) -> StatedNumber:
@@ -49,7 +49,7 @@ def share_of(channels: tuple[int, ...], energies: tuple[float, ...] = (0.5,)) ->
         (Relation.LESS_THAN, (12.0, 63.0), 3.0, False),
     ],
 )
-def test_differences_are_the_largest_and_none_where_a_bound_holds(
+def test_the_difference_is_the_largest_one_and_zero_if_a_bound_holds(
     relation: Relation, ours: tuple[float, ...], difference: float, agrees: bool
 ) -> None:
     comparison = Comparison(replace(share_of((1,)), relation=relation), ours)
@@ -57,73 +57,73 @@ def test_differences_are_the_largest_and_none_where_a_bound_holds(
     assert comparison.agrees is agrees
 
 
-def test_what_we_do_not_find_does_not_agree() -> None:
+def test_missing_values_do_not_agree() -> None:
     comparison = Comparison(share_of((1,)), (float("nan"),))
     assert np.isnan(comparison.difference)
     assert not comparison.agrees
 
 
 def test_times_agree_to_two_percent() -> None:
-    number = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_LEAVER, Relation.ABOUT, 3.5e6)
+    number = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
     assert Comparison(number, (3.44e6,)).agrees
     assert not Comparison(number, (3.4e6,)).agrees
 
 
-def test_shares_are_those_of_the_map_at_each_energy() -> None:
-    ours = measure(share_of((1,), (0.3, 0.5))).ours
+def test_shares_are_computed_from_the_map_at_each_energy() -> None:
+    ours = measure(share_of((1,), (0.3, 0.5))).computed
     maps = [compute_map(MapSpec(CASES["I"], Plane.X_PX, h, (21, 21), t_max=300.0)) for h in (0.3, 0.5)]
     assert ours == pytest.approx([100.0 * np.sum(m.fate == 1) / np.sum(m.fate >= 0) for m in maps])
 
 
-def test_direct_escapes_are_those_without_a_crossing() -> None:
+def test_direct_escapes_have_no_crossing() -> None:
     whole = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.5, (21, 21), t_max=300.0))
     direct = np.sum((whole.fate >= 1) & (whole.crossings == 0)) / np.sum(whole.fate >= 0)
-    assert measure(DIRECT).ours == pytest.approx((100.0 * direct,))
+    assert measure(DIRECT).computed == pytest.approx((100.0 * direct,))
 
 
-def test_the_hunt_tells_the_last_leaver_and_the_one_nearest_to_the_papers() -> None:
-    last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_LEAVER, Relation.ABOUT, 3.5e6)
-    nearest = replace(last, quantity=Quantity.NEAREST_LEAVER, value=851e3, channels=(2,))
+def test_the_search_gives_the_last_escape_and_the_nearest_to_the_stated_one() -> None:
+    last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
+    nearest = replace(last, quantity=Quantity.NEAREST_ESCAPE, value=851e3, channels=(2,))
     chaotic = replace(last, quantity=Quantity.CHAOTIC, value=10.0)
-    rows = compare_all(MapShelf(SMALL), HUNT, (last, nearest, chaotic))
-    assert [row.ours for row in rows] == [(1.2e6,), (8e5,), (10.0,)]
+    rows = compare_all(MapShelf(SMALL), SEARCH, (last, nearest, chaotic))
+    assert [row.computed for row in rows] == [(1.2e6,), (8e5,), (10.0,)]
 
 
-def test_without_leavers_there_is_no_last_one() -> None:
-    last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_LEAVER, Relation.ABOUT, 3.5e6)
-    assert not compare_all(MapShelf(SMALL), some_hunt([0], [np.nan]), (last,))[0].agrees
+def test_without_escapes_there_is_no_last_escape() -> None:
+    last = StatedNumber("III", Plane.X_PX, (0.26,), "", Quantity.LAST_ESCAPE, Relation.ABOUT, 3.5e6)
+    assert not compare_all(MapShelf(SMALL), make_search([0], [np.nan]), (last,))[0].agrees
 
 
-def test_chaotic_shares_of_other_cases_are_judged() -> None:
+def test_chaotic_shares_of_other_cases_use_the_classification() -> None:
     number = StatedNumber("II", Plane.X_PX, (0.17,), "", Quantity.CHAOTIC, Relation.ABOUT, 0.0)
     shelf = MapShelf(SMALL)
     frame = shelf.map("II", Plane.X_PX, 0.17)
-    judged: RegularityMap = shelf.judged(frame)
-    expected = 100.0 * np.sum(judged.character == Regularity.CHAOTIC) / np.sum(frame.fate == Fate.BOUNDED)
-    assert measure(number).ours == pytest.approx((expected,))
+    regularity: RegularityMap = shelf.regularity(frame)
+    expected = 100.0 * np.sum(regularity.character == Regularity.CHAOTIC) / np.sum(frame.fate == Fate.BOUNDED)
+    assert measure(number).computed == pytest.approx((expected,))
 
 
-def test_saddles_and_lyapunov_orbits_are_found() -> None:
+def test_escape_energy_and_lyapunov_orbits_are_computed() -> None:
     escape = StatedNumber("II", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXACTLY, 1 / 6)
     r2 = StatedNumber("III", Plane.X_Y, (0.26,), "", Quantity.LYAPUNOV_R2, Relation.ABOUT, 1.26)
     assert measure(escape).agrees
     # Known from an independent computation of these orbits.
-    assert measure(r2).ours == pytest.approx((1.004, 1.016), abs=5e-4)
+    assert measure(r2).computed == pytest.approx((1.004, 1.016), abs=5e-4)
 
 
-def test_the_orbit_along_the_y_axis_is_no_island() -> None:
+def test_the_orbit_along_the_y_axis_is_not_an_island() -> None:
     number = StatedNumber("III", Plane.X_H, (0.25, 1.0), "", Quantity.LAST_BOUNDED_ENERGY, Relation.ABOUT, 0.6)
-    assert measure(number).ours[0] < 0.75
+    assert measure(number).computed[0] < 0.75
 
 
 def counted(window: Window) -> dict[tuple[int, ...], float]:
-    """Percentages with starts outside counted, from a finer map that is computed apart."""
+    """Percentages with starts outside counted, from a finer independent map."""
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=300.0))
     return {(k,): 100.0 * share for k, share in whole.fractions(count_outside=True).items() if k >= 1}
 
 
 @pytest.mark.parametrize("window", [Window(-1.6, 1.6, -1.6, 1.6), Window(-1.2, 2.4, -1.2, 1.2)], ids=str)
-def test_a_window_is_found_again_from_the_percentages_in_it(window: Window) -> None:
+def test_a_window_is_recovered_from_its_percentages(window: Window) -> None:
     shelf = MapShelf(replace(SMALL, resolution=60))
     found = fit_window(shelf, "II", shelf.map("II", Plane.X_PX, 0.5), counted(window), enough=1.0)
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.5, (90, 90), window, t_max=1e-9, certify=False))
@@ -132,11 +132,11 @@ def test_a_window_is_found_again_from_the_percentages_in_it(window: Window) -> N
     assert found.share((1,)) == pytest.approx(counted(window)[1,], abs=2.0)
 
 
-def test_percentages_in_a_window_are_given_beside_those_inside() -> None:
+def test_percentages_in_a_window_are_reported_beside_those_inside() -> None:
     number = replace(
         share_of((1,)), case="II", plane=Plane.X_PX, counting=Counting.WINDOW, value=70.0, quantity=Quantity.ESCAPED_BY
     )
     row = measure(number)
     assert len(row.windows) == len(row.counted) == 1
-    assert row.counted[0] == row.windows[0].share((1,)) > row.ours[0]
+    assert row.counted[0] == row.windows[0].share((1,)) > row.computed[0]
     assert abs(row.counted_difference) < abs(row.difference)

@@ -1,4 +1,4 @@
-"""Figures show the numbers of their maps, in the paper's colours, and become whole files."""
+"""Figures show the values of their maps in the colours of the paper."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from reproduction.quality import FULL, QUICK, Quality
 from reproduction.sample_orbits import SHOWN_CROSSINGS, find_sample_starts
 from reproduction.sticky_figures import LONGEST_DRAWN, find_shown
 
-TINY = Quality("tiny", resolution=15, t_max=300.0, curve_points=7, hunt_resolution=9, hunt_t_max=2000.0)
+TINY = Quality("tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=2000.0)
 FAMILIES = (
     "potential", "basins-xy", "times-xy", "basins-xpx", "times-xpx",
     "crossings-xpx", "percentages", "xh", "statistics", "survival",
@@ -52,14 +52,14 @@ def pixels_of(axes: Axes) -> np.ndarray:
     return np.asarray(axes.images[0].get_array())[::-1]
 
 
-def test_every_family_is_there_for_every_case() -> None:
+def test_every_case_has_every_figure() -> None:
     wanted = {f"{case}-{family}" for case in CASES for family in FAMILIES} | {"III-regular-chaotic", "III-super-sticky"}
     assert set(FIGURES) == wanted
     assert all(entry.name == name for name, entry in FIGURES.items())
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_a_figure_of_each_family_is_drawn_with_a_title_and_named_axes(family: str, shelf: MapShelf) -> None:
+def test_figures_have_a_title_and_axis_labels(family: str, shelf: MapShelf) -> None:
     figure = FIGURES[f"{DRAWN[family]}-{family}"].draw(shelf)
     assert DRAWN[family] in figure.get_suptitle()
     assert any(axes.get_xlabel() for axes in figure.axes)
@@ -76,12 +76,15 @@ def test_the_pixels_of_a_basin_panel_have_the_colours_of_their_channels(place: i
     assert not pixels_of(axes)[~known][:, 3].any()
 
 
-def test_a_map_lies_where_its_window_is(shelf: MapShelf) -> None:
+def test_a_map_is_drawn_at_its_window(shelf: MapShelf) -> None:
     axes = panels(FIGURES["II-basins-xpx"].draw(shelf))[0]
     window = shelf.map("II", Plane.X_PX, nine_energies("II")[0]).spec.window
-    assert axes.images[0].get_extent() == pytest.approx(
-        [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high], abs=0.0
-    )
+    left, right, low, high = axes.images[0].get_extent()
+    frames = [shelf.map("II", Plane.X_PX, energy) for energy in nine_energies("II")]
+    shown_low, shown_high = min(f.spec.window.x_low for f in frames), max(f.spec.window.x_high for f in frames)
+    # Axes are in shares of the window that all panels show.
+    assert shown_low + np.array([left, right]) * (shown_high - shown_low) == pytest.approx([window.x_low, window.x_high])
+    assert low + high == pytest.approx(1.0)
 
 
 def test_escape_times_of_all_panels_share_one_scale(shelf: MapShelf) -> None:
@@ -97,10 +100,10 @@ def test_escape_times_of_all_panels_share_one_scale(shelf: MapShelf) -> None:
     assert places[0] < 30 < places[-1]
 
 
-def test_regular_orbits_are_cyan_chaotic_ones_magenta_and_escaping_ones_white(shelf: MapShelf) -> None:
+def test_regular_orbits_are_cyan_chaotic_magenta_and_escaping_white(shelf: MapShelf) -> None:
     axes = FIGURES["III-regular-chaotic"].draw(shelf).axes[0]
     frame = shelf.map("III", Plane.X_PX, 0.26)
-    character, pixels = shelf.judged(frame).character, pixels_of(axes)
+    character, pixels = shelf.regularity(frame).character, pixels_of(axes)
     for code, colour in ((1, PAPER.characters[1]), (2, PAPER.characters[2])):
         assert np.all(pixels[character == code] == rgba([colour])[0])
     assert (frame.fate > Fate.BOUNDED).any()
@@ -115,14 +118,14 @@ def test_percentages_sum_to_all(panel: int, shelf: MapShelf) -> None:
     np.testing.assert_allclose(np.sum(lines, axis=0), 100.0, rtol=1e-12)
 
 
-def test_channels_that_symmetry_makes_equal_can_both_be_seen(shelf: MapShelf) -> None:
+def test_curves_of_symmetric_channels_are_both_visible(shelf: MapShelf) -> None:
     lines = FIGURES["III-percentages"].draw(shelf).axes[1].lines
     np.testing.assert_array_equal(np.asarray(lines[1].get_ydata()), np.asarray(lines[2].get_ydata()))
     assert lines[1].get_linestyle() == "-"
     assert lines[2].get_linestyle() == "--"
 
 
-def test_each_orbit_of_the_potential_figure_leaves_by_the_channel_of_its_colour(shelf: MapShelf) -> None:
+def test_orbits_of_the_potential_figure_have_the_colour_of_their_channel(shelf: MapShelf) -> None:
     escapes = FIGURES["III-potential"].draw(shelf).axes[2]
     by_colour = {to_rgba(line.get_color()): line for line in escapes.lines if len(np.asarray(line.get_xdata())) > 1}
     saddles = CASES["III"].saddles
@@ -132,7 +135,7 @@ def test_each_orbit_of_the_potential_figure_leaves_by_the_channel_of_its_colour(
         assert 1 + int(np.argmin(np.hypot(*(saddles - end).T))) == channel
 
 
-def test_shown_orbits_cross_a_few_times_before_they_leave(shelf: MapShelf) -> None:
+def test_sample_orbits_cross_a_few_times_before_they_escape(shelf: MapShelf) -> None:
     frame = shelf.map("II", Plane.X_PX, 0.2)
     starts = find_sample_starts(frame)
     outcomes = classify_orbits(CASES["II"], 0.2, np.array(list(starts.values())), 300.0)
@@ -140,7 +143,7 @@ def test_shown_orbits_cross_a_few_times_before_they_leave(shelf: MapShelf) -> No
     assert all(SHOWN_CROSSINGS <= n <= SHOWN_CROSSINGS + 2 for n in outcomes.crossings.tolist())
 
 
-def test_the_paper_fit_and_ours_are_drawn_over_the_shares(shelf: MapShelf) -> None:
+def test_the_published_and_the_new_fit_are_drawn_over_the_shares(shelf: MapShelf) -> None:
     escaped = FIGURES["I-statistics"].draw(shelf).axes[0]
     data, paper, own = escaped.lines
     table = shelf.curves("I", Plane.X_PX)
@@ -150,40 +153,40 @@ def test_the_paper_fit_and_ours_are_drawn_over_the_shares(shelf: MapShelf) -> No
     assert np.abs(np.interp(table["h"].values, h, np.asarray(own.get_ydata())) - table["escaped_share"].values).max() < 0.15
 
 
-def hunt_with(times: list[float], shelf: MapShelf) -> SuperStickySearch:
+def search_with(times: list[float], shelf: MapShelf) -> SuperStickySearch:
     count = len(times)
     fate = np.where(np.isfinite(times), 2, 0).astype(np.int8)
-    hunt = shelf.hunt()
+    search = shelf.super_sticky()
     arrays: dict[str, Any] = {"x": np.zeros(count), "ordinate": np.zeros(count), "states": np.zeros((count, 4))}
-    return replace(hunt, **arrays, fate=fate, escape_time=np.array(times), crossings=np.zeros(count, np.int32))
+    return replace(search, **arrays, fate=fate, escape_time=np.array(times), crossings=np.zeros(count, np.int32))
 
 
-def test_of_late_leavers_the_last_before_the_axis_ends_is_shown(shelf: MapShelf) -> None:
-    assert find_shown(hunt_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], shelf)) == 2
-    assert find_shown(hunt_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], shelf)) == 2
-    assert find_shown(hunt_with([np.nan, np.nan], shelf)) is None
+def test_the_last_escape_within_the_axis_is_shown(shelf: MapShelf) -> None:
+    assert find_shown(search_with([2e5, np.nan, 0.9 * LONGEST_DRAWN, 2.0 * LONGEST_DRAWN, 4e5], shelf)) == 2
+    assert find_shown(search_with([3.0 * LONGEST_DRAWN, np.nan, 2.0 * LONGEST_DRAWN], shelf)) == 2
+    assert find_shown(search_with([np.nan, np.nan], shelf)) is None
 
 
-def test_a_hunt_without_a_leaver_says_so(shelf: MapShelf) -> None:
+def test_a_search_without_escapes_is_stated(shelf: MapShelf) -> None:
     stayed = MapShelf(TINY)
-    stayed._hunt = hunt_with([np.nan], shelf)
+    stayed._super_sticky = search_with([np.nan], shelf)
     assert "no chaotic orbit" in FIGURES["III-super-sticky"].draw(stayed).get_suptitle()
 
 
-def test_the_band_of_a_late_leaver_ends_at_its_exit(shelf: MapShelf) -> None:
+def test_the_band_of_a_late_escape_ends_at_its_exit(shelf: MapShelf) -> None:
     frame = shelf.map("III", Plane.X_PX, 0.26)
     row, column = np.argwhere(frame.fate >= 1)[0]
     state = frame.spec.start_states(frame.x[[column]], frame.ordinate[[row]])
-    leaving = replace(hunt_with([float(frame.escape_time[row, column])], shelf), states=state)
+    leaving = replace(search_with([float(frame.escape_time[row, column])], shelf), states=state)
     shown = MapShelf(TINY)
-    shown._hunt = leaving
+    shown._super_sticky = leaving
     figure = FIGURES["III-super-sticky"].draw(shown)
     band = figure.axes[1].collections[0].get_paths()[0].vertices
     assert f"channel {frame.fate[row, column]}" in figure.get_suptitle()
     assert 1.003 < float(np.asarray(band)[:, 1].max()) < 1.017
 
 
-def test_files_are_whole_equal_each_time_and_say_what_made_them(shelf: MapShelf) -> None:
+def test_files_are_reproducible_and_state_their_origin(shelf: MapShelf) -> None:
     entry = FIGURES["II-xh"]
     files = entry.files(shelf)
     assert files == entry.files(shelf)
@@ -197,14 +200,14 @@ def test_files_are_whole_equal_each_time_and_say_what_made_them(shelf: MapShelf)
 
 @pytest.mark.parametrize("quality", [FULL, QUICK])
 @pytest.mark.parametrize("case", CASES)
-def test_curves_span_the_papers_range(case: str, quality: Quality) -> None:
+def test_curves_span_the_range_of_the_paper(case: str, quality: Quality) -> None:
     energies = curve_energies(case, quality.curve_points)
     assert (energies[0], energies[-1]) == {"I": (0.13, 0.5), "II": (0.17, 0.5), "III": (0.26, 0.6)}[case]
     assert len(set(energies)) == quality.curve_points
     assert plane_energies(case) == {"I": (0.125, 0.5), "II": (pytest.approx(1 / 6), 0.5), "III": (0.25, 1.0)}[case]
 
 
-def test_drawing_needs_no_server_and_no_global_state_of_matplotlib() -> None:
+def test_drawing_imports_no_server_and_no_pyplot() -> None:
     script = (
         "import sys, reproduction.figures; "
         "sys.exit(any(name in sys.modules for name in ('panel', 'tornado', 'bokeh.server', 'matplotlib.pyplot')))"

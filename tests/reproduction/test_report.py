@@ -15,61 +15,61 @@ from reproduction.quality import Quality
 from reproduction.report import describe_verdict, write_report, write_table
 from reproduction.stated_numbers import Counting, Quantity, Relation, StatedNumber
 
-SMALL = Quality("small", resolution=15, t_max=300.0, curve_points=7, hunt_resolution=9, hunt_t_max=400.0)
+SMALL = Quality("small", resolution=15, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=400.0)
 HALF = StatedNumber("I", Plane.X_PX, (0.3, 0.5), "high", Quantity.ESCAPED_BY, Relation.ABOUT, 60.0, (1,), remark="Because.")
 IN_A_WINDOW = replace(HALF, case="II", energies=(0.5,), counting=Counting.WINDOW, value=70.0)
 SADDLE = StatedNumber("III", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXACTLY, 0.25)
 
 
-def some_hunt() -> SuperStickySearch:
+def make_search() -> SuperStickySearch:
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.26, (9, 9))
     fate, times, zeros = np.array([2, 0], np.int8), np.array([8.2e5, np.nan]), np.zeros(2)
     return SuperStickySearch(spec, 40, zeros, zeros, np.zeros((2, 4)), fate, times, np.array([7, 9]), images=2, t_max=4e6)
 
 
-def test_the_verdict_counts_what_needs_no_window_and_names_what_differs() -> None:
+def test_the_summary_counts_agreements_and_lists_differences() -> None:
     rows = [Comparison(HALF, (61.0, 59.0)), Comparison(HALF, (61.0, 55.0)), Comparison(SADDLE, (0.25,))]
     verdict = describe_verdict(rows)
-    assert "**Of the 2 percentages that need no window, 1 are within 2 points of ours.**" in verdict
-    assert "Of the 1 other numbers, 1 agree to 2 %." in verdict
-    assert "- I, (x, px), h high: leave through 1: about 60 % stated, 55.0 to 61.0 % ours. Because." in verdict
+    assert "**Of the 2 percentages that do not depend on a window, 1 agree within 2 percentage points.**" in verdict
+    assert "Of the 1 other numbers, 1 agree within 2 %." in verdict
+    assert "- I, (x, px), h high: escape through 1: about 60 % stated, 55.0 to 61.0 % computed. Because." in verdict
 
 
-def test_where_all_agree_nothing_is_listed() -> None:
+def test_without_differences_nothing_is_listed() -> None:
     assert "differ" not in describe_verdict([Comparison(HALF, (61.0, 59.0))])
 
 
-def test_the_table_has_a_line_for_each_energy() -> None:
-    rows = compare_all(MapShelf(SMALL), some_hunt(), (HALF, IN_A_WINDOW, SADDLE))
+def test_the_table_has_one_line_per_energy() -> None:
+    rows = compare_all(MapShelf(SMALL), make_search(), (HALF, IN_A_WINDOW, SADDLE))
     lines = list(csv.DictReader(io.StringIO(write_table(rows))))
     assert [(line["case"], line["h"]) for line in lines] == [("I", "0.3"), ("I", "0.5"), ("II", "0.5"), ("III", "")]
-    assert float(lines[1]["ours"]) == pytest.approx(rows[0].ours[1], rel=1e-5)
+    assert float(lines[1]["computed"]) == pytest.approx(rows[0].computed[1], rel=1e-5)
     assert float(lines[2]["half_side"]) == rows[1].windows[0].half_side
     assert float(lines[2]["counted"]) == pytest.approx(rows[1].counted[0], rel=1e-5)
     assert [line["half_side"] for line in lines if line["case"] != "II"] == ["", "", ""]
 
 
-def test_the_page_states_how_finely_it_was_made_and_has_every_part() -> None:
-    shelf, hunt = MapShelf(SMALL), some_hunt()
-    rows = compare_all(shelf, hunt, (HALF, IN_A_WINDOW, SADDLE))
-    page = write_report(shelf, hunt, rows)
-    assert "at small quality: 15 × 15 starts a map, followed to t = 300;" in " ".join(page.split())
+def test_the_report_states_its_quality_and_has_every_section() -> None:
+    shelf, search = MapShelf(SMALL), make_search()
+    rows = compare_all(shelf, search, (HALF, IN_A_WINDOW, SADDLE))
+    page = write_report(shelf, search, rows)
+    assert "at small quality: 15 × 15 starts per map, integrated to t = 300;" in " ".join(page.split())
     headings = [line for line in page.splitlines() if line.startswith("## ")]
     assert headings == [
-        "## Verdict",
+        "## Summary",
         "## Case I: 2 channels",
         "## Case II: 3 channels",
         "## Case III: 4 channels",
         "## Fits",
-        "## How the last ones leave",
+        "## Late escapes",
         "## Super-sticky orbits",
-        "## What the paper leaves open",
+        "## Open points of the paper",
     ]
     assert "| I, Ne/N0 | a | 30 |" in page
     assert "| 820000 | 2 | 7 |" in page
-    assert "1 have not left by then" in page
+    assert "1 have not escaped by then" in page
 
 
-def test_every_row_of_a_table_has_as_many_cells_as_its_head() -> None:
+def test_bars_in_cells_are_escaped() -> None:
     table = write_rows(("a", "b"), [("|x|", "1"), ("", "2")])
     assert table.splitlines() == ["| a | b |", "| --- | --- |", "| \\|x\\| | 1 |", "|  | 2 |"]

@@ -1,4 +1,4 @@
-"""What the paper states, against what must hold of any such number."""
+"""Consistency of the stated numbers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ SHARES = [number for number in STATED_NUMBERS if number.is_share]
 
 
 def share_outside(number: StatedNumber, energy: float) -> float:
-    """Of the starts of a wide square, those that lie outside."""
+    """Share of the starts of a wide square that are outside."""
     assert number.plane is not None
     wide = compute_map(
         MapSpec(CASES[number.case], number.plane, energy, (60, 60), Window(-3.0, 3.0, -3.0, 3.0), 1e-9, certify=False)
@@ -20,11 +20,11 @@ def share_outside(number: StatedNumber, energy: float) -> float:
     return float(np.mean(wide.fate[wide.fate != Fate.FORBIDDEN] == Fate.OUTSIDE))
 
 
-def test_no_number_is_there_twice() -> None:
+def test_numbers_are_unique() -> None:
     assert len(set(STATED_NUMBERS)) == len(STATED_NUMBERS)
 
 
-def test_shares_are_percentages_of_channels_that_exist_at_energies_where_they_are_open() -> None:
+def test_shares_have_valid_values_channels_and_energies() -> None:
     for number in SHARES:
         assert 0.0 <= number.value <= 100.0
         assert set(number.channels) <= set(range(1, CASES[number.case].channels + 1))
@@ -32,21 +32,21 @@ def test_shares_are_percentages_of_channels_that_exist_at_energies_where_they_ar
 
 
 @pytest.mark.parametrize("number", [number for number in SHARES if number.needs_window], ids=str)
-def test_a_share_that_needs_a_window_is_of_a_plane_with_starts_outside(number: StatedNumber) -> None:
+def test_a_share_that_needs_a_window_has_starts_outside(number: StatedNumber) -> None:
     assert all(share_outside(number, energy) > 0.0 for energy in number.energies)
 
 
 @pytest.mark.parametrize("number", [n for n in SHARES if n.counting is Counting.ANY and n.value > 0.0], ids=str)
-def test_a_share_of_any_starts_is_of_a_plane_without_starts_outside(number: StatedNumber) -> None:
+def test_a_share_of_any_starts_has_no_starts_outside(number: StatedNumber) -> None:
     assert all(share_outside(number, energy) == 0.0 for energy in number.energies)
 
 
-def test_shares_said_to_be_of_channels_name_them_and_no_others_do() -> None:
+def test_only_shares_of_channels_name_channels() -> None:
     for number in SHARES:
         assert bool(number.channels) is (number.quantity is Quantity.ESCAPED_BY)
 
 
-# As printed, page by page: the case, the plane, h in its words, the channels or what else, and the percentage.
+# As printed in the paper.
 @pytest.mark.parametrize(
     ("case", "plane", "at", "quantity", "channels", "relation", "value"),
     [
@@ -61,7 +61,7 @@ def test_shares_said_to_be_of_channels_name_them_and_no_others_do() -> None:
         ("III", Plane.X_PX, "0.26", Quantity.CHAOTIC, (), Relation.LESS_THAN, 10.0),
     ],
 )  # fmt: skip
-def test_a_printed_percentage_is_there(
+def test_printed_percentages_are_included(
     case: str, plane: Plane, at: str, quantity: Quantity, channels: tuple[int, ...], relation: Relation, value: float
 ) -> None:
     found = [

@@ -1,4 +1,4 @@
-"""How mixed and how fractal the basins are: entropies, merging, uncertainty exponent; and by which law orbits leave."""
+"""Measures of the basins: basin entropy, merging (Wada), uncertainty exponent, and the law by which orbits escape."""
 
 from __future__ import annotations
 
@@ -8,28 +8,25 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-import panel_material_ui as pmui
 from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
 
 from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
-from app.views.components.collapsible_section import Section
+from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.legends import legend
-from app.views.components.plots import FRAME, set_decades, set_range, square_figure, with_help
+from app.views.components.plots import COLUMN, TEXT, set_decades, set_range, square_figure, with_help
+from app.views.components.widgets import button
 from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
 
 _LAW_POINTS = 200
-_MEASURING = "Following pairs of starts …"
+_MEASURING = "Comparing pairs of starts …"
 
 
 class BasinMeasuresView:
-    """A column of sentences, the uncertain share against separation, and the survival; `on_exponent` begins the measuring."""
+    """Texts, the uncertain share against separation, and the survival; `on_exponent` is called to measure the exponent."""
 
     def __init__(self, on_exponent: Callable[[], None]) -> None:
-        self.button = pmui.Button(
-            label="Measure the uncertainty exponent", variant="outlined", size="small", sx={"textTransform": "none"}
-        )
-        self.button.on_click(lambda event: on_exponent())
-        self.text = pn.pane.HTML("", name="measures", width=FRAME + 60)
+        self.button = button("Measure the uncertainty exponent", on_exponent)
+        self.text = pn.pane.HTML("", name="measures", width=TEXT)
         self._sentences: dict[str, str] = {}
         both = {"x_axis_type": "log", "y_axis_type": "log"}
         self.uncertainty = square_figure(
@@ -46,26 +43,26 @@ class BasinMeasuresView:
         self._laws = {law: ColumnDataSource({"t": [], "share": []}, name=f"{law}_law") for law in LAW_COLOURS}
         self._draw()
         columns = [
-            pn.Column(self.button, self.text, width=FRAME + 75, margin=(0, 6)),
+            pn.Column(self.button, self.text, width=COLUMN, margin=(0, 6)),
             with_help(pn.pane.Bokeh(self.uncertainty, margin=0), "uncertainty"),
             with_help(pn.pane.Bokeh(self.survival, margin=0), "survival", self._law_legend()),
         ]
-        self.section = Section("Basin measures", columns, (self.uncertainty, self.survival))
+        self.section = CollapsibleSection("Basin measures", columns)
 
     def begin(self) -> None:
-        """Another map: what was measured of the last one says nothing of it."""
+        """Remove the measures of the previous map."""
         if self._sentences:
             self._sentences = {}
             self.show_exponent(None)
             self._write()
 
     def show_basins(self, measures: BasinMeasures) -> None:
-        """What the pixels say."""
+        """Show the measures that follow from the pixels."""
         self._sentences |= {"Basin entropy": measures.entropy.describe(), "Wada": measures.merging.describe()}
         self._write()
 
     def show_laws(self, laws: DecayLaws) -> None:
-        """S(t) with the fits."""
+        """Show S(t) with the fitted laws."""
         self._sentences["Escape law"] = laws.describe()
         self.steps.data = {"t": laws.times, "share": laws.survival}
         for fit, source in zip((laws.exponential, laws.power_law), self._laws.values(), strict=True):
@@ -78,13 +75,13 @@ class BasinMeasuresView:
         self._write()
 
     def wait_for_exponent(self) -> None:
-        """Pairs of starts are on their way."""
+        """The exponent is being measured."""
         self.button.disabled = True
         self._sentences["Uncertainty exponent"] = _MEASURING
         self._write()
 
     def show_exponent(self, found: UncertaintyExponent | None) -> None:
-        """Shares and fit; None for none."""
+        """Show the shares and the fit; None removes them."""
         self.button.disabled = False
         self._sentences.pop("Uncertainty exponent", None)
         if found is None:
@@ -106,7 +103,7 @@ class BasinMeasuresView:
         self._write()
 
     def say(self, sentence: str) -> None:
-        """What went wrong."""
+        """Show why there is no exponent."""
         self.button.disabled = False
         self._sentences["Uncertainty exponent"] = sentence
         self._write()
@@ -121,11 +118,10 @@ class BasinMeasuresView:
 
     def _law_legend(self) -> pn.viewable.Viewable:
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
-        return pn.pane.HTML(legend(entries), width=FRAME + 60, margin=(0, 5))
+        return pn.pane.HTML(legend(entries), width=TEXT, margin=(0, 5))
 
     def _write(self) -> None:
-        body = "".join(f"<p style='margin:4px 0'><b>{name}.</b> {escape(said)}</p>" for name, said in self._sentences.items())
-        self.text.object = f"<div style='font-size:14px'>{body}</div>"
+        self.text.object = "".join(f"<p><b>{name}.</b> {escape(text)}</p>" for name, text in self._sentences.items())
 
 
 def _law_line(fit: LawFit | None) -> dict[str, np.ndarray]:

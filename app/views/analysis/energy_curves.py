@@ -7,15 +7,15 @@ from html import escape
 
 import numpy as np
 import panel as pn
-import panel_material_ui as pmui
 from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, HoverTool, Line, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
 from app.rendering.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
-from app.views.components.collapsible_section import Section
+from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.legends import legend
-from app.views.components.plots import FRAME, set_range, square_figure, with_help
+from app.views.components.plots import TEXT, set_range, square_figure, with_help
+from app.views.components.widgets import button
 from engine import EnergyCurves
 
 TITLES = {
@@ -24,7 +24,7 @@ TITLES = {
     "exponents": "Uncertainty exponent",
     "escapes": "Escape time",
 }
-START, STOP = "Sweep the energies", "Stop"
+START, STOP = "Compute the curves", "Stop"
 _SECOND = LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": []}
 _DASH = "8 8"
@@ -47,8 +47,7 @@ class EnergyCurvesView:
         self._on_energy = on_energy
         self.shown: EnergyCurves | None = None
         self.running = False
-        self.button = pmui.Button(label=START, variant="outlined", size="small", width=200, sx={"textTransform": "none"})
-        self.button.on_click(lambda event: on_sweep())
+        self.button = button(START, on_sweep, width=180)
         self.text = pn.pane.HTML("", name="sweep", margin=(8, 10))
         energies = Range1d(0.0, 1.0)
         self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="energy_points")
@@ -59,24 +58,24 @@ class EnergyCurvesView:
             name: square_figure(name, title, x_axis_label="h", x_range=energies, **logarithmic.get(name, {}))
             for name, title in TITLES.items()
         }
-        self._legend = pn.pane.HTML(width=FRAME + 60, margin=(0, 5))
+        self._legend = pn.pane.HTML(width=TEXT, margin=(0, 5))
         self._draw()
         for plot in self.figures.values():
             plot.add_layout(self._here)
             plot.on_event(Tap, lambda event: self.open_near(event.x))
-        self.section = Section("Against energy", self._layout(), tuple(self.figures.values()))
+        self.section = CollapsibleSection("Against energy", self._layout())
 
     def follow_energy(self, energy: float) -> None:
         """Mark the energy in view."""
         self._here.location = energy
 
     def show_running(self, running: bool) -> None:
-        """Name the button after what it does next."""
+        """Label the button with what it does next."""
         self.running = running
         self.button.label = STOP if running else START
 
     def show(self, curves: EnergyCurves | None) -> None:
-        """Draw what is known; None takes it away."""
+        """Draw the curves; None removes them."""
         self.shown = curves
         if curves is None:
             self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, _NO_SHARES
@@ -85,7 +84,7 @@ class EnergyCurvesView:
         self.points.data = {name: curves.energies if name == "h" else curves.curve(name) for name in _COLUMNS}
         shares = curves.shares.T
         colours = [self._palette.bounded, *self._palette.channels[: len(shares) - 1]]
-        # Mirror images have the same share: dashed curves, drawn last, let solid ones be seen through.
+        # Symmetric channels have equal shares: dashed curves, drawn last, leave the solid ones visible.
         order = sorted(range(len(shares)), key=_is_dashed)
         self._shares.data = {
             "xs": [curves.energies] * len(shares),
@@ -96,12 +95,12 @@ class EnergyCurvesView:
         swept = curves.spec.energies
         if len(swept) > 1:
             set_range(self.figures["shares"].x_range, swept[0], swept[-1])
-        self.text.object = f"<span style='font-size:14px'>{_progress(curves)}</span>"
+        self.text.object = _progress(curves)
         self._legend.object = legend(self._entries(len(shares) - 1))
 
     def say(self, sentence: str) -> None:
-        """What went wrong."""
-        self.text.object = f"<span style='font-size:14px'>{escape(sentence)}</span>"
+        """Show why there are no curves."""
+        self.text.object = escape(sentence)
 
     def open_near(self, energy: float) -> None:
         """Open the map of the measured energy next to this one."""
@@ -119,13 +118,13 @@ class EnergyCurvesView:
         return [Entry("bounded", self._palette.bounded), *self._palette.channel_entries(channels)]
 
     def _layout(self) -> list[pn.viewable.Viewable]:
-        said = {
+        below = {
             "shares": [self._legend],
             "entropies": [_key({"S_b": MEASURED, "S_bb": _SECOND, "ln 2": THRESHOLD})],
             "exponents": [_key({"α with its 95 % interval": MEASURED})],
             "escapes": [_key({"mean": MEASURED, "median": _SECOND})],
         }
-        columns = [with_help(pn.pane.Bokeh(plot, margin=0), name, *said[name]) for name, plot in self.figures.items()]
+        columns = [with_help(pn.pane.Bokeh(plot, margin=0), name, *below[name]) for name, plot in self.figures.items()]
         return [pn.Row(self.button, self.text, sizing_mode="stretch_width"), *columns]
 
     def _draw(self) -> None:
@@ -153,17 +152,17 @@ def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str
 
 
 def _is_dashed(code: int) -> bool:
-    """Whether the curve of a channel, or with 0 of bounded starts, is dashed."""
+    """Whether the curve of a channel is dashed; 0 stands for bounded starts."""
     return code > 0 and code % 2 == 0
 
 
 def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
-    return pn.pane.HTML(legend(Entry(label, colour) for label, colour in entries.items()), width=FRAME + 60, margin=(0, 5))
+    return pn.pane.HTML(legend(Entry(label, colour) for label, colour in entries.items()), width=TEXT, margin=(0, 5))
 
 
 def _progress(curves: EnergyCurves) -> str:
-    done, wanted = len(curves.points), len(curves.spec.energies)
+    done, total = len(curves.points), len(curves.spec.energies)
     plane = curves.spec.plane.value
     if curves.complete:
-        return f"{wanted} energies on {plane}. Click a curve to open the map of that energy."
-    return f"{done} of {wanted} energies on {plane} …"
+        return f"{total} energies on {plane}. Click a curve to open the map of that energy."
+    return f"{done} of {total} energies on {plane} …"

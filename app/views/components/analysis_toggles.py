@@ -1,12 +1,13 @@
-"""Switches for all that is shown on demand: what goes beyond the four maps."""
+"""Switches for everything that is computed or shown on demand."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import panel as pn
-import panel_material_ui as pmui
 
 from app.state.view_state import SWITCHES, ViewState
-from app.views.components.flex_row import flex_row
+from app.views.components.widgets import Switches
 
 LABELS = {
     "judge": "Regular or chaotic",
@@ -18,21 +19,23 @@ LABELS = {
 }
 """Of the switches of a view state."""
 
-_ONE_LINE = {"& .MuiFormControlLabel-label": {"whiteSpace": "nowrap"}}
-
 
 class AnalysisToggles:
-    """Widgets that write into the view state and follow it."""
+    """A widget that writes to the view state and follows it."""
 
     def __init__(self, state: ViewState) -> None:
-        self.widgets = {
-            name: pmui.Switch(label=LABELS[name], value=getattr(state, name), sx=_ONE_LINE, margin=(2, 6)) for name in SWITCHES
-        }
-        for name, widget in self.widgets.items():
-            widget.param.watch(lambda event, name=name: state.param.update({name: event.new}), "value")
-            state.param.watch(lambda event: self.widgets[event.name].param.update(value=event.new), name)
+        self._state = state
+        self.switches = Switches(label="Analyses", options={LABELS[name]: name for name in SWITCHES}, value=self._on())
+        self.switches.param.watch(self._write, "value")
+        state.param.watch(lambda *events: self.switches.param.update(value=self._on()), list(SWITCHES))
 
     def layout(self) -> pn.viewable.Viewable:
         """The switches in a row that wraps."""
-        title = pn.pane.HTML("<b style='font-size:14px'>See why</b>", margin=(8, 10))
-        return flex_row(title, *self.widgets.values(), align_items="center", gap="2px", sizing_mode="stretch_width")
+        return self.switches
+
+    def _on(self) -> list[str]:
+        return [name for name in SWITCHES if getattr(self._state, name)]
+
+    def _write(self, event: Any) -> None:
+        with pn.io.hold():
+            self._state.param.update({name: name in event.new for name in SWITCHES})

@@ -1,4 +1,4 @@
-"""The curves over the pictures: zero-velocity curve, equipotentials, Lyapunov orbits with their channel numbers."""
+"""Curves over the pictures: zero-velocity curve, equipotentials, Lyapunov orbits with their channel numbers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class CurveLayers:
         self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
         self._palette: Palette = PAPER
         self._inks: Inks = LIGHT
-        # Glyphs whose ink depends on the page, by the name of that ink.
+        # Glyphs whose colour depends on the theme, by the name of the colour in `Inks`.
         self._inked: dict[str, list[Any]] = {"limiting_curve": [], "critical_equipotential": [], "equipotential": []}
 
     def draw(self, plot: figure, *, full: bool) -> None:
@@ -49,25 +49,25 @@ class CurveLayers:
         self._inked[ink].append(line)
 
     def set_palette(self, palette: Palette) -> None:
-        """Colours of the exits, from the next `show` on."""
+        """Set the colours of the channels for the next `show`."""
         self._palette = palette
 
     def set_dark(self, dark: bool) -> None:
-        """Inks for a dark page, or for a light one."""
+        """Use the line colours of the dark or the light theme."""
         self._inks = DARK if dark else LIGHT
         for ink, glyphs in self._inked.items():
             for glyph in glyphs:
                 glyph.line_color = getattr(self._inks, ink)
 
-    def show(self, spec: MapSpec, *, quickly: bool = False) -> None:
-        """The curves of a map's plane, window and energy; `quickly` leaves the equipotentials as they are."""
-        limit, critical, *others = _trace(spec, () if quickly or spec.plane is Plane.X_H else (1.0, *_LEVELS))
+    def show(self, spec: MapSpec, *, preview: bool = False) -> None:
+        """Draw the curves of a map's plane, window and energy; a preview leaves the equipotentials unchanged."""
+        limit, critical, *others = _trace(spec, () if preview or spec.plane is Plane.X_H else (1.0, *_LEVELS))
         self._limit.data = _lines(limit)
         orbits = find_lyapunov_orbits(spec.potential, _energy(spec)) if spec.plane is Plane.X_Y else ()
-        # Every message takes its time, those that say nothing too.
+        # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
-        if not quickly:
+        if not preview:
             self._critical.data = _lines(critical)
             self._levels.data = _lines([line for lines in others for line in lines])
 
@@ -83,7 +83,7 @@ class CurveLayers:
         }
 
     def entries(self, spec: MapSpec) -> list[Entry]:
-        """Legend of the curves that this plane shows."""
+        """Legend entries of the curves shown on this plane."""
         limiting = {Plane.X_Y: "V = h", Plane.X_PX: "½px² + V(x, 0) = h", Plane.X_H: "V(x, 0) = h"}[spec.plane]
         entries = [Entry(f"limiting curve {limiting}", self._inks.limiting_curve)]
         if spec.plane is not Plane.X_H:
@@ -99,7 +99,7 @@ def _energy(spec: MapSpec) -> float:
 
 
 def _trace(spec: MapSpec, levels: tuple[float, ...]) -> list[list[np.ndarray]]:
-    """The limiting curve, and the equipotentials of these energies in units of the escape energy; an empty one where none are."""
+    """The limiting curve, then the equipotentials at `levels` in units of the escape energy; one empty curve without levels."""
     energies = (_energy(spec), *(level * spec.potential.escape_energy for level in levels))
     return [*trace_equipotentials(spec.potential, spec.plane, energies, spec.window), *([] if levels else [[]])]
 

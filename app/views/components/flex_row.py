@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import panel as pn
 
-AS_HIGH_AS_ITS_CONTENT = {"max-height": "none"}
-"""Styles: left alone, a layout is cut at the height of the window, and what follows lies over it."""
+FULL_HEIGHT = {"max-height": "none"}
+"""Styles: by default Bokeh limits a layout to the height of the window, and what follows overlaps it."""
 
 
-def flex_row(*views: pn.viewable.Viewable, **options: Any) -> pn.FlexBox:
-    """A row as high as its content."""
-    return pn.FlexBox(*views, styles=AS_HIGH_AS_ITS_CONTENT, **options)
+def flex_row(*views: pn.viewable.Viewable, justify: str = "flex-start", align: str = "flex-start", gap: str = "4px") -> pn.Column:
+    """A row as high as its content.
+
+    It is a Column with another flex direction: a Row would be at least as wide as all its children together.
+
+    Parameters
+    ----------
+    *views
+        What stands in it.
+    justify, align, gap
+        CSS values of justify-content, align-items and gap.
+    """
+    flow = {"flex-direction": "row", "flex-wrap": "wrap", "gap": gap}
+    styles = FULL_HEIGHT | flow | {"justify-content": justify, "align-items": align}
+    return pn.Column(*views, styles=styles, sizing_mode="stretch_width", margin=0)

@@ -1,78 +1,72 @@
-"""How far the map is: a bar, the stage in words, and the button that stops it or goes on."""
+"""Progress of the map: a bar, a line of text, the button that stops or continues it, and error messages."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 
 import numpy as np
 import panel as pn
-import panel_material_ui as pmui
 
-from app.job_clients.error_messages import as_markdown
+from app.views.components.numbers import grouped, percent
+from app.views.components.widgets import button
 from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
 
-_COMPILING = "The integrator is being compiled, once for each kind of potential; the map follows."
+STOP, CONTINUE = "Stop", "Continue"
+_COMPILING = "Compiling the integrator, once for each kind of potential …"
 
 
 class ProgressView:
-    """Shows frames' progress; `on_cancel` and `on_resume` are what the button does."""
+    """Shows the progress of a map.
+
+    Parameters
+    ----------
+    on_cancel, on_resume
+        Called when the button is pressed while the map is computed, and after it has been stopped.
+    """
 
     def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None]) -> None:
         self._on_cancel, self._on_resume = on_cancel, on_resume
         self._running = False
-        self.bar = pmui.LinearProgress(
-            variant="determinate", value=0, sizing_mode="stretch_width", min_width=120, max_width=420, margin=(14, 10)
-        )
-        self.text = pn.pane.HTML("", margin=(5, 10))
-        self.button = pmui.Button(label="Cancel", variant="outlined", size="small", disabled=True, width=110)
-        self.problem = pmui.Alert(severity="error", visible=False, sizing_mode="stretch_width")
-        self.button.on_click(lambda event: self._press())
+        self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=6, margin=(4, 10, 2, 10))
+        self.text = pn.pane.HTML("", name="progress", margin=(6, 10, 0, 10), sizing_mode="stretch_width")
+        self.button = button(STOP, self._press, width=96, disabled=True)
+        self.problem = pn.pane.HTML("", name="problem", visible=False, sizing_mode="stretch_width", margin=(4, 10))
 
     def layout(self) -> pn.viewable.Viewable:
-        """The bar, the stage, and room for a sentence about what went wrong."""
-        line = pn.Row(self.button, self.bar, sizing_mode="stretch_width")
-        return pn.Column(line, self.text, self.problem, sizing_mode="stretch_width")
+        """The button beside the bar and its text, and the error message below."""
+        stage = pn.Column(self.text, self.bar, sizing_mode="stretch_width", margin=0)
+        return pn.Column(
+            pn.Row(self.button, stage, sizing_mode="stretch_width"), self.problem, sizing_mode="stretch_width", max_width=900
+        )
 
     def start(self, *, compiling: bool = False) -> None:
-        """A new map has been asked for, perhaps before the integrators are there."""
-        self._set(running=True, label="Cancel", text=_COMPILING if compiling else "Starting …")
+        """A new map is requested; `compiling` says that its kernels are compiled first."""
+        self._set(running=True, label=STOP, text=_COMPILING if compiling else "Starting …")
         self.problem.visible = False
 
     def show(self, frame: EscapeMap) -> None:
-        """The stage, the horizon reached and what is still undecided."""
-        percent = 100 if frame.complete else min(int(100 * frame.progress), 99)
-        if frame.complete:
-            fractions = frame.fractions()
-            channels = (f"channel {k}: {fractions[k]:.1%}" for k in range(1, frame.spec.potential.channels + 1))
-            text = (
-                f"Done to t = {frame.spec.t_max:g}. Of the interior starts {', '.join(channels)}, bounded: {fractions[0]:.1%}"
-                f"{_certified(frame)}. "
-            )
-            text += f"Worst energy error {frame.worst_energy_error:.1e}."
-        else:
-            grain = "every pixel" if frame.stride == 1 else f"one pixel of {frame.stride} × {frame.stride}"
-            text = f"{grain}, followed to t = {frame.horizon:g}, {frame.undecided:.1%} still undecided"
-        self._set(running=not frame.complete, label="Cancel", text=text)
-        self.bar.value = percent
+        """Show how far a frame is, and the shares of a complete map."""
+        self._set(running=not frame.complete, label=STOP, text=_result(frame) if frame.complete else _stage(frame))
+        self.bar.value = 100 if frame.complete else min(int(100 * frame.progress), 99)
 
-    def look(self) -> None:
-        """A quick look at an energy in passing; the same words for all of them, as each message takes its time."""
-        self._set(running=False, label="Cancel", text=f"Quick looks, followed to t = {PREVIEW_TIME:g} only")
+    def show_preview(self) -> None:
+        """A preview is shown; the text is the same for all of them, so that it is sent once."""
+        self._set(running=False, label=STOP, text=f"Preview up to t = {PREVIEW_TIME:g}")
         self.bar.value = 0
 
     def stop(self) -> None:
-        """The map has been cancelled; it can go on."""
-        self._set(running=False, label="Go on", text=f"Stopped: {self.text.object}")
+        """The map is stopped and can be continued."""
+        self._set(running=False, label=CONTINUE, text=f"Stopped: {self.text.object}")
         self.button.disabled = False
 
     def warn(self, sentence: str) -> None:
-        """Something was asked for that cannot be had; the map is none the worse for it."""
-        # The alert reads Markdown, and with it HTML.
-        self.problem.param.update(object=as_markdown(sentence), visible=True)
+        """Show a message; the map is not affected."""
+        self.problem.param.update(object=f"<div class='alert' role='alert'>{escape(sentence)}</div>", visible=True)
 
     def fail(self, sentence: str) -> None:
-        """The map cannot be had; the last good picture stays."""
-        self._set(running=False, label="Cancel", text="")
+        """There is no map: show why; the last picture stays."""
+        self._set(running=False, label=STOP, text="")
         self.warn(sentence)
 
     def _press(self) -> None:
@@ -87,8 +81,26 @@ class ProgressView:
         self.text.object = text
 
 
+def _stage(frame: EscapeMap) -> str:
+    """Resolution, time reached and undecided share of a frame in progress."""
+    resolution = "Full resolution" if frame.stride == 1 else f"1/{frame.stride} of the resolution"
+    time = f"t = {grouped(frame.horizon)} of {grouped(frame.spec.t_max)}"
+    return f"{resolution}, {time}: {percent(frame.undecided)} undecided"
+
+
+def _result(frame: EscapeMap) -> str:
+    """Shares and accuracy of a complete map."""
+    shares = frame.fractions()
+    channels = (f"channel {k} {percent(shares[k])}" for k in range(1, frame.spec.potential.channels + 1))
+    bounded = f"bounded {percent(shares[Fate.BOUNDED])}{_certified(frame)}"
+    return (
+        f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {', '.join((*channels, bounded))}. "
+        f"Largest energy error {frame.worst_energy_error:.1e}."
+    )
+
+
 def _certified(frame: EscapeMap) -> str:
-    """How many bounded orbits needed not be followed to the end, in brackets; nothing where all were."""
+    """The share of bounded orbits that are certified before t_max, in brackets; empty if there are none."""
     certificates = frame.certificate[frame.fate == Fate.BOUNDED]
     early = ~np.isin(certificates, (Certificate.NONE, Certificate.INTEGRATED))
-    return f" ({np.mean(early):.0%} of them certified, the rest followed)" if early.any() else ""
+    return f" ({percent(np.mean(early), 0)} of them certified)" if early.any() else ""

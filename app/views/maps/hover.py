@@ -1,4 +1,4 @@
-"""What the mouse reads out of a pixel, the same on all pictures."""
+"""Hover text of a pixel, the same on all pictures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ const reason = certificates[source.data.crossing_class[0][flat_index] - first]
 return fate > bounded ? crossings : reason
 """
 
-# As many decimals as tell neighbouring pixels apart.
+# Enough decimals to distinguish neighbouring pixels.
 _PLACE = """
 const decimals = Math.min(Math.max(Math.ceil(3 - Math.log10(range.end - range.start)), 2), 17)
 return value.toFixed(decimals)
@@ -31,9 +31,9 @@ _TEXT = (
 
 
 def pixel_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """A tool that says what became of the orbit under the mouse; the caller gives it its renderers.
+    """A tool that shows the fate of the orbit under the mouse; the caller sets its renderers.
 
-    One formatter reads all columns: Bokeh hands a NaN, the escape time of a bounded orbit, to no formatter.
+    One formatter reads all columns, as Bokeh does not call formatters for NaN, the escape time of bounded orbits.
     """
     names = [*OUTCOMES.values(), *(f"escapes through channel {k + 1}" for k in range(len(PAPER.channels)))]
     arguments = {

@@ -1,4 +1,4 @@
-"""The pictures of a plane, linked in zoom, hover and clicks; they share one source, so one message repaints all."""
+"""The pictures of a plane, linked in zoom, hover and clicks; they share one data source, so one message repaints all."""
 
 from __future__ import annotations
 
@@ -13,31 +13,32 @@ from bokeh.models import ColorBar, ColumnDataSource, Image, LinearColorMapper, L
 
 from app.rendering.image_columns import character_column, longest_typical_time, passage_column
 from app.rendering.map_images import DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
-from app.rendering.palette import PAPER, Palette
+from app.rendering.palette import DARK, LIGHT, PAPER, Palette
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.flex_row import flex_row
 from app.views.components.legends import legend, passage_legend
-from app.views.components.plots import FRAME, dress, map_figure, with_help
+from app.views.components.numbers import percent
+from app.views.components.plots import TEXT, map_figure, with_help
 from app.views.maps.hover import pixel_hover
-from app.views.maps.markers import Marks
+from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
 
 REST_MS = 90
-"""Ranges that have not moved for this long are computed anew: longer than from one turn of a wheel to the next."""
+"""A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
 
 
 class MapsView:
-    """Draws frames and marks.
+    """Draws frames of maps, and the marks over them.
 
     Parameters
     ----------
     on_tap
         Called with x and ordinate of the pixel clicked.
     on_zoom
-        Called with the window when the ranges have come to rest; None is the whole interior.
+        Called with the window when the ranges have stopped changing; None is the whole interior.
     on_box
-        Called with the box that was drawn to count in.
+        Called with the box that is drawn to count in.
     """
 
     def __init__(
@@ -47,15 +48,15 @@ class MapsView:
         on_box: Callable[[Window], None],
     ) -> None:
         self.source = ColumnDataSource(_blank(), name="maps")
-        self.outlines, self.overlays, self.marks = CurveLayers(), Overlays(), Marks()
+        self.outlines, self.overlays, self.marks = CurveLayers(), Overlays(), Markers()
         self._palette = PAPER
-        self._dark = False
         self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
+        self._colour_bar = ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="t", background_fill_alpha=0.0)
         self._mappers = {name: LinearColorMapper() for name in TITLES}
         self._spec: MapSpec | None = None
-        self._judged = ""
+        self._regularity_text = ""
         self._home: Window | None = None
-        self._rest: Any = None
+        self._rest_timer: Any = None
         self._following = False
         self._on_zoom = on_zoom
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
@@ -68,19 +69,18 @@ class MapsView:
         for edges in self._ranges:
             edges.on_change("start", self._moved)
             edges.on_change("end", self._moved)
-        # The end of a drag; after a turn of the wheel it comes half a second late. All pictures report it, one is enough.
+        # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
         self.figures["curves"].on_event(RangesUpdate, lambda event: self._rested())
         for plot in self.figures.values():
-            # Two quick clicks, at two places too, are one tap and one double tap.
+            # Two quick clicks, even at two places, are one tap and one double tap.
             for tap in (Tap, DoubleTap):
                 plot.on_event(tap, lambda event: on_tap(*self.snapped(event.x, event.y)))
             plot.on_event(SelectionGeometry, lambda event: self._boxed(event, on_box))
-        self._legends = {name: pn.pane.HTML(width=FRAME + 60, margin=(0, 5)) for name in TITLES}
+        self._legends = {name: pn.pane.HTML(width=TEXT, margin=(0, 5)) for name in TITLES}
         self._columns = {
             name: with_help(pn.pane.Bokeh(self.figures[name], margin=0), name, self._legends[name]) for name in TITLES
         }
-        self._row = flex_row(justify_content="center", gap="4px")
-        self._on_demand: frozenset[str] = frozenset()
+        self._row = flex_row(justify="center")
         self.show_pictures(frozenset())
 
     def layout(self) -> pn.viewable.Viewable:
@@ -88,38 +88,35 @@ class MapsView:
         return self._row
 
     def show_pictures(self, on_demand: frozenset[str]) -> None:
-        """Show these of the pictures `ON_DEMAND` beside the others."""
-        for name in on_demand - self._on_demand:
-            dress(self.figures[name], dark=self._dark)
-        self._on_demand = on_demand
-        # A picture that is only hidden would be painted with every frame all the same.
+        """Show some of the pictures `ON_DEMAND` beside the others."""
+        # Hidden pictures would still be painted with every frame.
         self._row.objects = [column for name, column in self._columns.items() if name in on_demand or name not in ON_DEMAND]
 
-    def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, quickly: bool = False) -> None:
-        """Paint a frame; the ranges follow a new window. `quickly` changes no more than it must, for a frame in passing."""
+    def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, preview: bool = False) -> None:
+        """Paint a frame; the ranges follow a new window. A preview changes as little as possible."""
         if frame.spec != self._spec:
             self._follow(frame.spec)
-            self._spec, self._judged = frame.spec, ""
-            if quickly:
-                self.outlines.show(frame.spec, quickly=True)
+            self._spec, self._regularity_text = frame.spec, ""
+            if preview:
+                self.outlines.show(frame.spec, preview=True)
             else:
                 self.describe()
-        if frame.stride == 1 and not quickly:
+        if frame.stride == 1 and not preview:
             self._time_mapper.high = longest_typical_time(frame)
         self.source.data = columns
 
     def show_origins(self, origins: OriginFateMap) -> None:
-        """Paint where orbits come from and where they go."""
+        """Paint through which channels orbits enter and leave."""
         self.source.data = {**self.source.data, **passage_column(origins)}
 
     def show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
-        """Paint which bounded orbits are regular and which chaotic, as far as it is known."""
+        """Paint which bounded orbits are regular and which are chaotic, as far as known."""
         self.source.data = {**self.source.data, **character_column(frame, regularity)}
-        self._judged = _describe_judgement(regularity, regularity.character[frame.fate == Fate.BOUNDED])
+        self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
         self._legends["characters"].object = self._character_legend()
 
     def set_palette(self, palette: Palette) -> None:
-        """Paint everything in other colours."""
+        """Set all colours."""
         self._palette = palette
         self._time_mapper.palette = list(palette.escape_time)
         for name, (_, colours) in PAINTED.items():
@@ -130,20 +127,22 @@ class MapsView:
         self.describe()
 
     def set_dark(self, dark: bool) -> None:
-        """Draw the lines for a dark page, or for a light one."""
-        self._dark = dark
+        """Use the line colours of the dark or the light theme."""
+        inks = DARK if dark else LIGHT
+        # Unlike other text, that of a colour bar does not follow the stylesheet.
+        self._colour_bar.update(title_text_color=inks.quiet, major_label_text_color=inks.quiet)
         self.outlines.set_dark(dark)
         self.describe()
 
     def set_home(self, window: Window) -> None:
-        """The window of the whole interior, which the reset tool goes back to."""
+        """Set the window of the whole interior, where the reset tool leads."""
         self._home = window
         x, y = self._ranges
         x.update(reset_start=window.x_low, reset_end=window.x_high)
         y.update(reset_start=window.ordinate_low, reset_end=window.ordinate_high)
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
-        """The centre of the pixel clicked, so that the orbit is the very one whose colour was clicked."""
+        """The centre of the pixel at a point, so that its orbit is the one whose colour is shown."""
         pixel = self._spec.pixel_at(x, ordinate) if self._spec is not None else None
         if self._spec is None or pixel is None:
             return x, ordinate
@@ -151,32 +150,32 @@ class MapsView:
         return float(columns[pixel[1]]), float(rows[pixel[0]])
 
     def _character_legend(self) -> str:
-        return legend(self._palette.character_entries) + f'<div style="font-size:12px">{self._judged}</div>'
+        return legend(self._palette.character_entries) + f"<div class='legend'>{self._regularity_text}</div>"
 
     def _follow(self, spec: MapSpec) -> None:
-        """Go to the window of a new map, unless the user is on the way to another one."""
-        if self._rest is None:
+        """Go to the window of a new map, unless the ranges are being moved."""
+        if self._rest_timer is None:
             self._go_to(spec.window)
 
     def _moved(self, _name: str, _old: float, _new: float) -> None:
-        """The visitor moves the ranges: wait until they rest."""
+        """The ranges change: wait until they stop."""
         document = self.source.document
         if not self._following and document is not None:
             self._stop_waiting()
-            self._rest = document.add_timeout_callback(self._waited, REST_MS)
+            self._rest_timer = document.add_timeout_callback(self._waited, REST_MS)
 
     def _stop_waiting(self) -> None:
-        if self._rest is not None:
-            self.source.document.remove_timeout_callback(self._rest)
-            self._rest = None
+        if self._rest_timer is not None:
+            self.source.document.remove_timeout_callback(self._rest_timer)
+            self._rest_timer = None
 
     def _waited(self) -> None:
-        # A callback that runs is removed already.
-        self._rest = None
+        # A timeout callback that runs is already removed.
+        self._rest_timer = None
         self._rested()
 
     def _rested(self) -> None:
-        """The ranges are where the visitor wants them: say where."""
+        """The ranges have stopped: report the window."""
         self._stop_waiting()
         x, y = self._ranges
         window = Window(x.start, x.end, y.start, y.end)
@@ -197,7 +196,7 @@ class MapsView:
         self._following = False
 
     def describe(self) -> None:
-        """Axis names, outlines and legends of the map in view."""
+        """Update axis names, outlines and legends."""
         spec, palette = self._spec, self._palette
         if spec is None:
             return
@@ -217,12 +216,12 @@ class MapsView:
             self._legends[name].object = text
 
     def _paint(self, name: str) -> None:
-        """The images and lines of a picture, from back to front."""
+        """Add the images and lines of a picture, from back to front."""
         plot, (column, _) = self.figures[name], PAINTED[name]
         image = plot.add_glyph(self.source, Image(image=column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if name == "times":
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
-            plot.add_layout(ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="escape time"), "below")
+            plot.add_layout(self._colour_bar, "below")
         plot.add_tools(self._hover.clone(renderers=[image]))
         self.outlines.draw(plot, full=name == "curves")
         if name == "curves" or name in DOUBTED:
@@ -230,24 +229,24 @@ class MapsView:
         self.marks.draw(plot, sections=name in ("curves", "basins"))
 
 
-def _describe_judgement(regularity: RegularityMap, bounded: np.ndarray) -> str:
-    """How the bounded pixels (n,) are judged, or how many still wait."""
+def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:
+    """The share of chaotic orbits among the bounded pixels (n,), or the progress of the analysis."""
     if not bounded.size:
-        return "No orbit is bounded."
+        return "No bounded orbits."
     if regularity.complete:
-        return f"{regularity.chaotic_share:.1%} of the bounded orbits are chaotic."
-    return f"Following deviations: {np.mean(bounded == Regularity.NOT_JUDGED):.1%} of the bounded orbits still open …"
+        return f"{percent(regularity.chaotic_share)} of the bounded orbits are chaotic."
+    return f"{percent(np.mean(bounded == Regularity.NOT_JUDGED))} of the bounded orbits left …"
 
 
 def _is_near(one: Window, other: Window) -> bool:
-    """The same window but for rounding on its way through the browser."""
+    """Whether two windows are equal up to rounding in the browser."""
     width, height = other.x_high - other.x_low, other.ordinate_high - other.ordinate_low
     apart = np.abs(np.subtract(astuple(one), astuple(other)))
     return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))
 
 
 def _blank() -> dict[str, list[Any]]:
-    """A picture of one pixel that nobody has decided yet."""
+    """A picture of one undecided pixel."""
     codes = np.zeros((1, 1), np.uint8)
     columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "crossings", "character", "passage")}
     columns |= {"escape_time": [np.full((1, 1), np.nan, np.float32)]}

@@ -1,4 +1,4 @@
-"""What a visitor has put on the pictures: numbered starts of orbits, their sections, and a box whose pixels are counted."""
+"""Marks on the pictures: numbered starts of orbits, their surface of section, and the box whose pixels are counted."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, Palette
 from engine import Window
 
 MOST_SECTION_POINTS = 2000
-"""Of each orbit so many crossings are drawn."""
-
+"""Of each orbit at most this many section points are drawn."""
 
 NO_POINTS = np.zeros((0, 2))
-"""The section of an orbit that has none here."""
+"""An empty section."""
 
 
-class Marks:
+class Markers:
     """Sources of the marks, drawn into any number of figures."""
 
     def __init__(self) -> None:
@@ -29,34 +28,34 @@ class Marks:
         self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
 
     def draw(self, plot: figure, *, sections: bool) -> None:
-        """Add the marks to a figure; the sections only on some, as many points take long to paint."""
+        """Add the marks to a figure; section points only where `sections`, as painting them takes time."""
         colour = {"field": "slot", "transform": self._mapper}
         if sections:
             plot.add_glyph(self._sections, Scatter(size=3, fill_color=colour, line_color=None))
         plot.add_glyph(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))
         for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour)):
             plot.add_glyph(self._starts, Scatter(marker="cross", size=size, line_width=width, line_color=ink))
-        # An outline covers what it surrounds, so the number stands over its own halo.
+        # The outline of a text covers the text, so the number is drawn once more without.
         for outline in (LIGHT.halo, None):
             number = Text(x_offset=6, y_offset=-4, text_font_size="13px", text_font_style="bold", text_color=MARK_EDGE)
             number.text_outline_color = outline
             plot.add_glyph(self._starts, number)
 
     def show_starts(self, starts: Sequence[tuple[float, float]]) -> None:
-        """Put a numbered cross on each start."""
+        """Mark each start with a numbered cross."""
         x, y = ([float(start[axis]) for start in starts] for axis in (0, 1))
         numbers = list(range(len(starts)))
         self._starts.data = {"x": x, "y": y, "slot": numbers, "text": [str(number + 1) for number in numbers]}
 
     def show_sections(self, sections: Sequence[np.ndarray]) -> None:
-        """Draw (n, 2) points of section, one array for each orbit."""
+        """Draw the section points of each orbit, arrays of shape (n, 2)."""
         shown = [points[:MOST_SECTION_POINTS] for points in sections]
         points = np.concatenate([NO_POINTS, *shown]).astype(np.float32)
         slot = np.repeat(np.arange(len(shown), dtype=np.uint8), [len(points) for points in shown])
         self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slot}
 
     def show_box(self, box: Window | None) -> None:
-        """Draw the box whose pixels are counted, or take it away."""
+        """Draw the box whose pixels are counted; None removes it."""
         edges = [] if box is None else [box]
         self._box.data = {
             "left": [edge.x_low for edge in edges],
@@ -66,5 +65,5 @@ class Marks:
         }
 
     def set_palette(self, palette: Palette) -> None:
-        """Paint with other colours."""
+        """Set the colours of the orbits."""
         self._mapper.palette = list(palette.orbits)

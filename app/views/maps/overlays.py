@@ -1,4 +1,4 @@
-"""What second looks lay over the pictures: pixels that are not to be trusted, and the stable manifolds."""
+"""Results of follow-up analyses over the pictures: doubtful pixels and stable manifolds."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from app.rendering.palette import DOUBT, LIGHT, MANIFOLD, PAPER, Entry, Palette
 from engine import MapSpec, StableManifolds, Trust, TrustMap
 
 _CLEAR = "#00000000"
-# Of the first image and the later ones, which lie ever closer together.
+# Of the first, the second and all later images of the manifolds, which lie ever closer together.
 _WIDTHS, _ALPHAS = (1.6, 0.8, 0.5), (1.0, 0.55, 0.3)
 _HALO_WIDTH = 3.2
 
 
 class Overlays:
-    """Sources of the overlays, drawn into any number of figures; they belong to one map and go with it."""
+    """Sources of the overlays of one map, drawn into any number of figures."""
 
     def __init__(self) -> None:
         self.doubts = ColumnDataSource(_no_doubts(), name="doubts")
         self.manifolds = ColumnDataSource(_no_curves(), name="manifolds")
         self._mapper = LinearColorMapper(palette=[_CLEAR, DOUBT], low=-0.5, high=1.5)
         self._palette = PAPER
-        self._found: StableManifolds | None = None
+        self._manifolds_shown: StableManifolds | None = None
         self._spec: MapSpec | None = None
 
     def draw(self, plot: figure, *, doubts: bool, coloured: bool) -> None:
-        """Add the overlays to a figure: the doubtful pixels, and the manifolds, each in its channel's colour or with a halo."""
+        """Add the overlays to a figure; `coloured` manifolds have the colour of their channel, others are dark with a halo."""
         if doubts:
             plot.add_glyph(self.doubts, Image(image="doubt", dw="dw", dh="dh", color_mapper=self._mapper))
         style: dict[str, Any] = {"line_width": "width", "line_alpha": "alpha"}
@@ -40,7 +40,7 @@ class Overlays:
         plot.add_glyph(self.manifolds, MultiLine(line_color=MANIFOLD, **style))
 
     def begin(self, spec: MapSpec) -> None:
-        """Another map: what was found of the last one says nothing of it."""
+        """Remove the overlays if the map is another one."""
         if spec == self._spec:
             return
         self._spec = spec
@@ -48,7 +48,7 @@ class Overlays:
         self.show_manifolds(None)
 
     def show_trust(self, trust: TrustMap | None) -> None:
-        """Mark the doubtful pixels; None takes the marks away."""
+        """Mark the doubtful pixels; None removes the marks."""
         if trust is not None:
             window = trust.spec.window
             self.doubts.data = {
@@ -60,10 +60,10 @@ class Overlays:
             self.doubts.data = _no_doubts()
 
     def show_manifolds(self, manifolds: StableManifolds | None) -> None:
-        """Draw the manifolds; None takes them away."""
-        self._found = manifolds
+        """Draw the manifolds; None removes them."""
+        self._manifolds_shown = manifolds
         if manifolds is not None:
-            # The first image last, over the others.
+            # The first image is drawn last, over the others.
             arcs = sorted(manifolds.arcs, key=lambda arc: -arc.image)
             self.manifolds.data = {
                 "xs": [arc.x for arc in arcs],
@@ -77,14 +77,14 @@ class Overlays:
             self.manifolds.data = _no_curves()
 
     def set_palette(self, palette: Palette) -> None:
-        """Colours of the channels."""
+        """Set the colours of the channels."""
         self._palette = palette
-        self.show_manifolds(self._found)
+        self.show_manifolds(self._manifolds_shown)
 
     def entries(self) -> list[Entry]:
-        """Legend of what is laid over the basins now."""
-        entries = [Entry("not to be trusted", DOUBT)] if self.doubts.data["x"] else []
-        return entries + ([Entry("stable manifolds", MANIFOLD)] if self._found is not None else [])
+        """Legend entries of the overlays in view."""
+        entries = [Entry("doubtful", DOUBT)] if self.doubts.data["x"] else []
+        return entries + ([Entry("stable manifolds", MANIFOLD)] if self._manifolds_shown is not None else [])
 
 
 def _no_doubts() -> dict[str, list[Any]]:

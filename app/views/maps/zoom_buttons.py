@@ -1,37 +1,34 @@
-"""Back, forward and home: for those without a wheel, and for those who got lost."""
+"""Back, forward and whole plane."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import panel as pn
-import panel_material_ui as pmui
 
 from app.state.zoom_history import ZoomHistory
 from app.views.components.flex_row import flex_row
+from app.views.components.widgets import button
 
-_HINT = "Zoom into any map with the wheel or a box: the region is computed anew. Keys: arrows, + −, h, b, f, p, Esc."
+_HINT = "Zoom into any map with the wheel or a box. Keys: arrows, + −, h, b, f, p, Esc, ?"
 
 
 class ZoomButtons:
-    """Buttons that walk a history."""
+    """Buttons that move through a zoom history."""
 
     def __init__(self, back: Callable[[], None], forward: Callable[[], None], home: Callable[[], None]) -> None:
-        self.back, self.forward, self.home = _button("← Back", back), _button("Forward →", forward), _button("Whole plane", home)
+        options = {"disabled": True, "margin": (5, 0)}
+        self.back = button("← Back", back, kind="light", **options)
+        self.forward = button("Forward →", forward, kind="light", **options)
+        self.home = button("Whole plane", home, kind="light", **options)
 
     def layout(self) -> pn.viewable.Viewable:
         """The buttons in a row that wraps, with a hint."""
-        hint = pn.pane.HTML(_HINT, styles={"font-size": "13px", "opacity": "0.75"}, margin=(8, 10))
-        return flex_row(self.back, self.forward, self.home, hint, gap="2px")
+        hint = pn.pane.HTML(f"<span class='quiet'>{_HINT}</span>", margin=(5, 10))
+        return flex_row(self.back, self.forward, self.home, hint, align="center", gap="0px")
 
     def follow(self, history: ZoomHistory) -> None:
-        """Enable what leads somewhere from here."""
+        """Enable the buttons that lead to another window."""
         self.back.disabled = not history.can_go_back
         self.forward.disabled = not history.can_go_forward
         self.home.disabled = history.window is None
-
-
-def _button(label: str, press: Callable[[], None]) -> pmui.Button:
-    button = pmui.Button(label=label, variant="text", size="small", disabled=True)
-    button.on_click(lambda event: press())
-    return button

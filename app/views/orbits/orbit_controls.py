@@ -1,4 +1,4 @@
-"""The chosen orbits in numbers and words: starts to type, one to look at, its verdict, its twin."""
+"""Controls of the orbits: starts to type, the list of orbits, and the values and verdicts of the chosen one."""
 
 from __future__ import annotations
 
@@ -8,93 +8,91 @@ from dataclasses import dataclass
 from html import escape
 
 import panel as pn
-import panel_material_ui as pmui
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.rendering.palette import PAPER, PATCH_EDGE, Palette
 from app.views.components.flex_row import flex_row
+from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, button
 from engine import IndicatorVerdict, Orbit, Plane
 
-HINT = "Click a point of any map, or type a start, to see its orbit, its SALI and its R². Up to five are kept."
-_NUMBER = "0.[0000000000000000]"
-_PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none"}}
+HINT = "Click any map, or type a start, to see its orbit, SALI and R². Up to five orbits."
+_WIDTH = 370
+_BOX = 165
 
 
 @dataclass(frozen=True)
 class OrbitActions:
-    """What the desk's buttons do."""
+    """Callbacks of the buttons."""
 
     add: Callable[[float, float], None]
     choose: Callable[[int], None]
     remove: Callable[[], None]
     clear: Callable[[], None]
-    find_twin: Callable[[], None]
+    find_divergent_start: Callable[[], None]
     open_plane: Callable[[], None]
 
 
 class OrbitControls:
-    """Boxes for a start, the list of orbits, and the verdict on the one that is looked at."""
+    """Number boxes for a start, the list of orbits, and what is known of the chosen one."""
 
     def __init__(self, actions: OrbitActions) -> None:
         self._actions = actions
         self._palette = PAPER
-        self._told: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
-        self.x = pmui.FloatInput(label="x", value=0.0, step=0.01, format=_NUMBER, width=165, size="small")
-        self.ordinate = pmui.FloatInput(label="px", value=0.0, step=0.01, format=_NUMBER, width=165, size="small")
-        self.button = pmui.Button(label="Integrate this start", variant="contained", size="small", width=340)
-        self.choice = pmui.RadioButtonGroup(label="Orbit", options=[], size="small", visible=False, sx=_PLAIN)
-        self.twin = _button("Find its twin", actions.find_twin)
-        self.remove = _button("Remove", actions.remove)
-        self.clear = _button("Clear all", actions.clear)
-        self.open_plane = _button("Open (x, px) at this h", actions.open_plane)
+        self._shown: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
+        self.x = pn.widgets.FloatInput(label="x", value=0.0, step=0.01, format=NUMBER_FORMAT, width=_BOX)
+        self.ordinate = pn.widgets.FloatInput(label="px", value=0.0, step=0.01, format=NUMBER_FORMAT, width=_BOX)
+        self.button = button("Integrate", self._submit, kind="primary", width=2 * _BOX + 20)
+        self.choice = SegmentedControl(label="Orbit", options=[], visible=False)
+        self.divergent_start = button("Find its twin", actions.find_divergent_start, margin=0)
+        self.remove = button("Remove", actions.remove, margin=0)
+        self.clear = button("Clear all", actions.clear, margin=0)
+        self.open_plane = button("Open (x, px) at this h", actions.open_plane, margin=0)
         self.note = pn.pane.HTML("", name="note", sizing_mode="stretch_width")
         self.text = pn.pane.HTML(HINT, name="verdict", sizing_mode="stretch_width")
         self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width")
-        self.button.on_click(lambda event: self._submit())
         self.choice.param.watch(lambda event: self._choose(event.new), "value")
         self._enable()
 
-    def layout(self, time_bar: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """A column as wide as a picture, with the bar that plays the orbits."""
-        title = pn.pane.HTML("<h2 style='font-size:15px;margin:4px 0'>Orbits</h2>")
-        starts = pn.Row(self.x, self.ordinate)
-        buttons = flex_row(self.twin, self.remove, self.clear, self.open_plane, gap="2px")
+    def layout(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
+        """A column as wide as a picture, with the player of the orbits."""
+        title = pn.pane.HTML("<h2>Orbits</h2>")
+        starts = pn.Row(self.x, self.ordinate, margin=0)
+        buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
+        buttons.margin = (5, 10)
         return pn.Column(
-            title, starts, self.button, self.choice, buttons, self.note, time_bar, self.text, self.indicators,
-            width=370, margin=(0, 6),
+            title, starts, self.button, self.choice, buttons, self.note, playback, self.text, self.indicators,
+            width=_WIDTH, margin=(0, 6),
         )  # fmt: skip
 
     def follow_plane(self, plane: Plane) -> None:
-        """Name the second box after the plane's ordinate."""
+        """Label the second box with the ordinate of the plane."""
         self.ordinate.label = plane.ordinate
         self.open_plane.visible = plane is Plane.X_H
 
     def set_palette(self, palette: Palette) -> None:
-        """Colours of the orbits' numbers."""
+        """Set the colours of the orbits' numbers."""
         self._palette = palette
-        self.show(*self._told)
+        self.show(*self._shown)
 
     def say(self, sentence: str) -> None:
-        """A word on what is going on."""
-        self.note.object = f"<p style='margin:4px 0'>{escape(sentence)}</p>"
+        """Show a message about the orbits."""
+        self.note.object = f"<p>{escape(sentence)}</p>"
 
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
-        """What each indicator of chaos says of the orbit that is looked at."""
+        """Show the verdict of each chaos indicator on the chosen orbit."""
         rows = "".join(
-            f"<tr><th scope=row style='text-align:left;vertical-align:top;font-weight:normal;opacity:0.7'>{one.name}"
-            f"<br>{_value(one.value)}</th>"
+            f"<tr><th scope=row>{one.name}<br>{_value(one.value)}</th>"
             f"<td><b>{one.conclusion or 'no verdict'}</b><br>{escape(one.sentence)}</td></tr>"
             for one in verdicts
         )
-        style = "font-size:13px;border-spacing:8px 3px;margin-left:-8px"
-        self.indicators.object = f"<table aria-label='chaos indicators' style='{style}'>{rows}</table>" if rows else ""
+        self.indicators.object = f"<table aria-label='chaos indicators'>{rows}</table>" if rows else ""
 
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
-        """The list, and the verdict on the chosen one with the numbers that it rests on."""
+        """Show the list of orbits, and the values and verdict of the chosen one."""
         starts = [one.start for one in orbits], chosen
-        if starts != ([one.start for one in self._told[0]], self._told[1]):
+        if starts != ([one.start for one in self._shown[0]], self._shown[1]):
             self.note.object = ""
-        self._told = (tuple(orbits), chosen)
+        self._shown = (tuple(orbits), chosen)
         numbers = [str(place + 1) for place in range(len(orbits))]
         self.choice.param.update(options=numbers, value=numbers[chosen] if orbits else None, visible=len(orbits) > 1)
         self._enable()
@@ -103,33 +101,28 @@ class OrbitControls:
             return
         one = orbits[chosen]
         self.x.value, self.ordinate.value = one.start
-        self.text.object = f"{self._verdict(one)}{self._table(orbits, chosen)}{_numbers(one.orbit)}"
-
-    def _verdict(self, one: ChosenOrbit) -> str:
-        words = one.orbit.describe() if one.orbit is not None else one.problem or "Integrating …"
-        return f"<p style='margin:6px 0'><b>{escape(words)}</b></p>"
+        self.text.object = f"{_verdict(one)}{self._table(orbits, chosen)}{_values(one.orbit)}"
 
     def _table(self, orbits: Sequence[ChosenOrbit], chosen: int) -> str:
         if len(orbits) < 2:
             return ""
         rows = "".join(
             f"<tr{' aria-current=true style=font-weight:bold' if place == chosen else ''}><td>{self._patch(place)}</td>"
-            f"<td style='padding-right:10px'>{one.start[0]:.6g}, {one.start[1]:.6g}</td><td>{_fate(one)}</td></tr>"
+            f"<td>{one.start[0]:.6g}, {one.start[1]:.6g}</td><td>{_fate(one)}</td></tr>"
             for place, one in enumerate(orbits)
         )
-        return f"<table aria-label='the chosen orbits' style='font-size:13px'>{rows}</table>"
+        return f"<table aria-label='the chosen orbits'>{rows}</table>"
 
     def _patch(self, place: int) -> str:
         style = f"background:{self._palette.orbits[place]};border:1px solid {PATCH_EDGE};color:#ffffff;padding:0 5px"
-        return f"<span style='{style};text-shadow:0 0 2px #000000'>{place + 1}</span>"
+        return f"<span style='{style};border-radius:4px;text-shadow:0 0 2px #000000'>{place + 1}</span>"
 
     def _enable(self) -> None:
-        nothing = not self._told[0]
-        for button in (self.twin, self.remove, self.clear, self.open_plane):
-            button.disabled = nothing
+        for one in (self.divergent_start, self.remove, self.clear, self.open_plane):
+            one.disabled = not self._shown[0]
 
     def _choose(self, number: str | None) -> None:
-        if number is not None and int(number) - 1 != self._told[1]:
+        if number is not None and int(number) - 1 != self._shown[1]:
             self._actions.choose(int(number) - 1)
 
     def _submit(self) -> None:
@@ -137,6 +130,11 @@ class OrbitControls:
             self.say("Type a number into both boxes first.")
             return
         self._actions.add(self.x.value, self.ordinate.value)
+
+
+def _verdict(one: ChosenOrbit) -> str:
+    sentence = one.orbit.describe() if one.orbit is not None else one.problem or "Integrating …"
+    return f"<p><b>{escape(sentence)}</b></p>"
 
 
 def _value(value: float) -> str:
@@ -151,7 +149,7 @@ def _fate(one: ChosenOrbit) -> str:
     return f"bounded, {one.orbit.regularity}" if one.orbit.regularity is not None else "outside"
 
 
-def _numbers(orbit: Orbit | None) -> str:
+def _values(orbit: Orbit | None) -> str:
     if orbit is None:
         return ""
     rows = {
@@ -162,13 +160,5 @@ def _numbers(orbit: Orbit | None) -> str:
         "last SALI": f"{orbit.sali[-1]:.3g}",
         "relative energy error": f"{orbit.energy_error:.1e}",
     }
-    cells = "".join(
-        f"<tr><td style='padding-right:12px;opacity:0.7'>{name}</td><td>{value}</td></tr>" for name, value in rows.items()
-    )
-    return f"<table aria-label='the orbit in numbers' style='font-size:13px'>{cells}</table>"
-
-
-def _button(label: str, press: Callable[[], None]) -> pmui.Button:
-    button = pmui.Button(label=label, variant="outlined", size="small", sx={"textTransform": "none"})
-    button.on_click(lambda event: press())
-    return button
+    cells = "".join(f"<tr><th scope=row>{name}</th><td>{value}</td></tr>" for name, value in rows.items())
+    return f"<table aria-label='values of the orbit'>{cells}</table>"

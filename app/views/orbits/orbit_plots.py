@@ -1,4 +1,4 @@
-"""The chosen orbits in three panes, each in its colour: paths over the zero-velocity curve, SALI(t), and R²(t)."""
+"""The chosen orbits, each in its colour: paths over the zero-velocity curve, SALI(t), R²(t), Lyapunov exponent."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NO_LINE = np.zeros(0), np.zeros(0)
 
 
 class OrbitPlots:
-    """The three figures; empty until an orbit is shown."""
+    """Four figures, empty until an orbit is shown."""
 
     def __init__(self) -> None:
         ranges = {"x_range": Range1d(-1.0, 1.0), "y_range": Range1d(-1.0, 1.0)}
@@ -51,19 +51,19 @@ class OrbitPlots:
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._drawings: list[tuple[int, OrbitCurves]] = []
         self._palette = PAPER
-        # Of which energy there are curves, as several orbits share theirs.
+        # What the outlines are drawn for, as several orbits share them.
         self._outlined: tuple[Potential, float, Palette] | None = None
         self._draw()
         self.set_palette(PAPER)
 
     def layout(self) -> list[pn.viewable.Viewable]:
-        """The figures, each with its explanation."""
+        """The figures, each with its help text."""
         return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in (self.path, self.sali, self.r2, self.exponent)]
 
     def show(self, potential: Potential, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
-        """Draw orbits by their places; None where there is none, or not yet. The chosen one stands out."""
+        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet."""
         self._drawings = [(slot, drawing) for slot, drawing in enumerate(drawings) if drawing is not None]
-        # The chosen one last, over the others.
+        # The chosen one is drawn last, over the others.
         self._drawings.sort(key=lambda item: item[0] == chosen)
         alphas = [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in self._drawings]
         for name in _HISTORIES:
@@ -72,7 +72,7 @@ class OrbitPlots:
         self._scale_times()
 
     def set_time(self, t: float | None) -> None:
-        """Put every orbit's point where it is at a time, with its trail; None takes the points away."""
+        """Mark the position of each orbit at a time, with its trail; None removes the marks."""
         moments = [(slot, moment(drawing.orbit, t)) for slot, drawing in self._drawings] if t is not None else []
         slots = [slot for slot, _ in moments]
         self._points.data = {"x": [now.x[-1] for _, now in moments], "y": [now.y[-1] for _, now in moments], "slot": slots}
@@ -81,7 +81,7 @@ class OrbitPlots:
         self._now.update(visible=bool(moments), location=t or 0.0)
 
     def set_palette(self, palette: Palette) -> None:
-        """Draw in other colours."""
+        """Set the colours of the orbits."""
         self._palette = palette
         self._mapper.palette = list(palette.orbits)
         self.outlines.set_palette(palette)
@@ -104,7 +104,7 @@ class OrbitPlots:
         )
 
     def _scale_times(self) -> None:
-        """The axes of the histories: of SALI after the longest orbit, of R² after the one that is looked at."""
+        """Set the time axes: of SALI by the longest orbit, of R² by the chosen one."""
         if not self._drawings:
             return
         everything = [drawing for _, drawing in self._drawings]
@@ -145,7 +145,7 @@ class OrbitPlots:
 
 
 def prepare() -> None:
-    """Draw a long path once: datashader compiles its own code at first use."""
+    """Draw a long path once, so that datashader compiles its code."""
     potential = CASES["III"]
     state = start_states(potential, Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))

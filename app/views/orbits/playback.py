@@ -1,45 +1,54 @@
-"""One time for all panes of the orbits: dragged, or played."""
+"""One time for all orbit plots, dragged or played."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import panel as pn
-import panel_material_ui as pmui
+
+from app.views.components.widgets import NamedPlayer
 
 STEPS = 600
 FRAME_MS = 50
 
 
 class Playback:
-    """A player over the life of the chosen orbit; `on_time(t)` is told where it stands, None when there is no orbit."""
+    """A player over the duration of the chosen orbit.
+
+    Parameters
+    ----------
+    on_time
+        Called with the time that the player shows; None at the start, and without an orbit.
+    """
 
     def __init__(self, on_time: Callable[[float | None], None]) -> None:
         self._on_time = on_time
         self._duration = 0.0
-        self.player = pmui.Player(
-            label="Time along the orbits", start=0, end=STEPS, value=0, step=1, interval=FRAME_MS, loop_policy="loop",
-            show_loop_controls=False, show_value=False, disabled=True, size="small", width=300,
+        self.player = NamedPlayer(
+            label="Time along the orbits", start=0, end=STEPS, value=0, interval=FRAME_MS, loop_policy="loop",
+            show_loop_controls=False, visible_buttons=["previous", "play", "pause", "next"], disabled=True,
+            width=280, height=40, margin=(8, 0),
         )  # fmt: skip
-        self.text = pn.pane.HTML("", name="time", width=110, margin=(24, 0))
-        self.player.param.watch(lambda event: self._tell(), "value")
+        self.text = pn.pane.HTML("", name="time", width=80, margin=(18, 0, 0, 8))
+        self.player.param.watch(lambda event: self._report(), "value")
 
     def layout(self) -> pn.viewable.Viewable:
-        """The player, and the time that it shows."""
+        """The player and its time."""
         return pn.Row(self.player, self.text, margin=0)
 
     def follow(self, duration: float | None) -> None:
-        """Another orbit is looked at, of this duration; None for none."""
+        """Set the duration of the chosen orbit; None without one."""
         self.player.disabled = not duration
+        if not duration:
+            self.player.direction = 0
         if duration == self._duration:
             return
         self._duration = duration or 0.0
-        # Zero is the start, where the cross is; the point appears with the first move.
-        self.player.param.update(value=0, disabled=not duration)
-        self._tell()
+        # At 0 the start is marked by its cross; the moving point appears after that.
+        self.player.value = 0
+        self._report()
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         t = self._duration * self.player.value / STEPS
-        moving = self._duration > 0.0 and self.player.value > 0
-        self.text.object = f"t = {t:.5g}" if moving else ""
-        self._on_time(t if moving else None)
+        self.text.object = f"t = {t:.5g}" if t > 0.0 else ""
+        self._on_time(t if t > 0.0 else None)

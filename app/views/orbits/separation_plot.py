@@ -1,4 +1,4 @@
-"""How far two orbits are apart: the chosen one and the one before it."""
+"""The distance of two orbits: the chosen one and the one before it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LEAST = 1e-17
 
 
 class SeparationPlot:
-    """log distance in phase space against time; empty while fewer than two orbits are chosen."""
+    """Distance in phase space against time, logarithmic; empty while fewer than two orbits are chosen."""
 
     def __init__(self) -> None:
         ranges = {"x_range": Range1d(0.0, 10.0), "y_range": Range1d(LEAST, 10.0)}
@@ -26,11 +26,11 @@ class SeparationPlot:
         self._column = with_help(pn.pane.Bokeh(self.figure, margin=0), "distance")
 
     def layout(self) -> pn.viewable.Viewable:
-        """The figure with its explanation."""
+        """The figure with its help text."""
         return self._column
 
     def show(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
-        """Draw the distance of the orbits in two places; None takes it away."""
+        """Draw the distance of two orbits, given by their places in the list; None removes it."""
         if pair is None or separation is None:
             self._source.data = {"t": [], "distance": []}
             self.figure.title.text = TITLE
@@ -42,5 +42,5 @@ class SeparationPlot:
         self.figure.title.text = f"Distance of orbits {pair[0] + 1} and {pair[1] + 1}"
 
     def set_palette(self, palette: Palette) -> None:
-        """The line's colour."""
+        """Set the colour of the line."""
         self._line.line_color = palette.orbits[1]

@@ -1,4 +1,4 @@
-"""The whole page as a table, for those who hear it read and for those who copy numbers."""
+"""The content of the page as a table, for screen readers and for copying numbers."""
 
 from __future__ import annotations
 
@@ -9,40 +9,38 @@ import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
+from app.views.components.numbers import percent
 from engine import EscapeMap, EscapeStatistics, Fate, compute_statistics
-
-_CELL = "padding:2px 14px 2px 0;text-align:left;vertical-align:top"
 
 
 class AccessibleTable:
-    """A table of what is shown, folded away until it is wanted."""
+    """A collapsed table of what the page shows."""
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
         self._statistics: EscapeStatistics | None = None
         self._orbits: Sequence[ChosenOrbit] = ()
-        self.text = pn.pane.HTML("", name="words", sizing_mode="stretch_width", margin=(4, 10))
+        self.text = pn.pane.HTML("", name="accessible-table", sizing_mode="stretch_width", margin=(4, 10))
 
     def layout(self) -> pn.viewable.Viewable:
         """The table under its summary."""
         return self.text
 
     def show_map(self, frame: EscapeMap) -> None:
-        """Put a whole map into words."""
+        """Set the map."""
         self._statistics = compute_statistics(frame)
         self._write()
 
     def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Put the orbits into words."""
+        """Set the orbits."""
         self._orbits = orbits
         self._write()
 
     def _write(self) -> None:
         cells = (*self._view(), *self._map(), *self._chosen())
-        row = f"<tr><th scope=row style='{_CELL};font-weight:normal'>{{}}</th><td style='{_CELL}'>{{}}</td></tr>"
-        rows = "".join(row.format(escape(name), escape(value)) for name, value in cells)
-        head = "<tr><th scope=col style='text-align:left'>what</th><th scope=col style='text-align:left'>value</th></tr>"
-        table = f"<table style='font-size:13px'><caption style='text-align:left'>What is shown</caption>{head}{rows}</table>"
+        rows = "".join(f"<tr><th scope=row>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in cells)
+        head = "<tr><th scope=col>quantity</th><th scope=col>value</th></tr>"
+        table = f"<table><caption>What is shown</caption>{head}{rows}</table>"
         self.text.object = f"<details><summary>This page as a table</summary>{table}</details>"
 
     def _view(self) -> list[tuple[str, str]]:
@@ -60,8 +58,8 @@ class AccessibleTable:
         if statistics is None:
             return []
         shares = statistics.shares
-        rows = [(f"leave through channel {k}", f"{shares[k]:.2%}") for k in range(1, len(statistics.channel_counts) + 1)]
-        rows += [("bounded", f"{shares[Fate.BOUNDED]:.2%}"), ("leave directly", f"{statistics.direct_share:.2%}")]
+        rows = [(f"escape through channel {k}", percent(shares[k], 2)) for k in range(1, len(statistics.channel_counts) + 1)]
+        rows += [("bounded", percent(shares[Fate.BOUNDED], 2)), ("direct escapes", percent(statistics.direct_share, 2))]
         rows += [("mean escape time", f"{statistics.mean_escape_time:.5g}")]
         return [*rows, ("median escape time", f"{statistics.median_escape_time:.5g}")]
 
@@ -73,4 +71,4 @@ class AccessibleTable:
 
 
 def _described(one: ChosenOrbit) -> str:
-    return one.orbit.describe() if one.orbit is not None else one.problem or "on its way"
+    return one.orbit.describe() if one.orbit is not None else one.problem or "being integrated"

@@ -1,4 +1,4 @@
-"""The controls of the map: case, energy, plane; and, second to them, t_max, resolution and colours."""
+"""The controls of the map: system, plane and energy; t_max, resolution and colours."""
 
 from __future__ import annotations
 
@@ -8,198 +8,198 @@ from html import escape as escape_text
 from typing import Any
 
 import panel as pn
-import panel_material_ui as pmui
 
 from app.rendering.palette import PALETTES
-from app.runtime.load_monitor import process_load_monitor
+from app.runtime.process_state import process_state
 from app.state.system import SYSTEM, System
 from app.state.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from app.views.components.flex_row import flex_row
+from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, button
 from engine import CASES, Plane
 
-OTHER = "other"
-"""Stands in the row of cases for every other potential."""
-
 PLAY, STOP = "▶ Play", "■ Stop"
-_PLAIN = {"& .MuiToggleButton-root, & .MuiButton-root, & button": {"textTransform": "none", "whiteSpace": "nowrap"}}
+# Space beside the rail of a slider, half the width of its thumb, see theme.css.
+_THUMB = "9px"
+_TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
+_TICK_LABEL = (
+    "position:absolute;top:7px;left:clamp(0px, calc({share:.2%} - 80px), calc(100% - 160px));width:160px;text-align:center"
+)
 
 
 @dataclass(frozen=True)
 class ControlActions:
-    """What the controls do besides setting the state.
+    """What the controls do apart from changing the state.
 
     Attributes
     ----------
-    look
-        A quick look at an energy on the slider's way.
+    preview
+        Called with each energy that the slider passes while it is dragged.
     settle
-        The map again where the slider ends.
+        Called when the slider is dragged back to the energy of the state: the map is shown again.
     play
-        A sweep through all energies.
+        Starts or stops the animation over all energies.
     choose_potential
-        Opens the choice among all other potentials.
+        Opens the choice of other potentials.
     """
 
-    look: Callable[[float], None]
+    preview: Callable[[float], None]
     settle: Callable[[], None]
     play: Callable[[], None]
     choose_potential: Callable[[], None]
 
 
-class ThrottledSlider(pmui.FloatSlider):
-    """A slider whose moves are heard sooner than Panel's 50 ms after the first of them, unless the server is behind."""
+class ThrottledSlider(Slider):
+    """A slider that reports its moves after 5 ms, in place of Panel's 50 ms, and after 150 ms under high load."""
 
     @property
     def _debounce(self) -> int:
-        return 150 if process_load_monitor().is_high() else 5
+        return 150 if process_state().load.is_high() else 5
 
 
 class Controls:
-    """Widgets that write into the view state and follow it."""
+    """Widgets that write to the view state and follow it."""
 
     def __init__(self, state: ViewState, actions: ControlActions) -> None:
         self.state = state
         self._actions = actions
-        self._looked = False
-        # What a sweep put the slider on: the browser tells it again, sometimes late.
-        self._passed: set[float] = set()
-        cases = {**{name: name for name in CASES}, "Other …": OTHER}
-        self.case = pmui.RadioButtonGroup(label="Case", options=cases, value=self._case(), size="small", sx=_PLAIN)
-        self.plane = pmui.RadioButtonGroup(
-            label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, size="small", sx=_PLAIN
-        )
-        self.energy = ThrottledSlider(label="Energy h", sizing_mode="stretch_width")
-        self.play = pmui.Button(label=PLAY, variant="outlined", size="small", width=76, sx=_PLAIN)
-        self.exact_energy = pmui.FloatInput(
-            label="h exactly", value=state.energy, format="0.[0000000000000000]", width=130, size="small"
-        )
-        self.t_max = pmui.Select(label="t_max", options=T_MAX_CHOICES, value=state.t_max, width=130, size="small")
-        self.resolution = pmui.Select(
-            label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=140, size="small"
-        )
-        self.palette = pmui.Select(
-            label="Colours",
-            options={palette.name: key for key, palette in PALETTES.items()},
-            value=state.palette,
-            width=170,
-            size="small",
+        self._previewed = False
+        self._animating = False
+        self.case = SegmentedControl(label="Case", options=list(CASES), value=self._case(), margin=(5, 0, 5, 10))
+        self.other = button("Other …", actions.choose_potential, kind="light", margin=(5, 10, 5, 4))
+        self.plane = SegmentedControl(label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane)
+        self.energy = ThrottledSlider(label="Energy h", sizing_mode="stretch_width", margin=(0, 10))
+        self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
+        self.play = button(PLAY, actions.play, width=84)
+        self.exact_energy = pn.widgets.FloatInput(label="Exact h", value=state.energy, format=NUMBER_FORMAT, width=140)
+        self.t_max = pn.widgets.Select(label="t_max", options=T_MAX_CHOICES, value=state.t_max, width=120)
+        self.resolution = pn.widgets.Select(label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=130)
+        self.palette = pn.widgets.Select(
+            label="Colours", options={palette.name: key for key, palette in PALETTES.items()}, value=state.palette, width=170
         )
         self.facts = pn.pane.HTML(margin=(0, 10))
-        self._follow_case()
+        self._follow_system()
         self._connect()
 
     def layout(self) -> pn.viewable.Viewable:
-        """Two strips that wrap on narrow screens: what is looked at, and how."""
-        energy = pn.Column(self.energy, min_width=300, max_width=620, sizing_mode="stretch_width", margin=(0, 20))
-        what = (pn.Column(self.case, min_width=210), pn.Column(self.plane, min_width=230), energy, self.play, self.exact_energy)
+        """Two rows that wrap on narrow screens: what is shown, and how it is computed."""
+        energy = pn.Column(
+            self.energy, self.ticks, min_width=300, max_width=620, sizing_mode="stretch_width", styles={"flex": "1 1 300px"}
+        )
+        what = (pn.Row(self.case, self.other, margin=0), self.plane, energy, self.play, self.exact_energy)
         how = (self.t_max, self.resolution, self.palette, self.facts)
-        return pn.Column(_strip(*what), _strip(*how), sizing_mode="stretch_width")
+        return pn.Column(
+            flex_row(*what, align="center", gap="6px"), flex_row(*how, align="center", gap="6px"), sizing_mode="stretch_width"
+        )
 
     def _connect(self) -> None:
         state = self.state
         self.case.param.watch(lambda event: self._take_case(event.new), "value")
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
         self.palette.param.watch(lambda event: state.param.update(palette=event.new), "value")
-        self.play.on_click(lambda event: self._actions.play())
-        # Of a move and a release that come together, the release counts.
-        self.energy.param.watch(self._look, "value", precedence=1)
-        self.energy.param.watch(self._take_slid_energy, "value_throttled")
+        # If a move and a release arrive together, the release is handled first.
+        self.energy.param.watch(self._preview, "value", precedence=1)
+        self.energy.param.watch(self._take_slider_energy, "value_throttled")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
         self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
-        state.param.watch(lambda *events: self._follow_case(), list(SYSTEM))
+        state.param.watch(lambda *events: self._follow_system(), list(SYSTEM))
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         for name in ("plane", "t_max", "resolution", "palette"):
             state.param.watch(lambda event: getattr(self, event.name).param.update(value=event.new), name)
 
     def show_playing(self, playing: bool) -> None:
-        """Name the button after what it does next."""
+        """Label the button with what it does next."""
         self.play.label = STOP if playing else PLAY
-        # Somebody who drags stops at a step.
-        self._passed = {energy for energy in self._passed if energy != round(energy, self.state.system.energies.decimals)}
 
-    def show_passing(self, energy: float) -> None:
-        """Put the slider where a sweep is."""
-        self._passed.add(energy)
-        self.energy.value = energy
+    def show_animated(self, energy: float) -> None:
+        """Move the slider to an energy of the animation."""
+        self._animating = True
+        try:
+            self.energy.value = energy
+        finally:
+            self._animating = False
 
-    def _look(self, event: Any) -> None:
-        """The slider is on its way: unless it follows the state or a sweep, somebody drags it."""
-        if event.new == self._on_slider():
+    def _preview(self, event: Any) -> None:
+        """The slider moves; a move to the energy of the state is the end of a drag, or follows the state."""
+        if self._animating:
+            return
+        if event.new == self._slider_energy():
             self._settle()
-        elif event.new not in self._passed:
-            self._looked = True
-            self._actions.look(event.new)
+        else:
+            self._previewed = True
+            self._actions.preview(event.new)
 
     def _settle(self) -> None:
-        """Back where it was before the quick looks: their picture makes room for the map."""
-        if self._looked:
-            self._looked = False
+        """Show the map again after previews of other energies."""
+        if self._previewed:
+            self._previewed = False
             self._actions.settle()
 
-    def _take_case(self, case: str) -> None:
-        # The buttons follow the state, too; then there is nothing to take.
-        if case == self._case():
-            return
-        if case == OTHER:
-            # Nothing has been chosen yet.
-            self.case.value = self._case()
-            self._actions.choose_potential()
-        else:
+    def _take_case(self, case: str | None) -> None:
+        # None and the case of the state: the widget follows the state.
+        if case is not None and case != self.state.case:
             with pn.io.hold():
                 self.state.show_system(System(case))
 
-    def _case(self) -> str:
-        """The button of the system in view."""
-        return self.state.case if self.state.case in CASES else OTHER
+    def _case(self) -> str | None:
+        """The case of the system in view; None for other potentials."""
+        return self.state.case if self.state.case in CASES else None
 
     def _take_plane(self, plane: Plane) -> None:
         if plane != self.state.plane:
             with pn.io.hold():
                 self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
 
-    def _take_slid_energy(self, event: Any) -> None:
-        # The slider stands at its end for an energy typed beyond it, and passes others in a sweep: no wish to go there.
-        if event.new != self._on_slider() and event.new not in self._passed:
-            self._looked = False
-            # All that follows from it makes one message.
+    def _take_slider_energy(self, event: Any) -> None:
+        # An energy beyond the slider, which can be typed, stays when the slider is released at its end.
+        if not self._animating and event.new != self._slider_energy():
+            self._previewed = False
+            # All that follows makes one message.
             with pn.io.hold():
                 self.state.energy = event.new
 
-    def _on_slider(self) -> float:
-        """Where the slider stands for the energy of the state."""
+    def _slider_energy(self) -> float:
+        """The position of the slider for the energy of the state."""
         energies = self.state.system.energies
         return float(min(max(self.state.energy, energies.low), energies.high))
 
     def _take_exact_energy(self, event: Any) -> None:
         if event.new is not None:
-            self.state.energy = event.new
+            with pn.io.hold():
+                self.state.energy = event.new
 
-    def _follow_case(self) -> None:
-        """The slider's span and marks, and the case in a line: formula, channels, escape energy."""
+    def _follow_system(self) -> None:
+        """Set the span and ticks of the slider, and the line with formula, channels and escape energy."""
         state, system, energies = self.state, self.state.system, self.state.system.energies
         self.case.value = self._case()
-        escape = state.potential.escape_energy
-        marks = [{"value": round(escape, 6), "label": f"escape energy {escape:.4g}"}, *({"value": h} for h in energies.marked)]
+        self.other.color = "light" if self._case() else "primary"
         step, decimals = 10.0**-energies.decimals, max(energies.decimals, 0)
         scale = {"start": energies.low, "end": energies.high, "step": step, "format": f"0.{'0' * decimals}"}
-        self.energy.param.update(**scale, value=self._on_slider(), marks=marks)
+        self.energy.param.update(**scale, value=self._slider_energy())
+        self.ticks.object = _ticks(state.potential.escape_energy, energies.marked, energies.low, energies.high)
         self.exact_energy.step = step
-        ticks = " · ticks on the slider: the energies of Zotos (2014)" if energies.marked else ""
+        marked = " · ticks: the energies of Zotos (2014)" if energies.marked else ""
         self.facts.object = (
-            f'<div style="font-size:14px"><b>{escape_text(system.title)}</b>: H = ½(px² + py²) + V, '
-            f"V = {escape_text(system.formula_shown)} · {state.potential.channels} exit channels above the escape energy "
-            f"h = {escape:.6g}{ticks}</div>"
+            f"<div><b>{escape_text(system.title)}</b>: H = ½(px² + py²) + V, V = {escape_text(system.formula_shown)} · "
+            f"{state.potential.channels} exit channels above the escape energy h = {state.potential.escape_energy:.6g}"
+            f"{marked}</div>"
         )
         self._follow_energy()
 
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane is Plane.X_H
-        self.energy.param.update(value=self._on_slider(), disabled=on_h)
-        self.energy.label = "Energy h: the ordinate of this plane" if on_h else "Energy h"
+        self.energy.param.update(value=self._slider_energy(), disabled=on_h)
+        self.energy.label = "Energy is the vertical axis here" if on_h else "Energy h"
         self.exact_energy.param.update(value=state.energy, disabled=on_h)
 
 
-def _strip(*widgets: pn.viewable.Viewable) -> pn.FlexBox:
-    return flex_row(*widgets, align_items="center", gap="6px", sizing_mode="stretch_width")
+def _ticks(escape: float, marked: tuple[float, ...], low: float, high: float) -> str:
+    """HTML of ticks below the slider, at the marked energies and with a label at the escape energy."""
+    shares = [(energy - low) / (high - low) for energy in (escape, *marked)]
+    ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
+    label = (
+        f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {escape:.4g}</span>" if 0 <= shares[0] <= 1 else ""
+    )
+    style = f"position:relative;height:22px;margin:0 {_THUMB};font-size:12px;color:var(--ui-quiet)"
+    return f"<div style='{style}'>{ticks}{label}</div>"

@@ -1,27 +1,30 @@
-"""What a visitor takes along: the link, a picture, the maps, the orbits, and the lines of Python that make them again."""
+"""Sharing and downloads: the link, a picture, the maps, the orbits, and a Python script that computes them again."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
-from io import BytesIO
 
 import panel as pn
-import panel_material_ui as pmui
 
 from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.rendering.map_analyses import MapAnalyses
 from app.rendering.map_images import ON_DEMAND, TITLES
 from app.state.view_state import ViewState
+from app.views.components.file_saver import FileSaver
 from app.views.components.flex_row import flex_row
+from app.views.components.widgets import button
 from engine import EscapeMap
 
 SIDES = {"300 pixels": 300, "600 pixels": 600, "1200 pixels": 1200}
-"""Sides of each map in a picture to take along."""
+"""Sides of each map in a saved picture."""
 
-_NOTHING = "The map is not whole yet."
+File = tuple[str, Callable[[], bytes]]
+"""Name and content of a file; the content is made by a call that may take seconds."""
+
+_NO_MAP = "The map is not complete yet."
 
 
 class Downloads:
@@ -30,82 +33,81 @@ class Downloads:
     def __init__(self, state: ViewState, copy_link: Callable[[], None]) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
-        self._findings = MapAnalyses()
+        self._analyses = MapAnalyses()
         self._orbits: Sequence[ChosenOrbit] = ()
-        self.link = pmui.Button(label="Copy the link", variant="outlined", size="small", sx={"textTransform": "none"})
-        self.link.on_click(lambda event: copy_link())
-        self.side = pmui.Select(label="Side of each map", options=SIDES, value=600, width=150, size="small")
-        self.picture = _download("Picture (PNG)", self._png)
-        self.maps = _download("Maps (NetCDF)", self._netcdf)
-        self.orbits = _download("Orbits (CSV)", self._csv)
-        self.lines = _download("Python lines", self._python)
+        self.saver = FileSaver()
+        self.link = button("Copy link", copy_link)
+        self.side = pn.widgets.Select(label="Side of each map", options=SIDES, value=600, width=130)
+        self.picture = button("Picture (PNG)", self._saving(self.png_file))
+        self.maps = button("Maps (NetCDF)", self._saving(self.netcdf_file))
+        self.orbits = button("Orbits (CSV)", self._saving(self.csv_file))
+        self.script = button("Python script", self._saving(self.python_file))
         self._enable()
 
     def layout(self) -> pn.viewable.Viewable:
         """The buttons in a row that wraps."""
-        title = pn.pane.HTML("<h2 style='font-size:15px;margin:4px 0'>Take it along</h2>", margin=(0, 10))
-        row = flex_row(self.link, self.side, self.picture, self.maps, self.orbits, self.lines, gap="8px", align_items="center")
-        return pn.Column(title, row, sizing_mode="stretch_width")
+        title = pn.pane.HTML("<h2>Share and download</h2>", margin=(16, 10, 4, 10))
+        row = flex_row(self.link, self.side, self.picture, self.maps, self.orbits, self.script, align="flex-end", gap="0px")
+        return pn.Column(title, row, self.saver, sizing_mode="stretch_width")
 
     def show_map(self, frame: EscapeMap) -> None:
-        """The map to take along, once it is whole."""
+        """Set the map to download; files are made of complete maps only."""
         self._frame = frame if frame.complete else None
         self._enable()
 
-    def show_findings(self, findings: MapAnalyses) -> None:
-        """What is found out about it."""
-        self._findings = findings
+    def show_analyses(self, analyses: MapAnalyses) -> None:
+        """Set what is known of the map."""
+        self._analyses = analyses
 
     def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """The orbits to take along."""
+        """Set the orbits to download."""
         self._orbits = orbits
         self._enable()
 
+    async def save(self, file: File) -> None:
+        """Make a file in a thread, so that the event loop goes on, and send it to the browser."""
+        name, make = file
+        self.saver.save(name, await asyncio.to_thread(make))
+
+    def png_file(self) -> File:
+        """All maps in one picture, with their legends."""
+        available = {"characters": self._analyses.regularity, "origins": self._analyses.origins}
+        pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or available[name] is not None)]
+        starts = tuple(one.start for one in self._orbits)
+        make = partial(
+            png_bytes, self._map(), pictures, self._state.colours, self.side.value, analyses=self._analyses, starts=starts
+        )
+        return self._named(".png"), make
+
+    def netcdf_file(self) -> File:
+        """The map with its analyses."""
+        return self._named(".nc"), partial(netcdf_bytes, self._map(), self._analyses)
+
+    def csv_file(self) -> File:
+        """The chosen orbits as a table."""
+        orbits = [one.orbit for one in self._orbits if one.orbit is not None]
+        name = "orbits.csv" if self._frame is None else self._named("-orbits.csv")
+        return name, lambda: orbits_csv(orbits).encode()
+
+    def python_file(self) -> File:
+        """A script that computes the map and the orbits."""
+        specs = [self._state.orbit_spec(one.start) for one in self._orbits]
+        states = [spec.state for spec in specs if spec is not None]
+        return self._named(".py"), python_lines(self._map().spec, self._state.system, states).encode
+
+    def _saving(self, file: Callable[[], File]) -> Callable[[], None]:
+        # The file is that of the moment of the click.
+        return lambda: pn.state.execute(partial(self.save, file()))
+
     def _enable(self) -> None:
-        for button in (self.picture, self.maps, self.lines):
-            button.disabled = self._frame is None
+        for one in (self.picture, self.maps, self.script):
+            one.disabled = self._frame is None
         self.orbits.disabled = not any(one.orbit is not None for one in self._orbits)
 
     def _named(self, ending: str) -> str:
-        return f"{file_stem(self._whole().spec, self._state.case)}{ending}"
+        return f"{file_stem(self._map().spec, self._state.case)}{ending}"
 
-    def _whole(self) -> EscapeMap:
+    def _map(self) -> EscapeMap:
         if self._frame is None:
-            raise ValueError(_NOTHING)
+            raise ValueError(_NO_MAP)
         return self._frame
-
-    def _png(self) -> Callable[[], bytes]:
-        self.picture.filename = self._named(".png")
-        there = {"characters": self._findings.regularity, "origins": self._findings.origins}
-        pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or there[name] is not None)]
-        starts = tuple(one.start for one in self._orbits)
-        return partial(
-            png_bytes, self._whole(), pictures, self._state.colours, self.side.value, findings=self._findings, starts=starts
-        )
-
-    def _netcdf(self) -> Callable[[], bytes]:
-        self.maps.filename = self._named(".nc")
-        return partial(netcdf_bytes, self._whole(), self._findings)
-
-    def _csv(self) -> Callable[[], bytes]:
-        self.orbits.filename = "orbits.csv" if self._frame is None else self._named("-orbits.csv")
-        chosen = [one.orbit for one in self._orbits if one.orbit is not None]
-        return lambda: orbits_csv(chosen).encode()
-
-    def _python(self) -> Callable[[], bytes]:
-        self.lines.filename = self._named(".py")
-        specs = [self._state.orbit_spec(one.start) for one in self._orbits]
-        states = [spec.state for spec in specs if spec is not None]
-        lines = python_lines(self._whole().spec, self._state.system, states)
-        return lines.encode
-
-
-def _download(label: str, begin: Callable[[], Callable[[], bytes]]) -> pmui.FileDownload:
-    """A button for a file that `begin` names, and that is made beside the loop, which goes on answering everybody."""
-
-    async def make() -> BytesIO:
-        return BytesIO(await asyncio.to_thread(begin()))
-
-    return pmui.FileDownload(
-        label=label, callback=make, filename="escapes", auto=True, embed=False, variant="outlined", size="small"
-    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The gallery: a strip of cards, each of which opens a view; its caption tells what there is to see."""
+"""The gallery: rows of cards, each of which opens a view, and a caption that describes it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from panel.custom import JSComponent
 from app.rendering.map_images import TITLES
 from app.state.presets import GROUPS, PRESETS, Preset
 
-HINT = "Every card opens a view, with orbits to compare. Its caption appears here."
+HINT = "Each card opens a view with orbits to compare. Its caption appears here."
 
-# Panel serves app/static under the address of the page, which ends in "app".
+# Panel serves app/static below the address of the page, which ends in "app".
 _THUMBNAILS = "app/static/gallery"
 
 _CARDS = """
@@ -24,7 +24,7 @@ const make = (tag, attributes, ...children) => {
   return node
 }
 
-// A toolbar is one stop of the Tab key; arrows lead from card to card.
+// A toolbar is one stop of the Tab key; arrows move from card to card.
 const STEPS = {ArrowRight: place => place + 1, ArrowLeft: place => place - 1, Home: () => 0, End: (place, count) => count - 1}
 
 function walk(event, buttons) {
@@ -37,20 +37,20 @@ function walk(event, buttons) {
 }
 
 function make_card(card, place, show) {
-  // Lazy before it has a source, or it is fetched at once, though the gallery may be closed.
+  // Set loading before src, or the picture is fetched at once, even if the gallery is closed.
   const picture = make("img", {loading: "lazy", alt: card.alt, width: 112, height: 112, src: card.thumbnail})
   const button = make("button", {type: "button", tabIndex: place ? -1 : 0}, make("span", {}, card.title), picture)
-  const words = make("span", {hidden: true, id: `caption-${card.key}`}, card.caption)
+  const description = make("span", {hidden: true, id: `caption-${card.key}`}, card.caption)
   button.dataset.key = card.key
-  button.setAttribute("aria-describedby", words.id)
+  button.setAttribute("aria-describedby", description.id)
   for (const event of ["pointerenter", "focus"]) button.addEventListener(event, () => show(card))
   for (const event of ["pointerleave", "blur"]) button.addEventListener(event, () => show(null))
-  return [button, words]
+  return [button, description]
 }
 
 export function render({model, el}) {
   const caption = make("p", {})
-  // Screen readers have the captions as descriptions of the buttons.
+  // Screen readers get the captions as descriptions of the buttons.
   caption.setAttribute("aria-hidden", "true")
   let chosen = null
   const show = card => {
@@ -85,30 +85,28 @@ export function render({model, el}) {
 _STYLE = """
 :host { min-width: 0 }
 .gallery { container-type: inline-size; font-family: inherit; font-size: 14px; line-height: 1.4; color: inherit }
-h3 { margin: 4px 0 0; font-size: 13px; font-weight: 600; opacity: .75 }
+h3 { margin: 4px 4px 0; font-size: 13px; font-weight: 600; color: var(--ui-quiet) }
 [role=toolbar] {
   display: flex; gap: 6px; padding: 4px; overflow-x: auto; overscroll-behavior-x: contain; scroll-padding: 4px;
   scrollbar-width: thin;
 }
 button {
   display: flex; flex: none; flex-direction: column; align-items: center; gap: 4px; box-sizing: border-box; width: 128px;
-  padding: 7px; font: inherit; font-size: 12.5px; line-height: 1.25; color: inherit; background: none; cursor: pointer;
-  border: 1px solid color-mix(in srgb, currentColor 22%, transparent); border-radius: 8px;
+  padding: 7px; font: inherit; font-size: 12.5px; line-height: 1.25; color: inherit; background: var(--ui-surface);
+  cursor: pointer; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius-l);
 }
-button:hover { background: color-mix(in srgb, currentColor 9%, transparent) }
-button:focus-visible { outline: 3px solid var(--panel-primary-color, Highlight); outline-offset: -1px }
-button[aria-current] {
-  border-color: var(--panel-primary-color, currentColor); box-shadow: inset 0 0 0 2px var(--panel-primary-color, currentColor);
-}
-img { order: -1; display: block; width: 112px; height: 112px; border-radius: 4px }
+button:hover { border-color: var(--ui-edge-strong) }
+button:focus-visible { outline: none; box-shadow: var(--ui-focus) }
+button[aria-current] { border-color: var(--ui-accent); background: var(--ui-accent-soft) }
+img { order: -1; display: block; width: 112px; height: 112px; border-radius: var(--ui-radius) }
 p { margin: 4px 4px 0; max-width: 110ch; min-height: 4.3em }
 @container (max-width: 700px) { p { min-height: 9.9em } }
 """
 
 
-# Its name has no underscore in front: Bokeh tells the browser of no such model.
+# Bokeh does not register classes whose name starts with an underscore in the browser.
 class GalleryCards(JSComponent):
-    """The cards in the browser; its messages are the keys of those chosen."""
+    """The cards in the browser; it sends the key of the card that is chosen."""
 
     cards = param.List(default=[])
     groups = param.List(default=list(GROUPS))
@@ -118,7 +116,7 @@ class GalleryCards(JSComponent):
 
 
 class Gallery:
-    """Shows `PRESETS`; `on_preset(preset)` is told which was chosen, like a button's click without the session's lock."""
+    """Shows `PRESETS`; `on_preset` is called, without the session's lock, with the one that is chosen."""
 
     def __init__(self, on_preset: Callable[[Preset], None]) -> None:
         self._on_preset = on_preset
@@ -126,20 +124,20 @@ class Gallery:
         self._cards = GalleryCards(
             cards=[_card(preset) for preset in PRESETS], sizing_mode="stretch_width", margin=(0, 5), stylesheets=[_STYLE]
         )
-        self._cards.on_msg(lambda event: self._hear(event.data))
+        self._cards.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> pn.viewable.Viewable:
-        """Two rows of cards, each of which scrolls, and a caption below."""
+        """Rows of cards that scroll, and a caption below."""
         return self._cards
 
-    def _hear(self, message: Any) -> None:
-        # It comes from a browser: whatever is not expected is not heard.
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
         if isinstance(message, str) and message in self._presets:
             self._on_preset(self._presets[message])
 
 
 def _card(preset: Preset) -> dict[str, str]:
-    """What the browser needs to know of a preset."""
+    """The data of a preset's card."""
     return {
         "key": preset.key,
         "group": preset.group,

@@ -1,4 +1,4 @@
-"""Keys for the whole page, and two favours only the browser can do: know a new visitor, and copy the page's address."""
+"""Keyboard shortcuts for the whole page; and two things only the browser knows: a first visit, and the clipboard."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from panel.custom import JSComponent
 
 KEYS: Mapping[str, str] = MappingProxyType(
     {
-        "ArrowLeft": "look further left",
-        "ArrowRight": "look further right",
-        "ArrowUp": "look further up",
-        "ArrowDown": "look further down",
+        "ArrowLeft": "move left",
+        "ArrowRight": "move right",
+        "ArrowUp": "move up",
+        "ArrowDown": "move down",
         "+": "zoom in",
         "-": "zoom out",
-        "h": "home: the whole plane",
-        "b": "back to the window before",
-        "f": "forward again",
-        "p": "play or pause the energy",
-        "Escape": "stop what is being computed",
+        "h": "whole plane",
+        "b": "previous window",
+        "f": "next window",
+        "p": "play or stop the energy",
+        "Escape": "stop the computation",
         "?": "help",
     }
 )
-"""What each key does, by the name that `on_key` is called with."""
+"""What each key does, by the name of the key in `KeyboardEvent.key`."""
 
 _CAPS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown": "↓", "-": "−", "Escape": "Esc"}
 
@@ -40,7 +40,7 @@ const MOVING = `[type=range], [type=radio], [role=slider], [role=radio], [role=r
 const VISITED = "escape-explorer-visited"
 const REST_MS = 100
 
-// The page is nested shadow roots: the event's target is only its outermost host, its path shows them all.
+// The target of an event is the outermost shadow host; its path has all elements.
 const comes_from = (event, places) => event.composedPath().some(node => node instanceof Element && node.matches(places))
 
 function key_of(event, keys) {
@@ -58,11 +58,11 @@ function is_first_visit() {
     localStorage.setItem(VISITED, "yes")
     return first
   } catch {
-    return false  // storage is blocked: better no greeting than one at every visit
+    return false  // storage is blocked: no tour, rather than one at every visit
   }
 }
 
-// navigator.clipboard is missing on plain http from another host; browsers may also refuse it.
+// navigator.clipboard is missing on plain http except on localhost, and may be refused.
 const copy = text => Promise.resolve().then(() => navigator.clipboard.writeText(text)).then(() => true, () => copy_selected(text))
 
 function copy_selected(text) {
@@ -85,7 +85,7 @@ export function render({model, el}) {
     const key = key_of(event, model.keys)
     if (key === null) return
     event.preventDefault()
-    // A key held down repeats faster than pictures can follow.
+    // A key that is held down repeats faster than pictures are painted.
     if (event.repeat && event.timeStamp - last < REST_MS) return
     last = event.timeStamp
     model.send_msg({key})
@@ -99,9 +99,9 @@ export function render({model, el}) {
 """
 
 
-# Its name has no underscore in front: Bokeh tells the browser of no such model.
+# Bokeh does not register classes whose name starts with an underscore in the browser.
 class KeyListener(JSComponent):
-    """The part in the browser; it sends {key}, {first_visit} or {copied}, and any message to it asks for a copy."""
+    """The browser side: it sends {key}, {first_visit} or {copied}; any message to it copies the address."""
 
     keys = param.List(default=list(KEYS))
 
@@ -109,10 +109,16 @@ class KeyListener(JSComponent):
 
 
 class Keyboard:
-    """Listens on the page unless a field, slider or menu wants the key; takes no room.
+    """Listens on the page, except for keys that a field, slider or menu uses. The callbacks run without the session's lock.
 
-    `on_key(name)` is told of each key of `KEYS`, `on_first_visit()` once when this browser has not been here before,
-    `on_copied(success)` how `copy_link` ended; all three, like a button's click, without the session's lock.
+    Parameters
+    ----------
+    on_key
+        Called with each key of `KEYS`.
+    on_first_visit
+        Called if this browser opens the page for the first time.
+    on_copied
+        Called with the success of `copy_link`.
     """
 
     def __init__(
@@ -120,18 +126,18 @@ class Keyboard:
     ) -> None:
         self._on_key, self._on_first_visit, self._on_copied = on_key, on_first_visit, on_copied
         self._listener = KeyListener(width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._listener.on_msg(lambda event: self._hear(event.data))
+        self._listener.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> pn.viewable.Viewable:
-        """Nothing to see, but it must be on the page."""
+        """An invisible component that must be on the page."""
         return self._listener
 
     def copy_link(self) -> None:
-        """Copy the page's present address to the clipboard; browsers allow it only soon after a click or a key."""
+        """Copy the page's address to the clipboard; browsers allow it only soon after a click or a key."""
         self._listener._send_msg({})
 
-    def _hear(self, message: Any) -> None:
-        # It comes from a browser: whatever is not expected is not heard.
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
         match message:
             case {"key": str(key)} if key in KEYS:
                 self._on_key(key)
@@ -142,7 +148,7 @@ class Keyboard:
 
 
 def key_legend() -> str:
-    """HTML of all keys with what they do."""
-    rows = (f"<dt><kbd>{_CAPS.get(key, key)}</kbd></dt><dd style='margin:0'>{words}</dd>" for key, words in KEYS.items())
+    """HTML list of all keys."""
+    rows = (f"<dt><kbd>{_CAPS.get(key, key)}</kbd></dt><dd style='margin:0'>{action}</dd>" for key, action in KEYS.items())
     grid = "display:grid;grid-template-columns:max-content auto;gap:2px 12px;margin:0;font-size:13px"
     return f'<dl style="{grid}">{"".join(rows)}</dl>'

@@ -1,4 +1,4 @@
-"""A short tour of the page: a card at the bottom that leaves the page in use, so that each step can be tried at once."""
+"""A short tour of the page, in a card at the bottom; the page stays usable, so that each step can be tried."""
 
 from __future__ import annotations
 
@@ -21,38 +21,37 @@ class Step:
 STEPS = (
     Step(
         "One start, one pixel",
-        "Every pixel is the start of an orbit in a well with several ways out. The maps show what becomes of it: "
-        "through which exit it leaves, when it leaves, and how often it crosses y = 0 before.",
+        "Every pixel is the start of an orbit in a well with several exits. The maps show through which exit the orbit "
+        "escapes, when it escapes, and how often it crosses y = 0 before.",
     ),
     Step(
         "Change the energy",
-        "Drag the energy slider, or press play. Just above the escape energy the exits are narrow and many orbits stay "
-        "for ever; higher up the exits widen, the islands of bounded orbits shrink, and most orbits leave at once.",
+        "Drag the energy slider, or press Play. Just above the escape energy the exits are narrow and many orbits never "
+        "escape; at higher energies the exits widen, the islands of bounded orbits shrink, and most orbits escape at once.",
     ),
     Step(
         "Zoom into the fractal",
-        "Turn the wheel over any map, or drag a box: the region is computed anew. "
-        "Where the colours stay mixed however far you zoom, no measurement is sharp enough to foretell the exit.",
+        "Turn the wheel over any map, or drag a box: the region is computed again. "
+        "Where the colours stay mixed at every zoom, no measurement of the start is exact enough to predict the exit.",
     ),
     Step(
-        "Look at one orbit",
-        "Click a pixel. You get the path of its orbit, its SALI, which drops exponentially when the orbit is chaotic, "
-        "and R² = x² + y², which shows how far out it swings and when it leaves.",
+        "Follow one orbit",
+        "Click a pixel. You get the path of its orbit, its SALI, which drops exponentially if the orbit is chaotic, "
+        "and R² = x² + y², which shows how far out it goes and when it escapes.",
     ),
     Step(
         "Compare and count",
-        "Find the twin of an orbit, a start very close by that leaves elsewhere, and watch how the two part. "
-        "The numbers count all starts in view: the share of each exit, and how fast the well empties.",
+        "Find the twin of an orbit, a start very close by that escapes through another exit, and see how the two separate. "
+        "The statistics count all starts in view: the share of each exit, and how fast the well empties.",
     ),
     Step(
-        "See why",
-        "Switches above the maps mark the pixels that rounding decides, draw the curves that bound the basins, and tell where "
-        "orbits came from. Others measure how fractal the picture is, and how it all changes with the energy.",
+        "Understand the picture",
+        "Switches above the maps mark the pixels that depend on rounding, draw the curves that bound the basins, and show where "
+        "orbits come from. Others measure how fractal the basins are, and how everything changes with the energy.",
     ),
     Step(
-        "Take it along",
-        "The address of the page is a link to what you see; pictures and data can be saved. "
-        "The gallery leads to places worth a visit.",
+        "Share and download",
+        "The address of the page is a link to what you see; pictures and data can be saved. The gallery opens interesting views.",
     ),
 )
 
@@ -80,7 +79,7 @@ export function render({model, el}) {
     count.textContent = `${model.step + 1} of ${model.steps.length}`
     next.textContent = last ? "Done" : "Next"
     skip.hidden = last
-    // A disabled button would drop the focus of whoever has just pressed it.
+    // A button loses the focus when it is disabled.
     back.setAttribute("aria-disabled", String(model.step === 0))
   }
   const open = () => {
@@ -108,27 +107,29 @@ export function render({model, el}) {
 _STYLE = """
 section {
   position: fixed; bottom: 12px; left: 50%; transform: translateX(-50%); z-index: 1300; box-sizing: border-box;
-  width: min(560px, calc(100vw - 24px)); padding: 12px 16px 8px; border-radius: 8px; font-size: 15px; line-height: 1.45;
-  border: 1px solid color-mix(in srgb, currentColor 30%, transparent); box-shadow: 0 4px 24px rgb(0 0 0 / 35%);
-  color: var(--panel-on-surface-color, CanvasText); background: var(--panel-surface-color, Canvas);
+  width: min(560px, calc(100vw - 24px)); padding: 14px 18px 10px; border-radius: var(--ui-radius-l);
+  font-size: 15px; line-height: 1.45; border: 1px solid var(--ui-edge); box-shadow: var(--ui-shadow-l);
+  color: var(--ui-ink); background: var(--ui-surface);
 }
 [hidden] { display: none }
 section:focus { outline: none }
-:focus-visible { outline: 3px solid var(--panel-primary-color, Highlight); outline-offset: 1px }
+:focus-visible { outline: none; box-shadow: var(--ui-focus) }
 h2 { font-size: 17px; margin: 0 0 4px }
 p { margin: 0 0 8px }
 footer { display: flex; align-items: center; gap: 4px }
 span { flex: 1; font-size: 13px }
-button { font: inherit; color: inherit; background: none; border: 0; border-radius: 4px; padding: 8px 14px; cursor: pointer }
-button:hover { text-decoration: underline }
-button[aria-disabled=true] { opacity: .45; cursor: default; text-decoration: none }
-button:last-child { color: var(--panel-on-primary-color, HighlightText); background: var(--panel-primary-color, Highlight) }
+button {
+  font: inherit; color: inherit; background: none; border: 0; border-radius: var(--ui-radius); padding: 6px 14px; cursor: pointer;
+}
+button:hover { background: var(--ui-sunken) }
+button[aria-disabled=true] { opacity: .45; cursor: default }
+button:last-child { color: var(--ui-on-accent); background: var(--ui-accent) }
 """
 
 
-# Its name has no underscore in front: Bokeh tells the browser of no such model.
+# Bokeh does not register classes whose name starts with an underscore in the browser.
 class TourCard(JSComponent):
-    """The card in the browser; its messages are "back", "next" and "stop"."""
+    """The card in the browser; it sends "back", "next" and "stop"."""
 
     steps = param.List(default=[asdict(step) for step in STEPS])
     step = param.Integer(default=0, bounds=(0, len(STEPS) - 1))
@@ -138,14 +139,14 @@ class TourCard(JSComponent):
 
 
 class Tour:
-    """Shows `STEPS` one after another; `start` begins anew, Escape or the last button ends it."""
+    """Shows `STEPS` one after another; Escape or the last button ends the tour."""
 
     def __init__(self) -> None:
         self._card = TourCard(width=0, height=0, margin=0, styles={"position": "absolute"}, stylesheets=[_STYLE])
-        self._card.on_msg(lambda event: self._hear(event.data))
+        self._card.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> pn.viewable.Viewable:
-        """The card, which hangs at the bottom of the window wherever this stands on the page."""
+        """The card, at the bottom of the window wherever it stands on the page."""
         return self._card
 
     @property
@@ -155,7 +156,7 @@ class Tour:
 
     @property
     def step(self) -> Step:
-        """The step shown, or to be shown first."""
+        """The step that is shown."""
         return STEPS[self._card.step]
 
     def start(self) -> None:
@@ -167,17 +168,17 @@ class Tour:
         self._card.running = False
 
     def next(self) -> None:
-        """Go on; after the last step the tour is over."""
+        """Go to the next step; after the last one the tour ends."""
         if self.step is STEPS[-1]:
             self.stop()
         else:
             self._card.step += 1
 
     def back(self) -> None:
-        """Go back, from the first step to itself."""
+        """Go to the previous step, if there is one."""
         self._card.step = max(self._card.step - 1, 0)
 
-    def _hear(self, message: Any) -> None:
+    def _receive(self, message: Any) -> None:
         match message:
             case "back":
                 self.back()

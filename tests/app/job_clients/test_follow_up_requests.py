@@ -1,4 +1,4 @@
-"""Second looks follow whole maps, while they are wanted."""
+"""Follow-up analyses are requested for complete maps while they are wanted."""
 
 from __future__ import annotations
 
@@ -14,77 +14,79 @@ from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, Jobs, MapSpec, Plane, Regularity, RegularityMap, RegularityRequest, compute_map
 
 
-class Desk:
-    """A session with one second look: the judging of bounded orbits."""
+class Session:
+    """A session with one follow-up analysis, regularity."""
 
     def __init__(self) -> None:
         self.state, self.jobs = ViewState(judge=True), Jobs()
-        self.seen: list[tuple[EscapeMap, RegularityMap]] = []
+        self.results: list[tuple[EscapeMap, RegularityMap]] = []
         self.problems: list[str] = []
         self.changed = threading.Condition()
-        self.ask: Callable[[EscapeMap], Any] = lambda frame: RegularityRequest(frame.spec)
-        look = FollowUp(lambda frame: self.ask(frame) if self.state.judge else None, self.show, ("judge",))
-        self.looks = FollowUpRequests(self.state, self.jobs, [look], self.problems.append, lambda function: function)
+        self.request: Callable[[EscapeMap], Any] = lambda frame: RegularityRequest(frame.spec)
+        follow_up = FollowUp(lambda frame: self.request(frame) if self.state.judge else None, self.show, ("judge",))
+        self.requests = FollowUpRequests(self.state, self.jobs, [follow_up], self.problems.append, lambda function: function)
 
     def show(self, frame: EscapeMap, answer: RegularityMap) -> None:
         with self.changed:
-            self.seen.append((frame, answer))
+            self.results.append((frame, answer))
             self.changed.notify_all()
 
-    def wait_for_the_judgement_of(self, frame: EscapeMap) -> RegularityMap:
+    def wait_for_result(self, frame: EscapeMap) -> RegularityMap:
         with self.changed:
-            assert self.changed.wait_for(lambda: bool(self.seen) and self.seen[-1][0] is frame and self.seen[-1][1].complete, 60)
-        return self.seen[-1][1]
+            assert self.changed.wait_for(
+                lambda: bool(self.results) and self.results[-1][0] is frame and self.results[-1][1].complete, 60
+            )
+        return self.results[-1][1]
 
 
 @pytest.fixture
-def desk() -> Iterator[Desk]:
-    desk = Desk()
-    yield desk
-    desk.looks.follow(None)
+def session() -> Iterator[Session]:
+    session = Session()
+    yield session
+    session.requests.follow(None)
 
 
 def bounded_map(energy: float, t_max: float = 100.0) -> EscapeMap:
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, energy, (64, 64), t_max=t_max))
 
 
-def test_a_whole_map_is_looked_at(desk: Desk) -> None:
+def test_a_complete_map_is_analysed(session: Session) -> None:
     frame = bounded_map(0.2)
-    desk.looks.follow(frame)
-    regularity = desk.wait_for_the_judgement_of(frame)
+    session.requests.follow(frame)
+    regularity = session.wait_for_result(frame)
     assert np.any(frame.fate == Fate.BOUNDED)
     assert np.all(regularity.character[frame.fate == Fate.BOUNDED] != Regularity.NOT_JUDGED)
 
 
-def test_each_new_map_is_looked_at(desk: Desk) -> None:
+def test_each_new_map_is_analysed(session: Session) -> None:
     for frame in (bounded_map(0.22), bounded_map(0.21)):
-        desk.looks.follow(frame)
-        desk.wait_for_the_judgement_of(frame)
+        session.requests.follow(frame)
+        session.wait_for_result(frame)
 
 
-def test_nothing_is_asked_while_it_is_not_wanted(desk: Desk) -> None:
-    desk.state.judge = False
-    desk.looks.follow(bounded_map(0.2))
-    assert desk.jobs.in_flight == 0
+def test_nothing_is_requested_while_it_is_not_wanted(session: Session) -> None:
+    session.state.judge = False
+    session.requests.follow(bounded_map(0.2))
+    assert session.jobs.in_flight == 0
 
 
-def test_a_look_begins_when_it_becomes_wanted(desk: Desk) -> None:
-    desk.state.judge = False
+def test_an_analysis_is_requested_when_it_becomes_wanted(session: Session) -> None:
+    session.state.judge = False
     frame = bounded_map(0.2)
-    desk.looks.follow(frame)
-    desk.state.judge = True
-    desk.wait_for_the_judgement_of(frame)
+    session.requests.follow(frame)
+    session.state.judge = True
+    session.wait_for_result(frame)
 
 
-def test_work_stops_once_it_is_not_wanted(desk: Desk) -> None:
-    desk.looks.follow(bounded_map(0.12, t_max=1e5))
-    desk.state.judge = False
-    assert desk.jobs.in_flight == 0
+def test_an_analysis_is_cancelled_when_it_is_no_longer_wanted(session: Session) -> None:
+    session.requests.follow(bounded_map(0.12, t_max=1e5))
+    session.state.judge = False
+    assert session.jobs.in_flight == 0
 
 
-def test_an_answer_that_comes_after_the_map_has_gone_is_not_shown(desk: Desk) -> None:
+def test_a_late_result_is_not_shown(session: Session) -> None:
     held: list[Callable[[], None]] = []
-    look = FollowUp(lambda frame: RegularityRequest(frame.spec), desk.show)
+    follow_up = FollowUp(lambda frame: RegularityRequest(frame.spec), session.show)
     arrived = threading.Event()
 
     def lock(function: Callable[..., None]) -> Callable[..., None]:
@@ -94,22 +96,22 @@ def test_an_answer_that_comes_after_the_map_has_gone_is_not_shown(desk: Desk) ->
 
         return hold
 
-    looks = FollowUpRequests(desk.state, desk.jobs, [look], desk.problems.append, lock)
-    looks.follow(bounded_map(0.2))
+    requests = FollowUpRequests(session.state, session.jobs, [follow_up], session.problems.append, lock)
+    requests.follow(bounded_map(0.2))
     assert arrived.wait(60)
-    looks.follow(None)
+    requests.follow(None)
     for call in held:
         call()
-    assert desk.seen == []
+    assert session.results == []
 
 
-def test_a_problem_is_told_in_words(desk: Desk) -> None:
+def test_an_error_gives_a_message(session: Session) -> None:
     frame = bounded_map(0.2)
     bad = MapSpec(CASES["I"], Plane.X_PX, 50.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))  # type: ignore[arg-type]
-    desk.ask = lambda frame: RegularityRequest(bad)
-    desk.looks.follow(frame)
+    session.request = lambda frame: RegularityRequest(bad)
+    session.requests.follow(frame)
     for _ in range(200):
-        if desk.problems:
+        if session.problems:
             break
         threading.Event().wait(0.1)
-    assert "energy=50.0" in desk.problems[0]
+    assert "energy=50.0" in session.problems[0]

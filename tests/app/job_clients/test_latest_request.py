@@ -1,4 +1,4 @@
-"""One request at a time: only the answer to the last one is heard."""
+"""One request at a time: only results of the latest one are delivered."""
 
 from __future__ import annotations
 
@@ -15,66 +15,66 @@ from engine import CASES, Jobs, Orbit, OrbitRequest
 SPEC = OrbitRequest(CASES["I"], (0.1, 0.0, 0.05, 0.5), 50.0)
 
 
-class Desk:
+class Client:
     def __init__(self) -> None:
         self.jobs = Jobs()
-        self.answers: list[Any] = []
+        self.results: list[Any] = []
         self.problems: list[str] = []
-        self.heard = threading.Event()
-        self.request = LatestRequest(self.jobs, self.hear, self.fail, lambda function: function)
+        self.called = threading.Event()
+        self.request = LatestRequest(self.jobs, self.show, self.fail, lambda function: function)
 
-    def hear(self, answer: Any) -> None:
-        self.answers.append(answer)
-        self.heard.set()
+    def show(self, result: Any) -> None:
+        self.results.append(result)
+        self.called.set()
 
     def fail(self, sentence: str) -> None:
         self.problems.append(sentence)
-        self.heard.set()
+        self.called.set()
 
     def wait(self) -> None:
-        assert self.heard.wait(30)
-        self.heard.clear()
+        assert self.called.wait(30)
+        self.called.clear()
 
 
 @pytest.fixture
-def desk() -> Iterator[Desk]:
-    desk = Desk()
-    yield desk
-    desk.request.cancel()
+def client() -> Iterator[Client]:
+    client = Client()
+    yield client
+    client.request.cancel()
 
 
-def test_the_answer_is_heard(desk: Desk) -> None:
-    desk.request.ask(SPEC)
-    desk.wait()
-    assert isinstance(desk.answers[0], Orbit)
+def test_the_result_is_delivered(client: Client) -> None:
+    client.request.submit(SPEC)
+    client.wait()
+    assert isinstance(client.results[0], Orbit)
 
 
-def test_the_same_question_is_not_asked_twice(desk: Desk) -> None:
-    desk.request.ask(SPEC)
-    desk.wait()
-    desk.request.ask(SPEC)
-    assert len(desk.answers) == 1
+def test_the_same_request_is_not_submitted_twice(client: Client) -> None:
+    client.request.submit(SPEC)
+    client.wait()
+    client.request.submit(SPEC)
+    assert len(client.results) == 1
 
 
-def test_a_new_question_stops_the_last(desk: Desk) -> None:
-    desk.request.ask(replace(SPEC, potential=CASES["III"], state=(0.0, 0.0, 0.1, 0.5), t_max=1e7))
-    desk.request.ask(SPEC)
-    assert desk.jobs.in_flight == 1
-    desk.wait()
-    assert desk.answers[0].t[-1] <= 50.0
+def test_a_new_request_cancels_the_last(client: Client) -> None:
+    client.request.submit(replace(SPEC, potential=CASES["III"], state=(0.0, 0.0, 0.1, 0.5), t_max=1e7))
+    client.request.submit(SPEC)
+    assert client.jobs.in_flight == 1
+    client.wait()
+    assert client.results[0].t[-1] <= 50.0
 
 
-def test_nothing_is_heard_once_it_is_cancelled(desk: Desk) -> None:
-    desk.request.ask(replace(SPEC, potential=CASES["III"], state=(0.0, 0.0, 0.1, 0.5), t_max=1e7))
-    desk.request.cancel()
-    assert desk.jobs.in_flight == 0
-    assert not desk.heard.wait(0.5)
+def test_nothing_is_delivered_after_a_cancel(client: Client) -> None:
+    client.request.submit(replace(SPEC, potential=CASES["III"], state=(0.0, 0.0, 0.1, 0.5), t_max=1e7))
+    client.request.cancel()
+    assert client.jobs.in_flight == 0
+    assert not client.called.wait(0.5)
 
 
-def test_a_problem_is_told_in_words_and_may_be_asked_again(desk: Desk) -> None:
+def test_an_error_gives_a_message_and_allows_the_same_request_again(client: Client) -> None:
     bad = replace(SPEC, t_max=-1.0)
     for _ in range(2):
-        desk.request.ask(bad)
-        desk.wait()
-    assert len(desk.problems) == 2
-    assert "t_max=-1.0" in desk.problems[0]
+        client.request.submit(bad)
+        client.wait()
+    assert len(client.problems) == 2
+    assert "t_max=-1.0" in client.problems[0]

@@ -1,4 +1,4 @@
-"""Quick looks while others wait: none, and the latest wanted afterwards."""
+"""Under overload previews wait, and the latest energy is requested afterwards."""
 
 from __future__ import annotations
 
@@ -10,41 +10,41 @@ from engine import Jobs
 from tests.app.job_clients.test_map_requests import Recorder
 
 
-class Crowd:
-    """Others who wait, and what is put off till later."""
+class Overload:
+    """An overload that the test ends, and delayed calls that it runs."""
 
     def __init__(self) -> None:
-        self.here = True
-        self.put_off: list[Callable[[], None]] = []
+        self.active = True
+        self.delayed: list[Callable[[], None]] = []
 
-    def patience(self) -> LoadPolicy:
-        return LoadPolicy(lambda: self.here, self.put_off.append)
+    def policy(self) -> LoadPolicy:
+        return LoadPolicy(lambda: self.active, self.delayed.append)
 
-    def time_passes(self) -> None:
-        [call] = self.put_off
-        self.put_off.clear()
+    def run_delayed(self) -> None:
+        [call] = self.delayed
+        self.delayed.clear()
         call()
 
 
-def test_in_a_crowd_the_latest_wanted_comes_when_it_has_gone() -> None:
-    crowd, recorder = Crowd(), Recorder()
+def test_after_an_overload_the_latest_energy_is_requested() -> None:
+    overload, recorder = Overload(), Recorder()
     state = ViewState(case="I", energy=0.3)
-    previews = PreviewRequests(state, Jobs(), recorder.preview_arrived, lambda call: call, crowd.patience())
+    previews = PreviewRequests(state, Jobs(), recorder.preview_arrived, lambda call: call, overload.policy())
     for energy in (0.31, 0.32, 0.33):
         previews.request(energy)
-    crowd.time_passes()
+    overload.run_delayed()
     assert not previews.under_way
-    crowd.here = False
-    crowd.time_passes()
-    recorder.wait_for(lambda: bool(recorder.told))
-    assert [frame.spec.energy for _, frame in recorder.told] == [0.33]
+    overload.active = False
+    overload.run_delayed()
+    recorder.wait_for(lambda: bool(recorder.calls))
+    assert [frame.spec.energy for _, frame in recorder.calls] == [0.33]
 
 
-def test_what_is_given_up_does_not_come_later() -> None:
-    crowd, recorder = Crowd(), Recorder()
-    previews = PreviewRequests(ViewState(case="I"), Jobs(), recorder.preview_arrived, lambda call: call, crowd.patience())
+def test_a_cancelled_preview_is_not_requested_later() -> None:
+    overload, recorder = Overload(), Recorder()
+    previews = PreviewRequests(ViewState(case="I"), Jobs(), recorder.preview_arrived, lambda call: call, overload.policy())
     previews.request(0.31)
     previews.cancel()
-    crowd.here = False
-    crowd.time_passes()
+    overload.active = False
+    overload.run_delayed()
     assert not previews.under_way

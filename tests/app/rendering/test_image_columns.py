@@ -1,4 +1,4 @@
-"""Frames become images: the right code for each pixel, the right way up."""
+"""Images of frames: pixel codes and orientation."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
 
 
 @pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (10, "3–10"), (11, "> 10")])
-def test_escaped_pixels_are_classed_by_crossings(escape_map: EscapeMap, crossings: int, label: str) -> None:
+def test_escaped_pixels_are_classified_by_crossings(escape_map: EscapeMap, crossings: int, label: str) -> None:
     where = (escape_map.fate > 0) & (escape_map.crossings == crossings)
     assert where.any()
     codes = map_columns(escape_map)["crossing_class"][0][where]
@@ -45,7 +45,7 @@ def test_escaped_pixels_are_classed_by_crossings(escape_map: EscapeMap, crossing
     assert {labels[code] for code in codes} == {label}
 
 
-def test_images_are_small_types_with_row_0_lowest(escape_map: EscapeMap) -> None:
+def test_images_have_small_types_and_row_0_lowest(escape_map: EscapeMap) -> None:
     columns = map_columns(escape_map)
     assert [columns[name][0].dtype for name in ("fate", "crossing_class", "escape_time", "crossings")] == [
         np.uint8,
@@ -57,7 +57,7 @@ def test_images_are_small_types_with_row_0_lowest(escape_map: EscapeMap) -> None
     np.testing.assert_array_equal(columns["escape_time"][0], escape_map.escape_time.astype(np.float32))
 
 
-def test_a_bounded_pixel_knows_its_certificate(escape_map: EscapeMap) -> None:
+def test_a_bounded_pixel_has_a_code_for_its_certificate(escape_map: EscapeMap) -> None:
     codes = map_columns(escape_map)["crossing_class"][0]
     bounded = escape_map.fate == Fate.BOUNDED
     assert bounded.any()
@@ -79,7 +79,7 @@ def character_colours(columns: dict) -> np.ndarray:
     return np.array(PAPER.character_colours)[columns["character"][0]]
 
 
-def test_regular_and_chaotic_orbits_have_colours_of_their_own() -> None:
+def test_regular_and_chaotic_orbits_have_different_colours() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
     regularity = compute_regularity(whole)
     colours = character_colours(character_column(whole, regularity))
@@ -88,17 +88,17 @@ def test_regular_and_chaotic_orbits_have_colours_of_their_own() -> None:
     assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
 
 
-def test_what_is_certified_as_a_torus_is_shown_as_regular_at_once() -> None:
+def test_certified_tori_are_regular() -> None:
     whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.28, (41, 41), t_max=1e4))
     colours = character_colours(map_columns(whole))
     certified = whole.certificate == Certificate.QUASI_PERIODIC
     assert certified.any()
     assert set(colours[certified]) == {character_colour(Regularity.REGULAR)}
     assert set(colours[whole.certificate == Certificate.ENCLOSED]) == {character_colour(Regularity.NOT_JUDGED)}
-    assert set(colours[whole.fate >= 1]) == {character_colour(Regularity.NO_QUESTION)}
+    assert set(colours[whole.fate >= 1]) == {character_colour(Regularity.NOT_APPLICABLE)}
 
 
-def test_a_coarse_frame_fills_the_picture() -> None:
+def test_a_coarse_frame_fills_the_window() -> None:
     frames: list[EscapeMap] = []
     compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 120), t_max=50.0), on_frame=frames.append)
     coarse = frames[0]
@@ -111,7 +111,7 @@ def test_a_coarse_frame_fills_the_picture() -> None:
     assert columns["y"][0] + columns["dh"][0] >= window.ordinate_high
 
 
-def test_the_time_scale_ends_at_a_round_number_above_nearly_all_times(escape_map: EscapeMap) -> None:
+def test_the_time_scale_ends_at_a_round_number_above_99_percent_of_the_times(escape_map: EscapeMap) -> None:
     high = longest_typical_time(escape_map)
     assert high in {step * 10.0**k for step in (1.0, 2.0, 5.0) for k in range(1, 6)}
     assert np.mean(escape_map.escape_time[escape_map.fate > 0] <= high) >= 0.99

@@ -1,16 +1,21 @@
-"""Pictures to take along: the right colour in the right place, and words that can be read."""
+"""Picture files of maps: colours, positions and texts."""
 
 from __future__ import annotations
 
+from io import BytesIO
+from typing import Any
+
 import numpy as np
 import pytest
-from PIL import Image, ImageColor, ImageFont
+from matplotlib import ft2font
+from matplotlib.font_manager import FontProperties, findfont
+from PIL import Image, ImageColor
 
-from app.rendering.figure_axes import label_axis, typed
+from app.rendering.figure_axes import label_axis, save_figure
 from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import draw_picture, provenance_line
+from app.rendering.map_figure import draw_map_figure, provenance_line
 from app.rendering.map_images import TITLES, picture_pixels
-from app.rendering.palette import DOUBT, LIGHT, PALETTES, PAPER, Palette
+from app.rendering.palette import DOUBT, PALETTES, PAPER, Palette
 from engine import (
     CASES,
     EscapeMap,
@@ -30,12 +35,21 @@ SIDE = 240
 
 @pytest.fixture(scope="module")
 def escape_map() -> EscapeMap:
-    """No two of its quarters are alike."""
+    """A map whose quarters all differ."""
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.18, (40, 30), window=(-1.0, 1.4, -0.8, 0.4), t_max=200.0))
+
+
+def draw(frame: EscapeMap, picture: str, palette: Palette, side: int, **options: Any) -> Image.Image:
+    data = save_figure(draw_map_figure(frame, [picture], palette, side, **options), "png", {}, crop=True)
+    return Image.open(BytesIO(data)).convert("RGB")
 
 
 def rgba(colour: str) -> tuple[int, ...]:
     return ImageColor.getcolor(colour, "RGBA")
+
+
+def number(label: str) -> float:
+    return float(label.replace("−", "-"))
 
 
 def on_white(colour: str) -> tuple[int, ...]:
@@ -44,26 +58,22 @@ def on_white(colour: str) -> tuple[int, ...]:
     return page.getpixel((0, 0))[:3]
 
 
-def inner_edges(image: Image.Image, side: int) -> list[int]:
-    """Left, right, top and bottom of what the axis frame encloses: between the two furthest of its long lines."""
-    ink = np.all(np.asarray(image) == ImageColor.getrgb(LIGHT.text), axis=-1)
-    edges = []
-    for axis in (0, 1):
-        lines = np.flatnonzero(ink.sum(axis=axis) >= side)
-        before = int(np.argmax(np.diff(lines)))
-        edges += [int(lines[before]) + 1, int(lines[before + 1])]
-    return edges
+def corner(image: Image.Image, side: int) -> tuple[int, int]:
+    """Column and row of the upper left pixel of the first map: the lines of its frame are `side` pixels apart."""
+    dark = np.asarray(image.convert("L")) < 128
+    lines = [np.flatnonzero(dark.sum(axis=axis) >= 0.98 * side) for axis in (0, 1)]
+    column, row = (next(int(line) for line in found if line + side in found and line + 1 not in found) for found in lines)
+    return column, row
 
 
-def inner_square(image: Image.Image, side: int) -> np.ndarray:
-    """(side, side, 3) the map."""
-    left, right, top, bottom = inner_edges(image, side)
-    assert (right - left, bottom - top) == (side, side)
-    return np.asarray(image)[top:bottom, left:right]
+def map_pixels(image: Image.Image, side: int) -> np.ndarray:
+    """(side, side, 3) pixels of the first map."""
+    column, row = corner(image, side)
+    return np.asarray(image)[row : row + side, column : column + side]
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
-def test_every_pixel_has_the_colour_of_its_fate_with_row_0_at_the_bottom(escape_map: EscapeMap, palette: Palette) -> None:
+def test_pixels_have_the_colour_of_their_fate_with_row_0_at_the_bottom(escape_map: EscapeMap, palette: Palette) -> None:
     pixels = picture_pixels(escape_map, "basins", palette)
     assert (pixels.shape, pixels.dtype) == ((30, 40, 4), np.uint8)
     for channel in (1, 2, 3):
@@ -74,7 +84,7 @@ def test_every_pixel_has_the_colour_of_its_fate_with_row_0_at_the_bottom(escape_
         assert np.all(pixels[escape_map.fate[::-1] == fate] == rgba(palette.outcomes[fate].colour))
 
 
-def test_slow_escapes_have_the_later_colours_and_the_rest_those_of_their_outcome(escape_map: EscapeMap) -> None:
+def test_slow_escapes_have_later_colours_and_others_that_of_their_outcome(escape_map: EscapeMap) -> None:
     pixels = picture_pixels(escape_map, "times", PAPER)[::-1]
     escaped = escape_map.fate > 0
     scale = [rgba(colour) for colour in PAPER.escape_time]
@@ -84,7 +94,7 @@ def test_slow_escapes_have_the_later_colours_and_the_rest_those_of_their_outcome
     assert np.all(pixels[escape_map.fate == Fate.BOUNDED] == rgba(PAPER.bounded))
 
 
-def test_orbits_that_have_been_judged_show_what_they_are() -> None:
+def test_classified_orbits_have_the_colour_of_their_class() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
     regularity = compute_regularity(whole)
     pixels = picture_pixels(whole, "characters", PAPER, MapAnalyses(regularity=regularity))[::-1]
@@ -94,68 +104,71 @@ def test_orbits_that_have_been_judged_show_what_they_are() -> None:
         assert np.all(pixels[where] == rgba(colour))
 
 
-def test_a_coarse_frame_has_a_pixel_for_each_start_all_the_same() -> None:
+def test_a_coarse_frame_has_a_pixel_for_each_start() -> None:
     frames: list[EscapeMap] = []
     compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 90), t_max=50.0), on_frame=frames.append)
     assert frames[0].stride > 1
     pixels = picture_pixels(frames[0], "basins", PAPER)
     assert pixels.shape == (90, 120, 4)
     assert not np.any(np.all(pixels == rgba(PAPER.outcomes[Fate.NOT_COMPUTED].colour), axis=-1))
-    draw_picture(frames[0], "basins", PAPER, SIDE)
+    draw(frames[0], "basins", PAPER, SIDE)
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize("picture", TITLES)
-def test_the_map_is_stretched_into_its_frame_on_white(escape_map: EscapeMap, picture: str, palette: Palette) -> None:
-    image = draw_picture(escape_map, picture, palette, SIDE)
-    assert image.mode == "RGB"
-    square = inner_square(image, SIDE)
+def test_the_map_fills_its_frame_on_white(escape_map: EscapeMap, picture: str, palette: Palette) -> None:
+    image = draw(escape_map, picture, palette, SIDE)
+    square = map_pixels(image, SIDE)
     bare = picture_pixels(escape_map, picture, palette).astype(float)
     expected = 255 + (bare[..., :3] - 255) * bare[..., 3:] / 255
-    # Each start is a block of 6 by 8 pixels; the limiting curve runs over a few of them.
+    # Each start is a block of 6 by 8 pixels; the limiting curve covers a few of them.
     centres = square[4::8, 3::6]
     assert np.mean(np.all(np.abs(centres - expected) <= 1, axis=-1)) > 0.9
     assert np.all(np.asarray(image)[0] == 255)
 
 
-def test_the_pictures_of_a_map_have_the_same_width_and_their_maps_the_same_place(escape_map: EscapeMap) -> None:
-    images = [draw_picture(escape_map, picture, PAPER, SIDE) for picture in TITLES]
-    assert len({image.width for image in images}) == 1
-    assert len({tuple(inner_edges(image, SIDE)) for image in images}) == 1
+def test_pictures_side_by_side_have_their_maps_at_equal_distances_in_the_same_rows(escape_map: EscapeMap) -> None:
+    figure = draw_map_figure(escape_map, list(TITLES), PAPER, SIDE)
+    panels = [axes for axes in figure.axes if axes.get_title(loc="left") in TITLES.values()]
+    boxes = np.array([axes.get_window_extent().extents for axes in panels])
+    np.testing.assert_allclose(boxes[:, 2:] - boxes[:, :2], SIDE, rtol=1e-12)
+    np.testing.assert_allclose(boxes[:, 0], np.round(boxes[:, 0]), atol=1e-9)
+    np.testing.assert_allclose(np.diff(boxes[:, 0]), boxes[1, 0] - boxes[0, 0], rtol=1e-12)
+    assert np.all(boxes[:, 1] == 0.0)
 
 
 @pytest.mark.parametrize("side", [99, 4001, 0, float("nan")])
-def test_a_side_out_of_range_is_named_with_what_is_legal(escape_map: EscapeMap, side: int) -> None:
+def test_an_invalid_side_is_rejected(escape_map: EscapeMap, side: int) -> None:
     with pytest.raises(ValueError, match=f"side={side}: must be from 100 to 4000"):
-        draw_picture(escape_map, "basins", PAPER, side)
+        draw_map_figure(escape_map, ["basins"], PAPER, side)
 
 
-def test_a_picture_that_nobody_knows_is_named_with_those_there_are(escape_map: EscapeMap) -> None:
+def test_an_unknown_picture_is_rejected(escape_map: EscapeMap) -> None:
     with pytest.raises(ValueError, match=f"picture='orbits': must be one of {', '.join(TITLES)}"):
         picture_pixels(escape_map, "orbits", PAPER)
 
 
 def test_the_smallest_and_a_large_picture_can_be_drawn(escape_map: EscapeMap) -> None:
     for side in (100, 1500):
-        inner_square(draw_picture(escape_map, "times", PAPER, side, starts=[(0.0, 0.0)]), side)
+        map_pixels(draw(escape_map, "times", PAPER, side, starts=[(0.0, 0.0)]), side)
 
 
-def test_a_start_is_marked_where_it_is_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> None:
+def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> None:
     starts = [(5.0, 5.0), (0.8, 0.1)]
-    image = draw_picture(escape_map, "characters", PAPER, SIDE, starts=starts)
-    plain = draw_picture(escape_map, "characters", PAPER, SIDE)
-    rows, columns = np.nonzero(np.any(inner_square(image, SIDE) != inner_square(plain, SIDE), axis=-1))
+    image = draw(escape_map, "characters", PAPER, SIDE, starts=starts)
+    plain = draw(escape_map, "characters", PAPER, SIDE)
+    rows, columns = np.nonzero(np.any(map_pixels(image, SIDE) != map_pixels(plain, SIDE), axis=-1))
     assert abs(columns.min() - 0.75 * SIDE) < 15
     assert abs(rows.max() - 0.25 * SIDE) < 15
-    # The first start is outside the window, and keeps its number and its colour.
+    # The first start is outside the window and keeps its colour.
     row, column = round(0.25 * SIDE), round(0.75 * SIDE)
-    near = inner_square(image, SIDE)[row - 2 : row + 2, column - 2 : column + 2]
+    near = map_pixels(image, SIDE)[row - 2 : row + 2, column - 2 : column + 2]
     assert np.any(np.all(near == on_white(PAPER.orbits[1]), axis=-1))
 
 
-def test_lyapunov_orbits_cross_the_picture_of_the_plane_in_their_channels_colours() -> None:
+def test_lyapunov_orbits_have_the_colours_of_their_channels() -> None:
     whole = compute_map(MapSpec(CASES["I"], Plane.X_Y, 0.2, (30, 30), t_max=100.0))
-    square = inner_square(draw_picture(whole, "times", PAPER, 600), 600)
+    square = map_pixels(draw(whole, "times", PAPER, 600), 600)
     for channel in (1, 2):
         assert np.sum(np.all(square == on_white(PAPER.channels[channel - 1]), axis=-1)) > 200
 
@@ -163,29 +176,31 @@ def test_lyapunov_orbits_cross_the_picture_of_the_plane_in_their_channels_colour
 @pytest.mark.parametrize(
     ("low", "high", "labels"),
     [
-        (-0.76, 0.76, ["-0.5", "0.0", "0.5"]),
+        (-0.76, 0.76, ["−0.5", "0.0", "0.5"]),
         (0.0, 1.0, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
         (0.31, 0.3113, ["0.3100", "0.3102", "0.3104", "0.3106", "0.3108", "0.3110", "0.3112"]),
-        (-100.0, 100.0, ["-100", "-50", "0", "50", "100"]),
+        (-100.0, 100.0, ["−100", "−50", "0", "50", "100"]),
     ],
 )
 def test_ticks_are_at_round_numbers(low: float, high: float, labels: list[str]) -> None:
     name, ticks = label_axis("x", low, high)
     assert (name, [label for _, label in ticks]) == ("x", labels)
-    np.testing.assert_allclose([low + place * (high - low) for place, _ in ticks], [float(label) for label in labels], atol=1e-12)
+    np.testing.assert_allclose(
+        [low + place * (high - low) for place, _ in ticks], [number(label) for label in labels], atol=1e-12
+    )
 
 
 @pytest.mark.parametrize("centre", [0.3541234567, -0.3541234567, 0.0])
 @pytest.mark.parametrize("width", [1e-5, 1e-10, 1e-12])
-def test_ticks_of_a_deep_zoom_are_told_apart(centre: float, width: float) -> None:
+def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     low, high = centre - width / 2, centre + width / 2
     name, ticks = label_axis("x", low, high)
     labels = [label for _, label in ticks]
     assert 3 <= len(labels) == len(set(labels))
     assert max(map(len, labels)) <= 3
     offset, unit = name.removeprefix("(").split(" / ")
-    middle = -float(offset.removeprefix("x").removesuffix(")").replace(" ", "") or "0")
-    values = [middle + float(label) * float(unit) for label in labels]
+    middle = -number(offset.removeprefix("x").removesuffix(")").replace(" ", "") or "0")
+    values = [middle + number(label) * float(unit) for label in labels]
     np.testing.assert_allclose(values, [low + place * (high - low) for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
 
 
@@ -193,7 +208,7 @@ def test_a_deep_zoom_next_to_an_exit_can_be_drawn() -> None:
     spec = MapSpec(CASES["I"], Plane.X_Y, 0.2, (20, 20), window=(0.3541234567, 0.3541234568, 0.1, 0.1 + 1e-10), t_max=100.0)
     whole = compute_map(spec)
     for picture in TITLES:
-        inner_square(draw_picture(whole, picture, PAPER, SIDE, starts=[(0.35412345675, 0.1 + 5e-11)]), SIDE)
+        draw(whole, picture, PAPER, SIDE, starts=[(0.35412345675, 0.1 + 5e-11)])
 
 
 def test_a_map_over_energies_has_its_ordinate_and_no_single_energy() -> None:
@@ -201,32 +216,30 @@ def test_a_map_over_energies_has_its_ordinate_and_no_single_energy() -> None:
     line = provenance_line(whole)
     assert "h = " not in line
     assert "h from 0.16666666666666666 to 0.4" in line
-    draw_picture(whole, "crossings", PAPER, SIDE)
+    draw(whole, "crossings", PAPER, SIDE)
 
 
-def test_a_map_of_which_nothing_escapes_can_be_drawn() -> None:
+def test_a_map_without_escapes_can_be_drawn() -> None:
     whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.1, (9, 9), t_max=50.0))
     for picture in TITLES:
-        draw_picture(whole, picture, PAPER, 100)
+        draw(whole, picture, PAPER, 100)
 
 
-def test_the_font_has_every_character_of_the_words(escape_map: EscapeMap) -> None:
+def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> None:
     entries = [*PAPER.outcomes.values(), *PAPER.crossing_entries, *PAPER.character_entries, *PAPER.channel_entries(4)]
-    words = [*(entry.label for entry in entries), *TITLES.values(), provenance_line(escape_map), "(x + 0.12) / 1e-11"]
-    font = ImageFont.load_default(20)
-    lacking = font.getmask("\U000f0000")
-    for character in set("".join(map(typed, words))) - {" "}:
-        assert bytes(font.getmask(character)) != bytes(lacking), character
+    texts = [*(entry.label for entry in entries), *TITLES.values(), provenance_line(escape_map), "(x − 0.12) / 1e-11", "R²"]
+    font = ft2font.FT2Font(findfont(FontProperties(family="STIXGeneral")))
+    assert [character for character in set("".join(texts)) if not font.get_char_index(ord(character))] == []
 
 
-def test_a_long_legend_wraps_within_the_page(escape_map: EscapeMap) -> None:
-    small, large = (draw_picture(escape_map, "crossings", PAPER, side) for side in (100, 600))
-    feet = [image.height - inner_edges(image, side)[3] for image, side in ((small, 100), (large, 600))]
-    assert feet[0] > feet[1]
+def test_a_long_legend_wraps(escape_map: EscapeMap) -> None:
+    small, large = (draw(escape_map, "crossings", PAPER, side) for side in (100, 600))
+    below = [image.height - corner(image, side)[1] - side for image, side in ((small, 100), (large, 600))]
+    assert below[0] > below[1]
     assert np.all(np.asarray(small)[:, -1] == 255)
 
 
-def test_doubtful_pixels_are_marked_where_that_was_found() -> None:
+def test_doubtful_pixels_are_marked() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     trust = compute_trust(whole)
     pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses(trust=trust))[::-1]
@@ -236,8 +249,8 @@ def test_doubtful_pixels_are_marked_where_that_was_found() -> None:
 
 
 @pytest.mark.parametrize(("picture", "drawn_over"), [("basins", True), ("times", False)])
-def test_manifolds_are_printed_over_the_basins_alone(picture: str, drawn_over: bool) -> None:
+def test_manifolds_are_drawn_over_the_basins_only(picture: str, drawn_over: bool) -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
     found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, 1))
-    plain, printed = (draw_picture(whole, picture, PAPER, SIDE, findings=findings) for findings in (MapAnalyses(), found))
+    plain, printed = (draw(whole, picture, PAPER, SIDE, analyses=analyses) for analyses in (MapAnalyses(), found))
     assert (plain.tobytes() != printed.tobytes()) is drawn_over

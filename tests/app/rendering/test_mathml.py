@@ -1,4 +1,4 @@
-"""The formulas on the page are those of the potential: each is read back from its MathML and compared."""
+"""MathML formulas, parsed back and compared with the potential."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 import sympy
 
-from app.rendering.mathml import equations
-from engine import CASES, POTENTIALS, Potential
+from app.rendering.mathml import equations, potential_formula
+from engine import CASES, POTENTIALS, Potential, parse_formula
 
 X, Y = sympy.symbols("x y")
 
 
 def rows(potential: Potential) -> dict[str, list[ElementTree.Element]]:
-    """The formulas, by the words beside them."""
+    """Formulas by their labels."""
     page = ElementTree.fromstring(equations(potential))
     return {str(name.text): list(row) for name, row in zip(page.iter("dt"), page.iter("dd"), strict=True)}
 
 
 def read(nodes: list[ElementTree.Element]) -> sympy.Expr:
-    """A sum of products in MathML, as an expression."""
+    """Parse a sum of products."""
     total, factors = sympy.Integer(0), [sympy.Integer(1)]
     for node in nodes:
         if node.tag == "mo":
@@ -53,18 +53,18 @@ def potential_of(potential: Potential) -> sympy.Expr:
     return sum(sympy.nsimplify(c, rational=True, tolerance=1e-12) * X**i * Y**j for i, j, c in potential.terms)
 
 
-# Terms that no potential with a name has: roots, decimals, x y, no saddle of a round place.
+# Terms of no known potential: roots, decimals, x y, saddles without exact coordinates.
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.75), (1, 1, -0.123456), (3, 0, 1.0), (2, 1, -(2.0**0.5)), (0, 4, -0.3)))
 
 
 @pytest.mark.parametrize("name", POTENTIALS)
-def test_the_potential_is_that_of_its_name(name: str) -> None:
+def test_the_formula_is_that_of_the_potential(name: str) -> None:
     (formula,) = rows(POTENTIALS[name].potential)["Potential"]
     assert sympy.expand(after_last_equals(formula) - potential_of(POTENTIALS[name].potential)) == 0
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_the_accelerations_are_the_slopes_of_the_potential(case: str) -> None:
+def test_the_accelerations_are_the_derivatives_of_the_potential(case: str) -> None:
     for formula, variable in zip(rows(CASES[case])["Equations of motion"], (X, Y), strict=True):
         expected = -sympy.diff(potential_of(CASES[case]), variable)
         assert sympy.expand(after_last_equals(formula) - expected) == 0
@@ -89,7 +89,7 @@ def coordinates(formula: ElementTree.Element) -> tuple[sympy.Expr, sympy.Expr]:
     return read(nodes[2:comma]), read(nodes[comma + 1 : -1])
 
 
-def test_any_polynomial_can_be_shown() -> None:
+def test_any_polynomial_has_formulas() -> None:
     formulas = rows(ODD)
     exact = {-(2.0**0.5): -sympy.sqrt(2)}
     V = sum(exact.get(c, sympy.nsimplify(c, rational=True)) * X**i * Y**j for i, j, c in ODD.terms)
@@ -107,10 +107,15 @@ def test_a_potential_without_saddles_has_no_escape_energy() -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_every_formula_can_be_read_aloud(case: str) -> None:
+def test_every_formula_has_text_for_screen_readers(case: str) -> None:
     for formula in (formula for row in rows(CASES[case]).values() for formula in row):
         assert formula.get("display") == "block"
         assert formula.get("aria-label") == formula.get("alttext")
         assert not set("−=∂+<√˙¨") & set(str(formula.get("aria-label")))
     (potential,) = rows(CASES["I"])["Potential"]
     assert str(potential.get("alttext")).endswith("equals 1/2 x squared plus 1/2 y squared minus x y squared")
+
+
+def test_a_typed_formula_has_fractions_and_powers() -> None:
+    formula = ElementTree.fromstring(potential_formula(parse_formula("x²/2 - y")))
+    assert formula.get("aria-label") == "V ( x , y ) equals minus y plus 1/2 x squared"

@@ -1,4 +1,4 @@
-"""What is drawn of an orbit shows all that can be seen of it."""
+"""Reduced curves of orbits keep all visible features."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from app.rendering.orbit_curves import MOST_LINE_POINTS, TRAIL, OrbitCurves, com
 from engine import CASES, Plane, integrate_orbit, start_states
 
 
-def drawing_of(t_max: float) -> OrbitCurves:
+def curves_of(t_max: float) -> OrbitCurves:
     state = start_states(CASES["III"], Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     return compute_orbit_curves(CASES["III"], integrate_orbit(CASES["III"], state, t_max))
 
 
 @pytest.fixture(scope="module")
 def short() -> OrbitCurves:
-    return drawing_of(200.0)
+    return curves_of(200.0)
 
 
 @pytest.fixture(scope="module")
 def long() -> OrbitCurves:
-    return drawing_of(2000.0)
+    return curves_of(2000.0)
 
 
 def test_a_short_path_is_a_line(short: OrbitCurves) -> None:
@@ -29,7 +29,7 @@ def test_a_short_path_is_a_line(short: OrbitCurves) -> None:
     assert short.visits is None
 
 
-def test_a_long_path_is_shaded_where_it_comes_by(long: OrbitCurves) -> None:
+def test_a_long_path_is_a_density_image(long: OrbitCurves) -> None:
     assert long.visits is not None
     rows, columns = long.visits.shape
     window = long.window
@@ -39,7 +39,7 @@ def test_a_long_path_is_shaded_where_it_comes_by(long: OrbitCurves) -> None:
     assert np.mean(long.visits > 0) < 0.9
 
 
-def test_shading_has_the_orbit_s_colour_and_the_visits_opacity(long: OrbitCurves) -> None:
+def test_the_density_image_has_the_colour_of_the_orbit(long: OrbitCurves) -> None:
     pixels = long.shaded("#102030").view(np.uint8).reshape(*long.visits.shape, 4)  # type: ignore[union-attr]
     assert set(map(tuple, pixels[..., :3].reshape(-1, 3).tolist())) == {(0x10, 0x20, 0x30)}
     np.testing.assert_array_equal(pixels[..., 3], long.visits)
@@ -50,7 +50,7 @@ def test_the_section_has_a_point_for_each_crossing(short: OrbitCurves) -> None:
 
 
 @pytest.mark.parametrize("t", [0.0, 3.3, 150.0, 1e9])
-def test_a_moment_ends_where_the_orbit_is(short: OrbitCurves, t: float) -> None:
+def test_a_trail_ends_at_the_current_position(short: OrbitCurves, t: float) -> None:
     now, orbit = moment(short.orbit, t), short.orbit
     here = min(int(np.searchsorted(orbit.t, t, side="right")) - 1, orbit.t.size - 1)
     assert (now.x[-1], now.y[-1]) == (orbit.x[here], orbit.y[here])
@@ -68,6 +68,6 @@ def test_an_envelope_keeps_every_extreme() -> None:
     assert np.all(np.diff(thin_t) > 0)
 
 
-def test_a_short_history_is_kept_as_it_is() -> None:
+def test_a_short_history_is_not_changed() -> None:
     t = np.linspace(0.0, 1.0, 500)
     assert envelope(t, t, logarithmic=False)[0] is t

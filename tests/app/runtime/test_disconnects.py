@@ -1,4 +1,4 @@
-"""What is computed for a page stops when its last connection is gone."""
+"""Jobs of a page are cancelled when its last connection closes."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from functools import partial
 
 import pytest
 
-from app.runtime.disconnects import DisconnectMonitor, when_left
+from app.runtime.disconnects import DisconnectMonitor, on_disconnect
 
 
 class Document:
-    """Stands for a page's document."""
+    """Stand-in for a Bokeh document."""
 
 
 class Session:
-    """Stands for a session of Bokeh's server; what its page asked for is stopped as often as `stopped` is long."""
+    """Stand-in for a Bokeh session; counts its disconnect callbacks."""
 
     def __init__(self) -> None:
         self.document = Document()
         self.connection_count = 0
-        self.stopped: list[bool] = []
-        when_left(self.document, partial(self.stopped.append, True))
+        self._called: list[bool] = []
+        on_disconnect(self.document, partial(self._called.append, True))
 
     @property
-    def stops(self) -> int:
-        return len(self.stopped)
+    def disconnects(self) -> int:
+        return len(self._called)
 
 
 @pytest.fixture
@@ -35,50 +35,50 @@ def session() -> Session:
 
 
 @pytest.fixture
-def pages(session: Session) -> DisconnectMonitor:
+def monitor(session: Session) -> DisconnectMonitor:
     return DisconnectMonitor(lambda: [session])
 
 
-def test_a_page_that_waits_for_its_first_connection_has_not_been_left(session: Session, pages: DisconnectMonitor) -> None:
-    pages.look()
-    assert session.stops == 0
+def test_new_session_without_connection_is_not_disconnected(session: Session, monitor: DisconnectMonitor) -> None:
+    monitor.check()
+    assert session.disconnects == 0
 
 
-def test_a_page_stops_once_when_its_last_connection_is_gone(session: Session, pages: DisconnectMonitor) -> None:
+def test_callback_is_called_once_after_last_connection(session: Session, monitor: DisconnectMonitor) -> None:
     for connections in (1, 2, 1):
         session.connection_count = connections
-        pages.look()
-    assert session.stops == 0
+        monitor.check()
+    assert session.disconnects == 0
     session.connection_count = 0
-    pages.look()
-    pages.look()
-    assert session.stops == 1
+    monitor.check()
+    monitor.check()
+    assert session.disconnects == 1
 
 
-def test_a_page_that_was_left_stops_no_other(session: Session) -> None:
+def test_other_sessions_are_not_affected(session: Session) -> None:
     other = Session()
-    pages = DisconnectMonitor(lambda: [session, other])
+    monitor = DisconnectMonitor(lambda: [session, other])
     session.connection_count = other.connection_count = 1
-    pages.look()
+    monitor.check()
     session.connection_count = 0
-    pages.look()
-    assert (session.stops, other.stops) == (1, 0)
+    monitor.check()
+    assert (session.disconnects, other.disconnects) == (1, 0)
 
 
-def test_a_session_whose_page_asked_for_nothing_is_passed_over(session: Session, pages: DisconnectMonitor) -> None:
+def test_session_without_callback_is_ignored(session: Session, monitor: DisconnectMonitor) -> None:
     session.document = Document()
     session.connection_count = 1
-    pages.look()
+    monitor.check()
     session.connection_count = 0
-    pages.look()
-    assert session.stops == 0
+    monitor.check()
+    assert session.disconnects == 0
 
 
-def test_nothing_keeps_a_session_that_is_over(session: Session) -> None:
+def test_monitor_keeps_no_reference_to_ended_sessions(session: Session) -> None:
     sessions = [session, Session()]
-    pages = DisconnectMonitor(lambda: sessions)
+    monitor = DisconnectMonitor(lambda: sessions)
     sessions[1].connection_count = 1
-    pages.look()
-    over = weakref.ref(sessions.pop())
+    monitor.check()
+    ended = weakref.ref(sessions.pop())
     gc.collect()
-    assert over() is None
+    assert ended() is None

@@ -1,4 +1,4 @@
-"""Whether the server should be sent more visitors."""
+"""Readiness and admission."""
 
 from __future__ import annotations
 
@@ -6,53 +6,51 @@ from dataclasses import replace
 
 import pytest
 
-from app.runtime.health import why_no_entry, why_not_ready
+from app.runtime.health import not_ready_reason, refusal_reason, resident_bytes
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
 
 
 @pytest.fixture
-def site() -> ProcessState:
+def state() -> ProcessState:
     ready = ProcessState(Settings(most_sessions=2))
-    ready.prepared.set()
+    ready.kernels_ready.set()
     return ready
 
 
-def test_a_prepared_server_with_room_is_ready(site: ProcessState) -> None:
-    assert why_not_ready(site) is None
-    assert why_no_entry(site) is None
+def test_ready(state: ProcessState) -> None:
+    assert not_ready_reason(state) is None
+    assert refusal_reason(state) is None
 
 
-def test_until_the_kernels_are_compiled_no_more_visitors_are_sent_but_those_who_come_may_wait(site: ProcessState) -> None:
-    site.prepared.clear()
-    assert why_not_ready(site) == "The integrators are being compiled."
-    assert why_no_entry(site) is None
+def test_not_ready_but_open_during_compilation(state: ProcessState) -> None:
+    state.kernels_ready.clear()
+    assert not_ready_reason(state) == "The integrators are being compiled."
+    assert refusal_reason(state) is None
 
 
-def test_a_failed_preparation_is_told_apart_from_one_under_way(site: ProcessState) -> None:
-    site.prepared.clear()
-    site.failed.set()
-    assert "could not be compiled" in str(why_not_ready(site))
+def test_not_ready_after_failed_compilation(state: ProcessState) -> None:
+    state.kernels_ready.clear()
+    state.kernels_failed.set()
+    assert "could not be compiled" in str(not_ready_reason(state))
 
 
-def test_a_full_server_sends_visitors_away(site: ProcessState) -> None:
-    site.sessions = lambda: ["one", "two"]
-    assert why_not_ready(site) == why_no_entry(site) == "All 2 places are taken. Reload this page in a minute."
+def test_full_server_refuses_sessions(state: ProcessState) -> None:
+    state.sessions = lambda: ["one", "two"]
+    assert not_ready_reason(state) == refusal_reason(state) == "All 2 places are taken. Reload this page in a minute."
 
 
-def test_a_stopping_server_sends_visitors_away(site: ProcessState) -> None:
-    site.stopping.set()
-    assert str(why_not_ready(site)).startswith("The server is stopping.")
-    assert str(why_no_entry(site)).startswith("The server is stopping.")
+def test_stopping_server_refuses_sessions(state: ProcessState) -> None:
+    state.stopping.set()
+    assert str(not_ready_reason(state)).startswith("The server is stopping.")
+    assert str(refusal_reason(state)).startswith("The server is stopping.")
 
 
-def test_above_the_memory_ceiling_no_more_visitors_are_sent(site: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
-    site.settings = replace(site.settings, memory_ceiling=1000)
+def test_not_ready_above_memory_ceiling(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
+    state.settings = replace(state.settings, memory_ceiling=1000)
     monkeypatch.setattr("app.runtime.health.resident_bytes", lambda: 1001)
-    assert why_not_ready(site) == "The server holds 1001 bytes, above ESCAPE_EXPLORER_MEMORY_CEILING=1000."
+    assert not_ready_reason(state) == "The server holds 1001 bytes, above ESCAPE_EXPLORER_MEMORY_CEILING=1000."
 
 
-def test_a_system_that_does_not_tell_the_memory_is_no_objection(site: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
-    site.settings = replace(site.settings, memory_ceiling=1000)
-    monkeypatch.setattr("app.runtime.health.resident_bytes", lambda: None)
-    assert why_not_ready(site) is None
+def test_resident_memory_is_plausible() -> None:
+    assert 2**20 < resident_bytes() < 2**40

@@ -1,11 +1,11 @@
-"""How far the server is behind."""
+"""Delay of the event loop."""
 
 from __future__ import annotations
 
 import pytest
 
 from app.runtime import load_monitor
-from app.runtime.load_monitor import HIGH, LONGEST_SECONDS, LOOKED_AT_EVERY, LoadMonitor
+from app.runtime.load_monitor import HIGH_SECONDS, LONGEST_SECONDS, TICK_SECONDS, LoadMonitor
 from tests.app.clock import Clock
 
 
@@ -16,34 +16,34 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     return made
 
 
-def tick(measured: LoadMonitor, clock: Clock, seconds: float) -> None:
+def tick(monitor: LoadMonitor, clock: Clock, seconds: float) -> None:
     clock.now += seconds
-    measured.tick()
+    monitor.tick()
 
 
-def test_a_clock_that_is_in_time_knows_no_pressure(clock: Clock) -> None:
-    measured = LoadMonitor()
+def test_load_is_normal_without_delay(clock: Clock) -> None:
+    monitor = LoadMonitor()
     for _ in range(5):
-        tick(measured, clock, LOOKED_AT_EVERY)
-    assert not measured.is_high()
+        tick(monitor, clock, TICK_SECONDS)
+    assert not monitor.is_high()
 
 
-def test_a_late_tick_is_pressure_which_passes(clock: Clock) -> None:
-    measured = LoadMonitor()
-    tick(measured, clock, 0.0)
-    tick(measured, clock, LOOKED_AT_EVERY + 4.0 * HIGH)
-    assert measured.is_high()
+def test_load_is_high_after_a_late_tick_and_decays(clock: Clock) -> None:
+    monitor = LoadMonitor()
+    tick(monitor, clock, 0.0)
+    tick(monitor, clock, TICK_SECONDS + 4.0 * HIGH_SECONDS)
+    assert monitor.is_high()
     for _ in range(20):
-        tick(measured, clock, LOOKED_AT_EVERY)
-    assert not measured.is_high()
+        tick(monitor, clock, TICK_SECONDS)
+    assert not monitor.is_high()
 
 
-def test_pressure_that_lasts_lets_go_from_time_to_time(clock: Clock) -> None:
-    measured = LoadMonitor()
-    tick(measured, clock, 0.0)
+def test_persistent_high_load_is_interrupted(clock: Clock) -> None:
+    monitor = LoadMonitor()
+    tick(monitor, clock, 0.0)
     high = []
     for _ in range(40):
-        tick(measured, clock, LOOKED_AT_EVERY + 2.0 * HIGH)
-        high.append(measured.is_high())
+        tick(monitor, clock, TICK_SECONDS + 2.0 * HIGH_SECONDS)
+        high.append(monitor.is_high())
     assert high[0]
-    assert 1 <= high.count(False) <= 40 * (LOOKED_AT_EVERY + 2.0 * HIGH) / LONGEST_SECONDS
+    assert 1 <= high.count(False) <= 40 * (TICK_SECONDS + 2.0 * HIGH_SECONDS) / LONGEST_SECONDS

@@ -1,4 +1,4 @@
-"""What whoever runs the server may set."""
+"""Settings from environment variables."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from dataclasses import fields
 
 import pytest
 
-from app.runtime.settings import LogFormat, Settings, read_settings, variable_of
+from app.runtime.settings import LogFormat, Settings, Tuning, read_settings, variable_name
 
 
-def test_without_variables_every_setting_has_its_default() -> None:
+def test_missing_and_empty_variables_keep_defaults() -> None:
     assert read_settings({"PATH": "/bin", "ESCAPE_EXPLORER_CACHE": "/tmp", "ESCAPE_EXPLORER_LOG": ""}) == Settings()
 
 
@@ -29,6 +29,19 @@ def test_variables_are_read() -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", frozenset(Tuning)),
+        ("all", frozenset(Tuning)),
+        ("none", frozenset()),
+        ("tcp_nodelay gc_policy", frozenset({Tuning.TCP_NODELAY, Tuning.GC_POLICY})),
+    ],
+)
+def test_tuning_is_all_none_or_names(text: str, expected: frozenset[Tuning]) -> None:
+    assert read_settings({"ESCAPE_EXPLORER_TUNING": text}).tuning == expected
+
+
+@pytest.mark.parametrize(
     ("name", "text"),
     [
         ("largest_resolution", "15"),
@@ -39,12 +52,13 @@ def test_variables_are_read() -> None:
         ("log", "xml"),
         ("only_idle", "1"),
         ("frame_ancestors", "https://a.example; script-src *"),
+        ("tuning", "all gc_policy"),
     ],
 )
-def test_a_value_that_is_none_is_refused_by_name(name: str, text: str) -> None:
-    with pytest.raises(ValueError, match=f"^{variable_of(name)}=.*: must be "):
-        read_settings({variable_of(name): text})
+def test_invalid_values_are_rejected_by_name(name: str, text: str) -> None:
+    with pytest.raises(ValueError, match=f"^{variable_name(name)}=.*: must be "):
+        read_settings({variable_name(name): text})
 
 
-def test_every_setting_can_be_set() -> None:
-    assert all("reading" in setting.metadata for setting in fields(Settings))
+def test_every_setting_has_a_parser() -> None:
+    assert all("parser" in setting.metadata for setting in fields(Settings))

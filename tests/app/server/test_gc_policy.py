@@ -1,4 +1,4 @@
-"""GarbagePolicy is searched for when nobody waits."""
+"""Full garbage collections run when the process is idle."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from weakref import ref
 import pytest
 
 from app.server import gc_policy
-from app.server.gc_policy import QUIET_SECONDS, SEARCHED_EVERY, GarbagePolicy
+from app.server.gc_policy import COLLECT_SECONDS, IDLE_SECONDS, GarbagePolicy
 from tests.app.clock import Clock
 
 
@@ -22,63 +22,63 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[Clock]:
     gc.unfreeze()
 
 
-def searches() -> int:
+def collections() -> int:
     return int(gc.get_stats()[2]["collections"])
 
 
-def test_it_is_searched_for_once_in_a_while(clock: Clock) -> None:
-    search, before = GarbagePolicy(lambda: False), searches()
-    search.look()
-    assert searches() == before
-    clock.now += SEARCHED_EVERY
-    search.look()
-    search.look()
-    assert searches() == before + 1
+def test_collection_runs_once_per_interval(clock: Clock) -> None:
+    policy, before = GarbagePolicy(lambda: False), collections()
+    policy.check()
+    assert collections() == before
+    clock.now += COLLECT_SECONDS
+    policy.check()
+    policy.check()
+    assert collections() == before + 1
 
 
-def test_while_somebody_waits_it_is_put_off_but_not_for_ever(clock: Clock) -> None:
-    search, before = GarbagePolicy(lambda: True), searches()
-    clock.now += SEARCHED_EVERY
-    search.look()
-    assert searches() == before
-    clock.now += 9.0 * SEARCHED_EVERY
-    search.look()
-    assert searches() == before + 1
+def test_collection_is_postponed_while_busy_but_not_forever(clock: Clock) -> None:
+    policy, before = GarbagePolicy(lambda: True), collections()
+    clock.now += COLLECT_SECONDS
+    policy.check()
+    assert collections() == before
+    clock.now += 9.0 * COLLECT_SECONDS
+    policy.check()
+    assert collections() == before + 1
 
 
-def test_a_moment_without_anybody_is_not_quiet(clock: Clock) -> None:
-    waited = [True]
-    search, before = GarbagePolicy(lambda: waited[0]), searches()
-    clock.now += SEARCHED_EVERY
-    search.look()
-    waited[0] = False
-    clock.now += 0.9 * QUIET_SECONDS
-    search.look()
-    assert searches() == before
-    clock.now += 0.2 * QUIET_SECONDS
-    search.look()
-    assert searches() == before + 1
+def test_idle_means_some_seconds_without_activity(clock: Clock) -> None:
+    busy = [True]
+    policy, before = GarbagePolicy(lambda: busy[0]), collections()
+    clock.now += COLLECT_SECONDS
+    policy.check()
+    busy[0] = False
+    clock.now += 0.9 * IDLE_SECONDS
+    policy.check()
+    assert collections() == before
+    clock.now += 0.2 * IDLE_SECONDS
+    policy.check()
+    assert collections() == before + 1
 
 
-def test_what_lasts_is_left_out_of_searches_by_others_and_found_by_ours(clock: Clock) -> None:
+def test_old_objects_are_exempt_from_collections_of_others(clock: Clock) -> None:
     class Loop:
         def __init__(self) -> None:
             self.itself = self
 
-    search = GarbagePolicy(lambda: False)
-    left = ref(Loop())
+    policy = GarbagePolicy(lambda: False)
+    garbage = ref(Loop())
     clock.now += 31.0
-    search.look()
+    policy.check()
     gc.collect()
-    assert left() is not None
-    clock.now += SEARCHED_EVERY
-    search.look()
-    assert left() is None
+    assert garbage() is not None
+    clock.now += COLLECT_SECONDS
+    policy.check()
+    assert garbage() is None
 
 
-def test_old_objects_are_not_searched_by_count(clock: Clock) -> None:
+def test_old_objects_are_not_collected_by_count(clock: Clock) -> None:
     GarbagePolicy(lambda: False)
-    before = searches()
-    kept = [[n] for n in range(400_000)]
-    assert searches() == before
-    assert len(kept) == 400_000
+    before = collections()
+    objects = [[n] for n in range(400_000)]
+    assert collections() == before
+    assert len(objects) == 400_000

@@ -1,4 +1,4 @@
-"""Lines of the log."""
+"""Log records as text and JSON."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from tornado.websocket import WebSocketClosedError
 
 from app.runtime.settings import LogFormat
-from app.server.log_format import JsonFormatter, TextFormatter, is_no_probe, is_worth_a_word, set_up_logs
+from app.server.log_format import JsonLineFormatter, TextFormatter, is_not_closed_socket, is_not_probe, set_up_logs
 
 FORGED = "h=1\n2026-01-01 ERROR root: forged\x1b[2K\u2028"
 
 
-def record_of(message: str, error: Exception | None = None) -> logging.LogRecord:
+def new_record(message: str, error: Exception | None = None) -> logging.LogRecord:
     info = None
     if error is not None:
         try:
@@ -25,44 +25,51 @@ def record_of(message: str, error: Exception | None = None) -> logging.LogRecord
     return logging.LogRecord("app", logging.ERROR, "", 0, message, None, info)
 
 
-@pytest.mark.parametrize("formatter", [TextFormatter(), JsonFormatter()])
-def test_a_message_is_one_line_of_plain_characters(formatter: logging.Formatter) -> None:
-    line = formatter.format(record_of(FORGED))
-    assert line.isprintable()
+@pytest.mark.parametrize("formatter", [TextFormatter(), JsonLineFormatter()])
+def test_message_is_one_printable_line(formatter: logging.Formatter) -> None:
+    assert formatter.format(new_record(FORGED)).isprintable()
 
 
-def test_no_line_of_a_traceback_looks_like_a_record() -> None:
-    first, *traced = TextFormatter().format(record_of("failed", ValueError(FORGED))).split("\n")
+def test_json_record_with_traceback_is_one_line() -> None:
+    assert JsonLineFormatter().format(new_record(FORGED, ValueError(FORGED))).isprintable()
+
+
+def test_traceback_lines_cannot_be_taken_for_records() -> None:
+    first, *traced = TextFormatter().format(new_record("failed", ValueError(FORGED))).split("\n")
     assert first.endswith("ERROR app: failed")
     assert traced
     assert all(line.startswith("    ") and line.isprintable() for line in traced)
 
 
-def test_json_tells_time_level_logger_message_session_and_exception() -> None:
-    record = record_of(FORGED, ValueError("h"))
+def test_json_fields() -> None:
+    record = new_record(FORGED, ValueError("h"))
     record.session = "12345678"
-    told = json.loads(JsonFormatter().format(record))
-    assert told["time"].endswith("+00:00")
-    assert {name: told[name] for name in ("level", "logger", "message", "session", "exception")} == {
-        "level": "ERROR", "logger": "app", "message": FORGED, "session": "12345678", "exception": "ValueError",
-    }  # fmt: skip
+    fields = json.loads(JsonLineFormatter().format(record))
+    assert fields.pop("time").endswith("+00:00")
+    assert fields.pop("traceback").startswith("Traceback")
+    assert fields == {"level": "ERROR", "logger": "app", "message": FORGED, "session": "12345678", "exception": "ValueError"}
 
 
-def test_every_handler_writes_in_the_form_asked_for_and_on_stderr() -> None:
+def test_json_fields_without_session_and_exception() -> None:
+    fields = json.loads(JsonLineFormatter().format(new_record("stopping")))
+    assert set(fields) == {"time", "level", "logger", "message"}
+
+
+def test_all_handlers_write_the_same_format_to_stderr() -> None:
     logger, counter = logging.Logger("one"), logging.NullHandler()
     handler = logging.StreamHandler(sys.stdout)
     logger.addHandler(handler)
     set_up_logs(LogFormat.JSON, counter, [logger])
-    assert isinstance(handler.formatter, JsonFormatter)
+    assert isinstance(handler.formatter, JsonLineFormatter)
     assert handler.stream is sys.stderr
     assert counter in logger.handlers
 
 
 @pytest.mark.parametrize(("error", "expected"), [(WebSocketClosedError(), False), (ValueError("h"), True), (None, True)])
-def test_only_a_visitor_who_left_goes_without_a_word(error: Exception | None, expected: bool) -> None:
-    assert is_worth_a_word(record_of("Task exception was never retrieved", error)) is expected
+def test_closed_sockets_are_not_logged(error: Exception | None, expected: bool) -> None:
+    assert is_not_closed_socket(new_record("Task exception was never retrieved", error)) is expected
 
 
 @pytest.mark.parametrize(("message", "expected"), [("503 GET /readiness (::1) 1ms", False), ("503 GET /app (::1) 1ms", True)])
-def test_answers_to_probes_go_without_a_word(message: str, expected: bool) -> None:
-    assert is_no_probe(record_of(message)) is expected
+def test_probes_are_not_logged(message: str, expected: bool) -> None:
+    assert is_not_probe(new_record(message)) is expected

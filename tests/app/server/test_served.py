@@ -1,11 +1,11 @@
-"""A real server, from its start to its end: tests in the order of its life."""
+"""A real server from start to stop; the tests depend on their order."""
 
 from __future__ import annotations
 
-import asyncio
 import http.client
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -14,30 +14,30 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import urlencode
 
 import pytest
 
-from benchmarks.visitors import Channel
+from benchmarks.simulated_sessions import Channel
+from tests.app.other_loop import run_on_new_loop
 
 ROOT = Path(__file__).parents[3]
 START_SECONDS = 240
-# Bounded orbits, followed for longer than any test takes.
+# Bounded orbits, which take longer than any test.
 LONG_MAP = {"case": "III", "h": "0.26", "resolution": "900", "t_max": "1e+06", "plane": "x_y"}
 
 
 @dataclass
 class Served:
-    """A server on loopback, with room for two sessions."""
+    """A server on the loopback interface with at most two sessions."""
 
     port: int
     process: subprocess.Popen[bytes]
     log: Path
     pages: list[str] = field(default_factory=list)
-    told: float = 0.0
+    stopped_at: float = 0.0
 
     def get(self, path: str, **headers: str) -> tuple[int, str, http.client.HTTPMessage]:
         request = urllib.request.Request(f"http://127.0.0.1:{self.port}{path}", headers=headers)
@@ -48,7 +48,7 @@ class Served:
             with refusal:
                 return refusal.code, refusal.read().decode(), refusal.headers
 
-    def figure(self, name: str) -> float:
+    def metric(self, name: str) -> float:
         lines = dict(line.rsplit(" ", 1) for line in self.get("/metrics")[1].splitlines() if not line.startswith("#"))
         return float(lines[f"escape_explorer_{name}"])
 
@@ -61,7 +61,7 @@ class Served:
             except OSError:
                 pass
             time.sleep(0.1)
-        raise TimeoutError(f"{path} has not come to {status}: {self.log.read_text()}")
+        raise TimeoutError(f"{path} did not return {status}: {self.log.read_text()}")
 
 
 @pytest.fixture(scope="module")
@@ -81,75 +81,83 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         process.wait(30)
 
 
-def test_it_answers_before_the_kernels_are_there_and_is_ready_after(served: Served) -> None:
+def test_server_answers_during_compilation_and_is_ready_afterwards(served: Served) -> None:
     served.wait_for("/liveness", 200)
     status, text, _ = served.get("/readiness")
     assert (status, json.loads(text)["sentence"]) in {(503, "The integrators are being compiled."), (200, "Ready.")}
     served.wait_for("/readiness", 200)
-    assert served.figure("kernels_ready") == 1
+    assert served.metric("kernels_ready") == 1
 
 
-@pytest.mark.parametrize("path", ["/status", "/metrics", "/readiness", "/nothing", "/static/js/bokeh.min.js"])
-def test_every_answer_has_the_headers(served: Served, path: str) -> None:
+@pytest.mark.parametrize("path", ["/status", "/metrics", "/readiness", "/nothing", "/app/metadata", "/static/js/bokeh.min.js"])
+def test_responses_have_security_headers(served: Served, path: str) -> None:
     _, _, headers = served.get(path)
     assert headers["Content-Security-Policy"].startswith("default-src 'self'; ")
     assert headers["X-Content-Type-Options"] == "nosniff"
     assert headers["Referrer-Policy"]
     assert headers["Permissions-Policy"]
+    assert "Server" not in headers
 
 
-def test_figures_come_in_the_text_form_of_prometheus_and_as_a_table(served: Served) -> None:
+def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:
     assert served.get("/metrics")[2]["Content-Type"].startswith("text/plain; version=")
-    assert "Sessions that are open" in served.get("/status")[1]
+    assert "Open sessions" in served.get("/status")[1]
 
 
-def test_a_page_of_another_origin_gets_no_connection(served: Served) -> None:
+def test_websocket_of_another_origin_is_refused(served: Served) -> None:
     upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "x"}
     protocol = {"Sec-WebSocket-Protocol": "bokeh, token"}
-    # Not by urllib, which would ask for the connection to be closed.
+    # urllib would send "Connection: close".
     connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=60)
     connection.request("GET", "/app/ws", headers={"Origin": "https://elsewhere.example", **upgrade, **protocol})
     assert connection.getresponse().status == 403
     connection.close()
 
 
-def test_when_all_places_are_taken_visitors_are_sent_away_with_a_sentence(served: Served) -> None:
+def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     opened = [served.get(f"/app?{urlencode(LONG_MAP)}") for _ in range(2)]
     assert [status for status, _, _ in opened] == [200, 200]
     served.pages = [page for _, page, _ in opened]
+    for _, page, headers in opened:
+        check_nonce(page, headers["Content-Security-Policy"])
     status, text, _ = served.get("/app")
     assert status == 503
     assert "All 2 places are taken." in text
     assert served.get("/readiness")[0] == 503
-    assert served.figure("sessions_open") == 2
-    assert served.figure("pages_refused_total") == 1
+    assert served.metric("sessions_open") == 2
+    assert served.metric("pages_refused_total") == 1
 
 
-def test_it_stops_within_five_seconds_of_being_told_though_it_computes(served: Served) -> None:
-    # In a thread: the browser tests leave a loop running in this one.
-    with ThreadPoolExecutor(1) as thread:
-        thread.submit(lambda: asyncio.run(stop_while_computing(served))).result()
+def test_server_stops_within_five_seconds_during_a_computation(served: Served) -> None:
+    run_on_new_loop(lambda: stop_during_a_map(served))
     assert served.process.wait(30) == 0
-    assert time.monotonic() - served.told < 5.0
+    assert time.monotonic() - served.stopped_at < 5.0
 
 
-def test_its_log_is_json_and_without_a_traceback(served: Served) -> None:
+def test_log_is_json_without_tracebacks(served: Served) -> None:
     lines = [line for line in served.log.read_text().splitlines() if line.startswith("{")]
-    told = [json.loads(line) for line in lines]
-    assert told[-1]["message"] == "stopping"
-    assert [record for record in told if "traceback" in record] == []
+    records = [json.loads(line) for line in lines]
+    assert records[-1]["message"] == "stopping"
+    assert [record for record in records if "traceback" in record] == []
 
 
-async def stop_while_computing(served: Served) -> None:
-    """A visitor asks for a map that takes long; while it is computed, the server is told to stop."""
+def check_nonce(page: str, policy: str) -> None:
+    """All scripts of a page have the nonce of its policy."""
+    [nonce] = set(re.findall(r'<script nonce="([^"]+)"', page))
+    assert f"'nonce-{nonce}'" in policy
+    assert page.count("<script") == page.count("<script nonce=")
+
+
+async def stop_during_a_map(served: Served) -> None:
+    """Request a long map and send SIGTERM while it is computed."""
     channel = await Channel.connect(f"http://127.0.0.1:{served.port}/app", served.pages[0])
     async for kind, _ in channel.messages():
         if kind == "ACK":
             channel.send("PULL-DOC-REQ", {})
         elif kind == "PULL-DOC-REPLY":
-            channel.tell("document_ready")
-        elif kind == "PATCH-DOC" and served.told == 0.0 and served.figure("jobs_in_flight") >= 1:
-            served.told = time.monotonic()
+            channel.emit("document_ready")
+        elif kind == "PATCH-DOC" and served.stopped_at == 0.0 and served.metric("jobs_in_flight") >= 1:
+            served.stopped_at = time.monotonic()
             served.process.send_signal(signal.SIGTERM)
     channel.close()
-    assert served.told, "the map was never begun"
+    assert served.stopped_at, "the map was never started"

@@ -1,32 +1,31 @@
-"""Kernels compiled in the background."""
+"""Kernels are compiled in the background."""
 
 from __future__ import annotations
 
 from app.runtime.process_state import ProcessState
-from app.runtime.settings import Settings
-from app.server.warmup import prepare_in_background
+from app.server.warmup import start_warmup
 
 
 def fail() -> None:
     raise OSError("no room on the disk")
 
 
-def test_the_site_is_prepared_after_the_last_step() -> None:
-    site, seen = ProcessState(Settings()), []
-    prepare_in_background(site, {"one": lambda: seen.append(site.prepared.is_set())}).join(10)
+def test_kernels_are_ready_after_the_last_step() -> None:
+    state, seen = ProcessState(), []
+    start_warmup(state, {"one": lambda: seen.append(state.kernels_ready.is_set())}).join(10)
     assert seen == [False]
-    assert site.prepared.is_set()
+    assert state.kernels_ready.is_set()
 
 
-def test_after_a_step_that_fails_the_site_has_failed() -> None:
-    site, seen = ProcessState(Settings()), []
-    prepare_in_background(site, {"one": fail, "two": lambda: seen.append(2)}).join(10)
-    assert site.failed.is_set()
-    assert not site.prepared.is_set()
+def test_failed_step_ends_the_warmup() -> None:
+    state, seen = ProcessState(), []
+    start_warmup(state, {"one": fail, "two": lambda: seen.append(2)}).join(10)
+    assert state.kernels_failed.is_set()
+    assert not state.kernels_ready.is_set()
     assert seen == []
 
 
-def test_a_stop_of_the_server_ends_it_between_two_steps() -> None:
-    site, seen = ProcessState(Settings()), []
-    prepare_in_background(site, {"one": site.stopping.set, "two": lambda: seen.append(2)}).join(10)
+def test_shutdown_ends_the_warmup_before_the_next_step() -> None:
+    state, seen = ProcessState(), []
+    start_warmup(state, {"one": state.stopping.set, "two": lambda: seen.append(2)}).join(10)
     assert seen == []

@@ -1,4 +1,4 @@
-"""What is asked about a map, and what becomes of the answers."""
+"""Analyses of a map: requests and display of their results."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from engine import CASES, EscapeMap, Jobs, MapSpec, Plane, Trust, Window, comput
 
 
 class Session:
-    """All of a session that second looks need."""
+    """The parts of a session that analyses need."""
 
     def __init__(self, **chosen: Any) -> None:
         self.changed = threading.Condition()
-        self.findings = MapAnalyses()
+        self.analyses = MapAnalyses()
         self.problems: list[str] = []
         self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=113, t_max=1e3, **chosen), Jobs()
         self.maps = MapsView(lambda x, y: None, lambda window: None, lambda box: None)
-        self.why = AnalysisPresenter(self.state, self.jobs, self.maps, self.find, self.locked)
-        self.looks = FollowUpRequests(self.state, self.jobs, self.why.looks(), self.problems.append, self.locked)
+        self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, self.locked)
+        self.follow_ups = FollowUpRequests(self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, self.locked)
 
     def locked(self, function: Callable[..., None]) -> Callable[..., None]:
         def call(*arguments: Any) -> None:
@@ -37,16 +37,20 @@ class Session:
 
         return call
 
-    def find(self, findings: MapAnalyses) -> None:
-        self.findings = findings
+    def set_analyses(self, analyses: MapAnalyses) -> None:
+        self.analyses = analyses
 
     def show(self, frame: EscapeMap) -> None:
-        self.why.begin(frame.spec)
-        self.looks.follow(frame)
+        self.presenter.begin(frame.spec)
+        self.follow_ups.follow(frame)
 
     def wait_for(self, true: Callable[[], bool]) -> None:
         with self.changed:
-            assert self.changed.wait_for(true, 60), (self.problems, self.why.notes.object, self.why.measures.text.object)
+            assert self.changed.wait_for(true, 60), (
+                self.problems,
+                self.presenter.notes.object,
+                self.presenter.measures.text.object,
+            )
 
 
 @pytest.fixture(scope="module")
@@ -59,8 +63,8 @@ def open_sessions() -> Iterator[list[Session]]:
     sessions: list[Session] = []
     yield sessions
     for session in sessions:
-        session.looks.follow(None)
-        session.why.close()
+        session.follow_ups.follow(None)
+        session.presenter.close()
 
 
 @pytest.fixture
@@ -72,61 +76,61 @@ def begin(open_sessions: list[Session]) -> Callable[..., Session]:
     return begin_session
 
 
-def test_nothing_is_asked_before_something_is_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_nothing_is_requested_by_default(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin()
     session.show(frame)
     assert session.jobs.in_flight == 0
 
 
-def test_doubtful_pixels_are_marked_and_their_share_is_told(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_doubtful_pixels_are_marked_and_counted(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(trust=True)
     session.show(frame)
-    session.wait_for(lambda: session.findings.trust is not None)
-    trust = session.findings.trust
+    session.wait_for(lambda: session.analyses.trust is not None)
+    trust = session.analyses.trust
     assert trust is not None
     marks = session.maps.overlays.doubts.data["doubt"][0]
     np.testing.assert_array_equal(marks == 1, trust.trust == Trust.DOUBTFUL)
-    assert "doubtful" in session.why.notes.object
+    assert "doubtful" in session.presenter.notes.object
 
 
-def test_marks_go_when_they_are_switched_off(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_marks_are_removed_when_they_are_switched_off(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(trust=True)
     session.show(frame)
-    session.wait_for(lambda: session.findings.trust is not None)
+    session.wait_for(lambda: session.analyses.trust is not None)
     session.state.trust = False
     assert session.maps.overlays.doubts.data["doubt"] == []
-    assert session.findings == MapAnalyses()
-    assert session.why.notes.object == ""
+    assert session.analyses == MapAnalyses()
+    assert session.presenter.notes.object == ""
 
 
-def test_what_was_found_goes_with_its_map(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_analyses_are_removed_with_their_map(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(trust=True)
     session.show(frame)
-    session.wait_for(lambda: session.findings.trust is not None)
-    session.why.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (113, 113), t_max=1e3))
-    assert session.findings == MapAnalyses()
+    session.wait_for(lambda: session.analyses.trust is not None)
+    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (113, 113), t_max=1e3))
+    assert session.analyses == MapAnalyses()
     assert session.maps.overlays.doubts.data["doubt"] == []
 
 
 def test_manifolds_are_drawn_over_the_section(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(manifolds=True)
     session.show(frame)
-    session.wait_for(lambda: session.findings.manifolds is not None)
-    assert session.findings.manifolds is not None
-    assert len(session.maps.overlays.manifolds.data["xs"]) == len(session.findings.manifolds.arcs) > 0
+    session.wait_for(lambda: session.analyses.manifolds is not None)
+    assert session.analyses.manifolds is not None
+    assert len(session.maps.overlays.manifolds.data["xs"]) == len(session.analyses.manifolds.arcs) > 0
 
 
-def test_no_manifolds_are_asked_for_on_other_planes(begin: Callable[..., Session]) -> None:
+def test_no_manifolds_are_requested_on_other_planes(begin: Callable[..., Session]) -> None:
     session = begin(manifolds=True)
     session.show(compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.25, (16, 16), t_max=100.0)))
     assert session.jobs.in_flight == 0
 
 
-def test_origins_have_a_picture_while_they_are_wanted(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_origins_have_a_picture_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(origins=True)
     session.maps.show(frame, {**session.maps.source.data})
     session.show(frame)
-    session.wait_for(lambda: session.findings.origins is not None)
+    session.wait_for(lambda: session.analyses.origins is not None)
     assert session.maps.source.data["passage"][0].shape == frame.fate.shape
     pictures = len(session.maps.layout().objects)
     session.state.origins = False
@@ -136,15 +140,15 @@ def test_origins_have_a_picture_while_they_are_wanted(begin: Callable[..., Sessi
 def test_basins_are_measured_and_laws_are_fitted(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(measures=True)
     session.show(frame)
-    text = session.why.measures.text
+    text = session.presenter.measures.text
     session.wait_for(lambda: all(name in text.object for name in ("Basin entropy", "Wada", "Escape law")))
-    assert len(session.why.measures.steps.data["t"]) > 10
+    assert len(session.presenter.measures.steps.data["t"]) > 10
 
 
 def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(measures=True)
     session.show(frame)
-    steps = session.why.measures.steps
+    steps = session.presenter.measures.steps
     session.wait_for(lambda: len(steps.data["t"]) > 10)
     whole = float(steps.data["share"][0])
     session.state.box = Window(-0.2, 0.3, -0.2, 0.2)
@@ -153,16 +157,16 @@ def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) ->
 
 def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
     session = begin(measures=True)
-    session.why.measures.button.clicks += 1
-    assert session.why.measures.button.disabled
-    session.wait_for(lambda: "α =" in session.why.measures.text.object)
-    assert not session.why.measures.button.disabled
-    assert len(session.why.measures.pairs.data["share"]) > 5
+    session.presenter.measures.button.clicks += 1
+    assert session.presenter.measures.button.disabled
+    session.wait_for(lambda: "α =" in session.presenter.measures.text.object)
+    assert not session.presenter.measures.button.disabled
+    assert len(session.presenter.measures.pairs.data["share"]) > 5
 
 
-def test_a_sweep_comes_energy_by_energy_and_can_be_stopped(begin: Callable[..., Session]) -> None:
+def test_curves_arrive_energy_by_energy_and_can_be_stopped(begin: Callable[..., Session]) -> None:
     session = begin(energies=True)
-    curves = session.why.curves
+    curves = session.presenter.curves
     curves.button.clicks += 1
     session.wait_for(lambda: len(curves.points.data["h"]) >= 2)
     assert curves.running
@@ -172,9 +176,9 @@ def test_a_sweep_comes_energy_by_energy_and_can_be_stopped(begin: Callable[..., 
     assert f"of {SWEPT_ENERGIES}" in curves.text.object
 
 
-def test_another_case_takes_the_curves_away(begin: Callable[..., Session]) -> None:
+def test_another_case_removes_the_curves(begin: Callable[..., Session]) -> None:
     session = begin(energies=True)
-    curves = session.why.curves
+    curves = session.presenter.curves
     curves.button.clicks += 1
     session.wait_for(lambda: len(curves.points.data["h"]) >= 1)
     session.state.param.update(case="III", energy=0.4)
@@ -184,17 +188,17 @@ def test_another_case_takes_the_curves_away(begin: Callable[..., Session]) -> No
     assert session.state.energy == 0.4
 
 
-def test_what_is_judged_is_forgotten_with_its_switch(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_regularity_is_removed_when_it_is_switched_off(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(judge=True)
     session.show(frame)
-    session.wait_for(lambda: session.findings.regularity is not None)
+    session.wait_for(lambda: session.analyses.regularity is not None)
     session.state.judge = False
-    assert session.findings == MapAnalyses()
+    assert session.analyses == MapAnalyses()
 
 
 def test_a_click_on_a_curve_opens_the_nearest_energy(begin: Callable[..., Session]) -> None:
     session = begin(energies=True)
-    curves = session.why.curves
+    curves = session.presenter.curves
     curves.button.clicks += 1
     session.wait_for(lambda: len(curves.points.data["h"]) >= 2)
     curves.button.clicks += 1

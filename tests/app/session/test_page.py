@@ -1,12 +1,10 @@
-"""A page is built for a visitor, and nothing holds on to it when they have gone."""
+"""A page is valid, and is freed when its session ends."""
 
 from __future__ import annotations
 
 import gc
 import time
 import weakref
-from collections.abc import Callable
-from typing import Any
 
 from bokeh.core.validation import check_integrity
 from bokeh.document import Document
@@ -16,43 +14,36 @@ from app.session.explorer import Explorer
 from app.session.page import explorer_page
 
 
-class Sessionless(Document):
-    """A document that nobody looks at: its callbacks need no lock."""
-
-    def locked_callback(self, callback: Callable[..., None], *, policy: str = "every") -> Any:
-        return callback
-
-
 def build() -> weakref.ref[Explorer]:
-    with set_curdoc(Sessionless()):
+    with set_curdoc(Document()):
         explorer = Explorer()
-        page = explorer_page(explorer)
-        assert page.title == "Escape Explorer"
+        explorer_page(explorer)
         explorer.close()
     return weakref.ref(explorer)
 
 
-def held(built: list[weakref.ref[Explorer]]) -> list[Explorer]:
+def alive(built: list[weakref.ref[Explorer]]) -> list[Explorer]:
     gc.collect()
     return [explorer for reference in built if (explorer := reference()) is not None]
 
 
-def test_a_closed_page_is_let_go_of() -> None:
+def test_a_closed_page_is_freed() -> None:
     built = [build() for _ in range(2)]
-    deadline = time.monotonic() + 20.0  # a computation that was stopped reads it within moments, not at once
-    while held(built) and time.monotonic() < deadline:
+    deadline = time.monotonic() + 20.0  # a cancelled computation ends within moments, not at once
+    while alive(built) and time.monotonic() < deadline:
         time.sleep(0.1)
-    assert held(built) == []
+    assert alive(built) == []
 
 
-def test_a_page_is_sound() -> None:
-    """The server does not look at each visitor's anew."""
-    document = Sessionless()
+def test_a_page_is_valid() -> None:
+    """The server does not validate the page of each session."""
+    document = Document()
     with set_curdoc(document):
         explorer = Explorer()
         explorer_page(explorer).server_doc(document)
+        assert document.title == "Escape Explorer"
         issues = check_integrity(document.models)
         explorer.close()
     assert issues.error == []
-    # Sections that nobody has opened.
+    # Sections that are closed.
     assert {warning.name for warning in issues.warning} == {"EMPTY_LAYOUT"}

@@ -1,4 +1,4 @@
-"""Another potential: looked over before it is taken, and refused with a sentence that leaves the picture as it is."""
+"""Choice of a potential: validation, use, and messages for invalid ones."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import param
 import pytest
 
 from app.session.potential_presenter import PotentialPresenter
@@ -46,14 +47,14 @@ def type_in(panel: PotentialPanel, text: str, *, enter: bool) -> None:
         panel.formula.value = text
 
 
-def test_what_is_typed_is_looked_over_and_not_yet_taken(choice: PotentialPresenter) -> None:
+def test_a_typed_potential_is_reviewed_and_not_used_before_enter(choice: PotentialPresenter) -> None:
     type_in(choice.panel, HENON_HEILES, enter=False)
     wait_for(lambda: "0.166667" in choice.panel.facts.object)
     assert "(0, 1)" in choice.panel.facts.object
     assert state_of(choice).case == "I"
 
 
-def test_enter_takes_it_at_its_own_energy_without_the_orbits_of_the_last(choice: PotentialPresenter) -> None:
+def test_enter_uses_it_at_its_initial_energy_without_starts(choice: PotentialPresenter) -> None:
     type_in(choice.panel, HENON_HEILES, enter=True)
     state = state_of(choice)
     wait_for(lambda: state.case == TYPED)
@@ -61,21 +62,21 @@ def test_enter_takes_it_at_its_own_energy_without_the_orbits_of_the_last(choice:
     assert choice.panel.known.value == TYPED
 
 
-def test_what_cannot_be_read_is_said_and_shown_as_text(choice: PotentialPresenter) -> None:
+def test_an_invalid_formula_gives_an_escaped_message(choice: PotentialPresenter) -> None:
     type_in(choice.panel, "x² + <b>", enter=True)
-    assert "character 6" in choice.panel.said.object
-    assert "<b>" not in choice.panel.said.object
+    assert "character 6" in choice.panel.message.object
+    assert "<b>" not in choice.panel.message.object
     assert state_of(choice).case == "I"
 
 
-def test_what_has_no_exits_is_refused_in_words(choice: PotentialPresenter) -> None:
+def test_a_potential_without_exits_gives_a_message(choice: PotentialPresenter) -> None:
     type_in(choice.panel, VALLEY, enter=True)
-    wait_for(lambda: "valley" in choice.panel.said.object)
+    wait_for(lambda: "valley" in choice.panel.message.object)
     assert state_of(choice).case == "I"
     assert choice.panel.known.value == "I"
 
 
-def test_a_known_potential_is_a_choice_away(choice: PotentialPresenter) -> None:
+def test_a_known_potential_can_be_selected(choice: PotentialPresenter) -> None:
     choice.panel.known.value = "C5"
     state = state_of(choice)
     wait_for(lambda: state.case == "C5")
@@ -83,30 +84,32 @@ def test_a_known_potential_is_a_choice_away(choice: PotentialPresenter) -> None:
     assert state.energy == pytest.approx(0.45)
 
 
-def test_a_parameter_keeps_the_energy_as_far_above_the_exits_as_it_was(choice: PotentialPresenter) -> None:
-    choice.panel.sliders["epsilon"].value_throttled = 0.5
+def test_a_parameter_keeps_the_ratio_to_the_escape_energy(choice: PotentialPresenter) -> None:
+    slider = choice.panel.sliders["epsilon"]
+    with param.edit_constant(slider):
+        slider.value_throttled = 0.5
     state = state_of(choice)
     wait_for(lambda: state.epsilon == 0.5)
     assert state.energy / state.potential.escape_energy == pytest.approx(0.25 / CASES["I"].escape_energy, rel=1e-2)
 
 
-def test_all_parameters_go_back_to_one_at_once(choice: PotentialPresenter) -> None:
+def test_all_parameters_can_be_reset(choice: PotentialPresenter) -> None:
     state = state_of(choice)
     state.show_system(System("III", omega_1=1.1, epsilon=0.5))
     assert choice.panel.sliders["epsilon"].value == 0.5
-    choice.panel.plain.clicks += 1
+    choice.panel.reset.clicks += 1
     wait_for(lambda: not state.system.changed)
     assert state.case == "III"
 
 
-def test_to_begin_typing_the_formula_in_view_is_there(choice: PotentialPresenter) -> None:
+def test_typing_starts_from_the_current_formula(choice: PotentialPresenter) -> None:
     choice.panel.known.value = TYPED
     state = state_of(choice)
     wait_for(lambda: state.case == TYPED)
     assert state.potential == CASES["I"]
 
 
-def test_the_last_letter_may_be_heard_after_enter(choice: PotentialPresenter) -> None:
+def test_the_event_of_the_last_letter_may_arrive_after_enter(choice: PotentialPresenter) -> None:
     choice.panel.formula.value = "½(x² + y²) − 0.6x²y²"
     choice.panel.formula.value_input = "½(x² + y²) − 0.6x²y²"
     wait_for(lambda: state_of(choice).system.case == "typed")

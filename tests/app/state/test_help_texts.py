@@ -1,4 +1,4 @@
-"""Every picture and pane is explained, in a few sentences that a page can show."""
+"""Every picture and plot has a short help text."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def test_every_picture_has_a_help_text() -> None:
     assert set(TITLES) <= set(HELP_TEXTS)
 
 
-def test_every_pane_has_a_help_text() -> None:
+def test_every_plot_has_a_help_text() -> None:
     assert {"path", "sali", "r2", "distance", "histogram", "probabilities"} <= set(HELP_TEXTS)
 
 
@@ -32,12 +32,12 @@ def test_a_help_text_is_two_to_four_sentences(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", HELP_TEXTS)
-def test_help_unfolds_from_a_question(name: str) -> None:
+def test_help_is_a_disclosure_widget(name: str) -> None:
     details = ElementTree.fromstring(help_details(name))
     assert details.tag == "details"
     assert details.findtext("summary") == "What is this?"
     assert details.findtext("p") == HELP_TEXTS[name]
 
 
-def test_help_sets_no_colour_of_its_own() -> None:
+def test_help_inherits_its_colours() -> None:
     assert not re.search(r"#[0-9a-f]{3}|rgb|background", help_details("basins"), re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""Every card of the gallery opens a view that is legal, can be linked to, and shows what its caption says."""
+"""Presets are valid views that agree with their captions."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ def fates(preset: Preset) -> list[int]:
     return [int(fate) for fate in classify_orbits(CASES[preset.case], preset.energy, states, preset.t_max).fate]
 
 
-def followed(preset: Preset) -> Orbit:
+def integrate(preset: Preset) -> Orbit:
     return integrate_orbit(CASES[preset.case], start_of(preset, *preset.starts[0]), preset.t_max)
 
 
-def test_no_two_cards_share_a_key_or_a_title() -> None:
+def test_keys_and_titles_are_unique() -> None:
     assert len({preset.key for preset in PRESETS}) == len({preset.title for preset in PRESETS}) == len(PRESETS)
 
 
-def test_the_paper_and_many_places_in_all_three_cases_are_there() -> None:
+def test_all_groups_cases_planes_and_pictures_occur() -> None:
     places = [preset for preset in PRESETS if preset.group == "Places"]
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
@@ -57,14 +57,14 @@ def test_the_paper_and_many_places_in_all_three_cases_are_there() -> None:
 
 
 @each_preset
-def test_a_card_opens_a_legal_view(preset: Preset) -> None:
+def test_a_preset_is_a_valid_view(preset: Preset) -> None:
     spec = ViewState(**preset.values()).map_spec()
     assert spec.t_max == preset.t_max
     assert spec.window == preset.window or preset.window is None
 
 
 @each_preset
-def test_a_link_to_what_a_card_opens_reads_back(preset: Preset) -> None:
+def test_a_link_to_a_preset_restores_it(preset: Preset) -> None:
     link = write_link(ViewState(**preset.values()))
     values, problems = read_link(dict(parse_qsl(link[1:], strict_parsing=True)))
     assert not problems
@@ -81,12 +81,12 @@ def test_a_thumbnail_is_small(preset: Preset) -> None:
         assert picture.size == (160, 160)
 
 
-def test_every_thumbnail_has_a_card() -> None:
+def test_every_thumbnail_has_a_preset() -> None:
     assert {file.stem for file in THUMBNAILS.iterdir()} == {preset.key for preset in PRESETS}
 
 
 @each_preset
-def test_starts_lie_in_view_and_are_allowed(preset: Preset) -> None:
+def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
     spec = ViewState(**preset.values()).map_spec()
     assert 1 <= len(set(preset.starts)) == len(preset.starts) <= MOST_ORBITS
     for x, ordinate in preset.starts:
@@ -108,11 +108,11 @@ def test_starts_lie_in_view_and_are_allowed(preset: Preset) -> None:
         ("ajar", [1, 2, 3, 0]),
     ],
 )
-def test_orbits_end_as_the_caption_says(key: str, expected: list[int]) -> None:
+def test_fates_agree_with_the_caption(key: str, expected: list[int]) -> None:
     assert fates(named(key)) == expected
 
 
-def test_the_shares_are_those_in_the_caption() -> None:
+def test_shares_agree_with_the_caption() -> None:
     preset = named("shares")
     found = compute_map(ViewState(**preset.values()).map_spec())
     shares = found.fractions()
@@ -123,7 +123,7 @@ def test_the_shares_are_those_in_the_caption() -> None:
     assert direct == pytest.approx(0.75, abs=0.03)
 
 
-def test_stability_ends_at_the_ceiling() -> None:
+def test_the_limit_of_stability_agrees_with_the_caption() -> None:
     preset = named("ceiling")
     spec = replace(ViewState(**preset.values()).map_spec(), resolution=(2, 400))
     found = compute_map(replace(spec, window=replace(spec.window, x_low=-1e-3, x_high=1e-3)))
@@ -132,20 +132,20 @@ def test_stability_ends_at_the_ceiling() -> None:
 
 
 @pytest.mark.slow
-def test_the_clinging_orbit_looks_regular_for_long_and_leaves_late() -> None:
-    orbit = followed(named("super-sticky"))
+def test_the_sticky_orbit_looks_regular_and_escapes_late() -> None:
+    orbit = integrate(named("super-sticky"))
     assert orbit.fate >= 1
-    # Chaos lets other processors disagree on the last digits, and with them on the moment it leaves.
+    # Rounding differs between processors, and chaos amplifies it: the escape time varies.
     assert 22_000 < orbit.escape_time < 60_000
     early = orbit.t < 20_000
     assert orbit.sali[early].min() > 1e-4
     assert orbit.r2[early].max() < 0.91
 
 
-def test_only_keys_of_cards_are_heard() -> None:
+def test_the_gallery_accepts_only_keys_of_presets() -> None:
     opened: list[Preset] = []
     gallery = Gallery(opened.append)
     messages: list[Any] = ["owl", "no such key", None, 7, ["owl"], {"owl": 1}]
     for message in messages:
-        gallery._hear(message)
+        gallery._receive(message)
     assert opened == [named("owl")]

@@ -1,4 +1,4 @@
-"""The system in view: its potential, what it is called, and the energies worth a look."""
+"""The selected system: its potential, name and energy range."""
 
 from __future__ import annotations
 
@@ -12,48 +12,48 @@ from engine import CASES, POTENTIALS, channel_family, parse_formula, review_pote
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 
 
-def test_a_case_is_that_of_the_paper() -> None:
+def test_a_case_has_the_potential_and_the_energies_of_the_paper() -> None:
     assert System("II").potential == CASES["II"]
     assert System("II").energies == ENERGIES["II"]
 
 
-def test_parameters_change_a_potential_and_its_energies_with_it() -> None:
+def test_parameters_change_the_potential_and_its_energies() -> None:
     system = System("I", epsilon=0.5)
     assert system.potential == CASES["I"].with_parameters(epsilon=0.5)
     assert system.changed == {"epsilon": 0.5}
-    # With half the perturbation the saddles lie twice as far out, four times as high.
+    # With half the perturbation the saddles are at twice the distance and four times the energy.
     assert system.energies.low == pytest.approx(0.8 * 0.5)
     assert system.energies.marked == ()
 
 
-def test_a_formula_makes_a_potential() -> None:
+def test_a_formula_gives_a_potential() -> None:
     assert System(TYPED, HENON_HEILES).potential == POTENTIALS["HH"].potential
 
 
 @pytest.mark.parametrize("system", [System(TYPED, "x y z"), System(TYPED), System("I", omega_1=1e3)])
-def test_what_is_no_system_has_no_potential(system: System) -> None:
+def test_an_invalid_system_has_no_potential(system: System) -> None:
     with pytest.raises(ValueError, match=r"formula|omega_1"):
         _ = system.potential
 
 
 @pytest.mark.parametrize("name", POTENTIALS)
-def test_the_slider_begins_below_the_escape_energy_and_a_look_above_it(name: str) -> None:
+def test_the_slider_contains_the_escape_energy_below_the_initial_energy(name: str) -> None:
     energies, escape = System(name).energies, POTENTIALS[name].potential.escape_energy
     assert energies.low < escape < energies.first < energies.high <= review_potential(POTENTIALS[name].potential).highest_energy
 
 
-def test_the_formula_shown_holds_the_parameters() -> None:
+def test_the_formula_contains_the_parameters() -> None:
     assert System("III").formula_shown == POTENTIALS["III"].formula
     assert parse_formula(System("III", omega_2=1.5).formula_shown) == System("III", omega_2=1.5).potential
 
 
-def test_more_exits_than_colours_are_refused() -> None:
+def test_more_exits_than_colours_are_rejected() -> None:
     assert "colours" in str(refusal(review_potential(channel_family(MOST_CHANNELS + 1))))
 
 
-def test_an_escape_energy_below_zero_is_refused() -> None:
+def test_a_negative_escape_energy_is_rejected() -> None:
     assert "constant term" in str(refusal(review_potential(parse_formula(f"{HENON_HEILES} − 1"))))
 
 
-def test_a_known_potential_is_not_refused() -> None:
+def test_known_potentials_are_accepted() -> None:
     assert [name for name in POTENTIALS if refusal(review_potential(POTENTIALS[name].potential))] == []

@@ -1,4 +1,4 @@
-"""The view state turns choices into requests."""
+"""The view state converts choices to requests."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.state.view_state import ViewState
 from engine import CASES, Plane
 
 
-def test_the_request_is_what_was_chosen() -> None:
+def test_the_map_has_the_chosen_parameters() -> None:
     spec = ViewState(case="III", plane=Plane.X_Y, energy=0.45, t_max=1e3, resolution=113).map_spec()
     assert (spec.potential, spec.plane, spec.energy, spec.resolution, spec.t_max) == (
         CASES["III"],
@@ -50,7 +50,7 @@ def starts_of(count: int) -> list[tuple[float, float]]:
     return [(0.01 * k, 0.0) for k in range(count)]
 
 
-def test_each_start_is_added_after_the_others_and_looked_at() -> None:
+def test_a_new_start_is_the_last_and_chosen() -> None:
     view = ViewState()
     for start in starts_of(3):
         view.add_start(start)
@@ -58,7 +58,7 @@ def test_each_start_is_added_after_the_others_and_looked_at() -> None:
     assert view.starts == tuple(starts_of(3))
 
 
-def test_with_all_places_taken_a_start_takes_the_one_after_the_chosen() -> None:
+def test_with_the_maximal_number_of_starts_the_one_after_the_chosen_is_replaced() -> None:
     view = ViewState()
     for start in starts_of(MOST_ORBITS + 2):
         view.add_start(start)
@@ -67,7 +67,7 @@ def test_with_all_places_taken_a_start_takes_the_one_after_the_chosen() -> None:
     assert rest == starts_of(MOST_ORBITS)[2:]
 
 
-def test_a_start_that_is_there_already_is_looked_at() -> None:
+def test_an_existing_start_is_chosen() -> None:
     view = ViewState(starts=tuple(starts_of(3)), chosen=2)
     view.add_start(starts_of(3)[0])
     assert view.starts == tuple(starts_of(3))
@@ -75,21 +75,21 @@ def test_a_start_that_is_there_already_is_looked_at() -> None:
 
 
 @pytest.mark.parametrize(("place", "chosen"), [(0, 1), (2, 1)])
-def test_a_removed_start_leaves_one_to_look_at(place: int, chosen: int) -> None:
+def test_after_a_removal_another_start_is_chosen(place: int, chosen: int) -> None:
     view = ViewState(starts=tuple(starts_of(3)), chosen=2)
     view.remove_start(place)
     assert len(view.starts) == 2
     assert view.chosen == chosen
 
 
-def test_without_starts_nothing_is_looked_at() -> None:
+def test_without_starts_none_is_chosen() -> None:
     view = ViewState(starts=tuple(starts_of(1)))
     view.remove_start(0)
     assert view.chosen_start is None
 
 
 @pytest.mark.parametrize("case", list(CASES))
-def test_the_slider_spans_the_escape_energy_and_every_energy_of_the_paper(case: str) -> None:
+def test_the_slider_contains_the_escape_energy_and_all_energies_of_the_paper(case: str) -> None:
     energies = ENERGIES[case]
     assert energies.low < CASES[case].escape_energy < min(energies.marked)
     assert len(energies.marked) == 9

@@ -1,4 +1,4 @@
-"""Back and forward among windows, as in a browser."""
+"""History of windows, as in a browser."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from engine import Window
 A, B, C = (Window(0.0, side, 0.0, side) for side in (1.0, 0.5, 0.25))
 
 
-def test_back_leads_to_the_whole_and_forward_returns() -> None:
+def test_back_ends_at_the_whole_interior_and_forward_returns() -> None:
     history = ZoomHistory()
     history.visit(A)
     history.visit(B)
@@ -16,7 +16,7 @@ def test_back_leads_to_the_whole_and_forward_returns() -> None:
     assert (history.forward(), history.forward(), history.forward()) == (A, B, B)
 
 
-def test_a_new_window_forgets_what_was_ahead() -> None:
+def test_a_new_window_drops_later_ones() -> None:
     history = ZoomHistory()
     history.visit(A)
     history.visit(B)
@@ -26,13 +26,13 @@ def test_a_new_window_forgets_what_was_ahead() -> None:
     assert history.back() == A
 
 
-def test_staying_is_no_visit() -> None:
+def test_the_current_window_is_not_added_again() -> None:
     history = ZoomHistory()
     history.visit(None)
     assert not history.can_go_back
 
 
-def test_a_cleared_history_begins_anew() -> None:
+def test_a_cleared_history_is_empty() -> None:
     history = ZoomHistory()
     history.visit(A)
     history.clear()

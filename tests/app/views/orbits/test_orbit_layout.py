@@ -1,4 +1,4 @@
-"""Panes come with the orbits that they need."""
+"""The plots on the page depend on the number of orbits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.separation_plot import SeparationPlot
 
 
-def test_panes_come_and_go_with_the_orbits() -> None:
+def test_plots_are_added_and_removed_with_the_orbits() -> None:
     row = OrbitLayout(OrbitPlots(), SeparationPlot())
     shown = []
     for orbits in (0, 1, 2, 5, 0):

@@ -1,4 +1,4 @@
-"""Files are made of what was there when they were asked for, and nobody else waits for them."""
+"""Files hold the state at the moment of the click, and are made without blocking the event loop."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from app.state.view_state import ViewState
 from app.views.panels import downloads
 from app.views.panels.downloads import Downloads
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, integrate_orbit
-from tests.app.other_loop import run_elsewhere
+from tests.app.other_loop import run_on_new_loop
 
 STATE = (0.1, 0.0, 0.05, 0.6)
 
@@ -29,8 +29,8 @@ def escape_map() -> EscapeMap:
 
 
 @pytest.fixture
-def along(escape_map: EscapeMap) -> Downloads:
-    """With a whole map, and one orbit."""
+def downloads_view(escape_map: EscapeMap) -> Downloads:
+    """With a complete map and one orbit."""
     shown = Downloads(ViewState(case="I", energy=0.19), lambda: None)
     shown.show_map(escape_map)
     orbit = integrate_orbit(CASES["I"], STATE, 50.0)
@@ -39,38 +39,44 @@ def along(escape_map: EscapeMap) -> Downloads:
 
 
 @pytest.mark.parametrize(
-    ("maker", "button", "begins"),
-    [("png_bytes", "picture", b"\x89PNG"), ("netcdf_bytes", "maps", b"\x89HDF"), ("orbits_csv", "orbits", b"# escape-explorer")],
+    ("maker", "file", "begins"),
+    [("png_bytes", "png_file", b"\x89PNG"), ("netcdf_bytes", "netcdf_file", b"\x89HDF"), ("orbits_csv", "csv_file", b"# escape")],
 )
-def test_the_loop_goes_on_while_a_file_is_made(
-    along: Downloads, maker: str, button: str, begins: bytes, monkeypatch: pytest.MonkeyPatch
+def test_the_event_loop_runs_while_a_file_is_made(
+    downloads_view: Downloads, maker: str, file: str, begins: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    others_answered = threading.Event()
+    loop_has_run = threading.Event()
     make: Callable[..., Any] = getattr(downloads, maker)
 
-    def make_after_the_others(*arguments: Any, **named: Any) -> Any:
-        assert others_answered.wait(30), "everybody waited for the file"
+    def make_after_the_loop_has_run(*arguments: Any, **named: Any) -> Any:
+        assert loop_has_run.wait(30), "the event loop was blocked"
         return make(*arguments, **named)
 
-    async def press() -> BytesIO:
-        asyncio.get_running_loop().call_later(0.05, others_answered.set)
-        return await getattr(along, button).callback()
+    async def save() -> None:
+        asyncio.get_running_loop().call_later(0.05, loop_has_run.set)
+        await downloads_view.save(getattr(downloads_view, file)())
 
-    monkeypatch.setattr(downloads, maker, make_after_the_others)
-    assert run_elsewhere(press).getvalue().startswith(begins)
+    monkeypatch.setattr(downloads, maker, make_after_the_loop_has_run)
+    saved = record_saved(downloads_view, monkeypatch)
+    run_on_new_loop(save)
+    assert [content.startswith(begins) for _, content in saved] == [True]
 
 
-def test_a_file_is_of_the_map_that_was_there_when_it_was_asked_for(
-    along: Downloads, escape_map: EscapeMap, monkeypatch: pytest.MonkeyPatch
+def test_a_file_holds_the_map_at_the_moment_of_the_click(
+    downloads_view: Downloads, escape_map: EscapeMap, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    make = downloads.netcdf_bytes
-
-    def make_late(*arguments: Any) -> bytes:
-        along.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (3, 3), t_max=10.0)))
-        return make(*arguments)
-
-    monkeypatch.setattr(downloads, "netcdf_bytes", make_late)
-    file = run_elsewhere(along.maps.callback)
-    assert along.maps.filename == "escapes-I-x_px-h0.19.nc"
-    with xr.open_dataset(file, engine="h5netcdf") as dataset:
+    saved = record_saved(downloads_view, monkeypatch)
+    file = downloads_view.netcdf_file()
+    downloads_view.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (3, 3), t_max=10.0)))
+    run_on_new_loop(lambda: downloads_view.save(file))
+    (name, content), *_ = saved
+    assert name == "escapes-I-x_px-h0.19.nc"
+    with xr.open_dataset(BytesIO(content), engine="h5netcdf") as dataset:
         np.testing.assert_array_equal(dataset["fate"], escape_map.fate)
+
+
+def record_saved(view: Downloads, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bytes]]:
+    """Files that are sent to the browser from now on."""
+    saved: list[tuple[str, bytes]] = []
+    monkeypatch.setattr(view.saver, "save", lambda name, content: saved.append((name, content)))
+    return saved

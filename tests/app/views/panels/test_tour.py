@@ -1,4 +1,4 @@
-"""The tour walks through its steps and ends."""
+"""The tour shows its steps and ends."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def test_a_tour_runs_only_once_started() -> None:
     assert tour.step is STEPS[0]
 
 
-def test_steps_follow_one_another_and_the_last_one_ends_the_tour() -> None:
+def test_the_last_step_ends_the_tour() -> None:
     tour = Tour()
     tour.start()
     seen = []
@@ -33,7 +33,7 @@ def test_going_back_stays_within_the_tour() -> None:
     assert tour.running
 
 
-def test_a_tour_begins_anew_wherever_it_was_left() -> None:
+def test_a_tour_always_starts_at_the_first_step() -> None:
     tour = Tour()
     tour.start()
     tour.next()

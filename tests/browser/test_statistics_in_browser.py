@@ -1,9 +1,10 @@
-"""The picture in numbers: the whole view, and a box of it."""
+"""Statistics of the whole view and of a box."""
 
 from __future__ import annotations
 
 from playwright.sync_api import expect
 
+from app.views.components.numbers import percent
 from engine import CASES, MapSpec, Plane, compute_map, compute_statistics
 from tests.browser.explorer_page import ExplorerPage
 
@@ -24,27 +25,27 @@ def choose_box_tool(explorer: ExplorerPage) -> None:
     )
 
 
-def test_the_numbers_are_those_of_the_map(shared: ExplorerPage) -> None:
+def test_the_statistics_are_those_of_the_map(shared: ExplorerPage) -> None:
     statistics = compute_statistics(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19)))
-    table = shared.page.get_by_text("Shares of the interior starts in the whole view").locator("xpath=ancestor::table")
-    expect(table).to_contain_text(f"{statistics.shares[1]:.2%}")
-    expect(table).to_contain_text(f"{statistics.direct_share:.2%}")
+    table = shared.page.get_by_text("Interior starts in the whole view").locator("xpath=ancestor::table")
+    expect(table).to_contain_text(percent(statistics.shares[1], 2))
+    expect(table).to_contain_text(percent(statistics.direct_share, 2))
     expect(table).to_contain_text(f"{statistics.median_escape_time:.4g}")
 
 
-def test_a_box_counts_what_is_in_it_and_the_whole_view_comes_back(shared: ExplorerPage) -> None:
+def test_a_box_can_be_counted_and_removed(shared: ExplorerPage) -> None:
     choose_box_tool(shared)
     drag(shared, (-0.1, 0.2), (0.1, 0.4))
-    expect(shared.text("Shares of the interior starts in the box drawn on the maps")).to_be_visible()
+    expect(shared.text("Interior starts in the box drawn on the maps")).to_be_visible()
     box = shared.model_data("box")
     assert [box["left"][0], box["right"][0]] == [-0.1, 0.1] or abs(box["left"][0] + 0.1) < 0.01
-    expect(shared.page.get_by_label("numbers table")).to_contain_text("100.00%")
+    expect(shared.page.get_by_label("statistics")).to_contain_text("100.00 %")
     shared.press("Count the whole view")
-    expect(shared.text("Shares of the interior starts in the whole view")).to_be_visible()
+    expect(shared.text("Interior starts in the whole view")).to_be_visible()
     assert shared.model_data("box")["left"] == []
 
 
-def test_the_charts_hold_every_escape(shared: ExplorerPage) -> None:
+def test_the_histogram_counts_every_escape(shared: ExplorerPage) -> None:
     statistics = compute_statistics(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19)))
     tops = shared.page.evaluate(
         """() => {

@@ -1,4 +1,4 @@
-"""Visitors without a browser: Bokeh's protocol over a WebSocket, as much of it as dragging, choosing and clicking need."""
+"""Simulated sessions without a browser: the part of Bokeh's WebSocket protocol that dragging, choosing and clicking need."""
 
 from __future__ import annotations
 
@@ -22,31 +22,45 @@ CHEAP_ENERGIES = {"I": (0.22, 0.45), "II": (0.22, 0.45), "III": (0.40, 0.90)}
 """Energies well above the escape energy, where a map takes the least time."""
 
 MOVES, MOVE_SECONDS = 8, 0.05
-"""A drag: that many places of the slider on its way, one every so many seconds."""
+"""Number of slider moves of a drag, and the time between them."""
 
 PAUSE_SECONDS = 1.0, 5.0
-LONGEST_FRAME_SECONDS = 30.0
-"""A visitor whose frame has not come by then counts as one whom the server has failed."""
+FRAME_TIMEOUT_SECONDS = 30.0
+"""A frame that takes longer counts as an error."""
 
-ACTS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
-"""What visitors do, with its weights."""
+ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
+"""Actions and their weights."""
 
 
 @dataclass
 class Record:
-    """What all visitors together went through; times in seconds."""
+    """Measurements of all sessions; times in seconds.
+
+    Attributes
+    ----------
+    opening
+        From the request of a page to its first map.
+    waits
+        By action, from the action to the first frame of its map.
+    replaced
+        Time waited in vain for a map before the next action replaced it.
+    previews, clicks, orbit_plots
+        Counts.
+    errors
+        Messages.
+    """
 
     opening: list[float] = field(default_factory=list)
-    waits: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ACTS if name != "click"})
-    overtaken: list[float] = field(default_factory=list)
-    looks: int = 0
+    waits: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ACTIONS if name != "click"})
+    replaced: list[float] = field(default_factory=list)
+    previews: int = 0
     clicks: int = 0
-    drawn: int = 0
+    orbit_plots: int = 0
     errors: list[str] = field(default_factory=list)
 
 
 class Channel:
-    """One WebSocket that speaks Bokeh's protocol."""
+    """A WebSocket with Bokeh's protocol."""
 
     def __init__(self, socket: WebSocketClientConnection) -> None:
         self._socket = socket
@@ -54,42 +68,44 @@ class Channel:
 
     @classmethod
     async def open(cls, address: str) -> Channel:
-        """Fetch the page, and connect with the token in it."""
+        """Fetch the page and connect with its token."""
         page = await AsyncHTTPClient().fetch(address, request_timeout=60.0)
         return await cls.connect(address, page.body.decode())
 
     @classmethod
     async def connect(cls, address: str, page: str) -> Channel:
-        """Connect with the token in a page that has been fetched."""
+        """Connect with the token of a page already fetched."""
         token = re.search(r'"token":"([^"]+)"', page)
         if token is None:
             raise RuntimeError("the page has no token")
         socket = await websocket_connect(re.sub("^http", "ws", address) + "/ws", subprotocols=["bokeh", token[1]])
-        # As browsers do.
+        # As in browsers.
         socket.protocol.set_nodelay(True)
         return cls(socket)
 
     def send(self, kind: str, content: dict[str, Any]) -> None:
-        header = {"msgid": f"visitor-{next(self._numbers)}", "msgtype": kind}
+        """Send a message."""
+        header = {"msgid": f"simulated-{next(self._numbers)}", "msgtype": kind}
         for part in (header, {}, content):
             self._socket.write_message(json.dumps(part))
 
     def patch(self, event: dict[str, Any]) -> None:
+        """Send one event of a document patch."""
         self.send("PATCH-DOC", {"events": [event]})
 
     def set(self, model: str, **values: Any) -> None:
-        """Change a model's attributes, as its view in the browser does."""
+        """Change attributes of a model, as its view in the browser does."""
         events = [{"kind": "ModelChanged", "model": {"id": model}, "attr": name, "new": value} for name, value in values.items()]
         self.send("PATCH-DOC", {"events": events})
 
-    def tell(self, name: str, **values: Any) -> None:
-        """Report an event of the page."""
+    def emit(self, name: str, **values: Any) -> None:
+        """Send an event of a model or of the document."""
         entries = [[key, value] for key, value in values.items()]
         data = {"type": "event", "name": name, "values": {"type": "map", "entries": entries}}
         self.patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": data})
 
     async def messages(self) -> AsyncIterator[tuple[str, str]]:
-        """Kind and content of what the server says, until the socket closes; pixels are let go by."""
+        """Kind and content of each message from the server until the socket closes; binary buffers are skipped."""
         try:
             while True:
                 header, _, content = [await self._part() for _ in range(3)]
@@ -101,7 +117,7 @@ class Channel:
             return
 
     async def _part(self) -> Any:
-        # A socket that closes says None once, and then nothing.
+        # A closed socket gives None once, then no further message.
         part = await self._socket.read_message()
         if part is None:
             raise EOFError
@@ -111,8 +127,8 @@ class Channel:
         self._socket.close()
 
 
-class JobClient:
-    """One session, from its page to its end."""
+class SimulatedSession:
+    """One session with random actions."""
 
     def __init__(self, address: str, seed: int, record: Record) -> None:
         self._address, self._record = address, record
@@ -120,142 +136,144 @@ class JobClient:
         self._channel: Channel | None = None
         self._models: dict[str, str] = {}
         self._case, self._plane = "I", Plane.X_PX
-        self._asked: tuple[str, float] | None = None
-        self._wish: dict[str, str] = {}
-        self._begun = True
-        self._here = asyncio.Event()
-        self._leaving = False
-        self._reading: asyncio.Task[None] | None = None
+        # The action whose map is awaited, and its time.
+        self._awaited: tuple[str, float] | None = None
+        # Parameters of the page's address after that action, and whether the address has them.
+        self._parameters: dict[str, str] = {}
+        self._accepted = True
+        self._opened = asyncio.Event()
+        self._closing = False
+        self._reader: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
         """Load the page and wait for its first map."""
         begin = time.perf_counter()
         self._channel = await Channel.open(self._address)
-        self._reading = asyncio.create_task(self._read(self._channel))
+        self._reader = asyncio.create_task(self._read(self._channel))
         try:
-            await asyncio.wait_for(self._here.wait(), LONGEST_FRAME_SECONDS)
+            await asyncio.wait_for(self._opened.wait(), FRAME_TIMEOUT_SECONDS)
             self._record.opening.append(time.perf_counter() - begin)
         except TimeoutError:
-            self._record.errors.append(f"no map within {LONGEST_FRAME_SECONDS:g} s of opening the page")
+            self._record.errors.append(f"no map within {FRAME_TIMEOUT_SECONDS:g} s of opening the page")
 
-    async def stay(self, end: float) -> None:
-        """Do this and that until `time.perf_counter()` says `end`."""
+    async def run(self, end: float) -> None:
+        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map."""
         while True:
             pause = self._random.uniform(*PAUSE_SECONDS)
             if time.perf_counter() + pause > end:
                 break
             await asyncio.sleep(pause)
-            self._check_patience()
-            [act] = self._random.choices(list(ACTS), list(ACTS.values()))
-            await getattr(self, f"_act_{act}")()
-        last = time.perf_counter() + LONGEST_FRAME_SECONDS
-        while self._asked is not None and time.perf_counter() < last:
+            self._check_timeout()
+            [action] = self._random.choices(list(ACTIONS), list(ACTIONS.values()))
+            await getattr(self, f"_act_{action}")()
+        deadline = time.perf_counter() + FRAME_TIMEOUT_SECONDS
+        while self._awaited is not None and time.perf_counter() < deadline:
             await asyncio.sleep(0.05)
-        self._check_patience()
+        self._check_timeout()
 
-    async def leave(self) -> None:
+    async def close(self) -> None:
         """Close the page."""
-        self._leaving = True
-        if self._channel is not None and self._reading is not None:
+        self._closing = True
+        if self._channel is not None and self._reader is not None:
             self._channel.close()
-            self._reading.cancel()
-            await asyncio.wait([self._reading])
+            self._reader.cancel()
+            await asyncio.wait([self._reader])
 
     async def _act_slider(self) -> None:
         low, high = CHEAP_ENERGIES[self._case]
-        # Off the slider's steps, so that hardly any map has been computed before.
+        # Between the steps of the slider, so that hardly any map is cached.
         start, stop = (round(self._random.uniform(low, high), 6) for _ in range(2))
         for move in range(1, MOVES + 1):
             self._open_channel.set(self._models["Energy h"], value=start + (stop - start) * move / MOVES)
             await asyncio.sleep(MOVE_SECONDS)
-        self._ask("slider", h=repr(stop))
+        self._await_map("slider", h=repr(stop))
         self._open_channel.set(self._models["Energy h"], value=stop, value_throttled=stop)
 
     async def _act_case(self) -> None:
         cases = list(CHEAP_ENERGIES)
         self._case = self._random.choice([case for case in cases if case != self._case])
-        self._ask("case", case=self._case)
-        self._open_channel.set(self._models["Case"], value=self._case, active=cases.index(self._case))
+        self._await_map("case", case=self._case)
+        self._open_channel.set(self._models["Case"], active=cases.index(self._case))
 
     async def _act_plane(self) -> None:
         planes = list(Plane)
         self._plane = Plane.X_Y if self._plane is Plane.X_PX else Plane.X_PX
-        self._ask("plane", plane=self._plane.name.lower())
-        self._open_channel.set(self._models["Plane"], value=self._plane.value, active=planes.index(self._plane))
+        self._await_map("plane", plane=self._plane.name.lower())
+        self._open_channel.set(self._models["Plane"], active=planes.index(self._plane))
 
     async def _act_click(self) -> None:
         x, y = (self._random.uniform(-0.3, 0.3) for _ in range(2))
         self._record.clicks += 1
         figure = {"id": self._models["basins"]}
-        self._open_channel.tell("tap", model=figure, sx=0.0, sy=0.0, x=x, y=y, modifiers={"type": "map", "entries": []})
+        self._open_channel.emit("tap", model=figure, sx=0.0, sy=0.0, x=x, y=y, modifiers={"type": "map", "entries": []})
 
     @property
     def _open_channel(self) -> Channel:
-        assert self._channel is not None, "a visitor opens the page first"
+        assert self._channel is not None, "open the session first"
         return self._channel
 
-    def _ask(self, act: str, **wish: str) -> None:
-        """From now on a map is waited for; `wish` is what the page's address then says of it."""
-        if self._asked is not None:
-            self._record.overtaken.append(time.perf_counter() - self._asked[1])
-        self._asked, self._wish, self._begun = (act, time.perf_counter()), wish, False
+    def _await_map(self, action: str, **parameters: str) -> None:
+        """Wait for the map of an action, which gives the page's address these parameters."""
+        if self._awaited is not None:
+            self._record.replaced.append(time.perf_counter() - self._awaited[1])
+        self._awaited, self._parameters, self._accepted = (action, time.perf_counter()), parameters, False
 
-    def _check_patience(self) -> None:
-        if self._asked is not None and time.perf_counter() - self._asked[1] > LONGEST_FRAME_SECONDS:
-            self._record.errors.append(f"no frame within {LONGEST_FRAME_SECONDS:g} s of a {self._asked[0]}")
-            self._asked = None
+    def _check_timeout(self) -> None:
+        if self._awaited is not None and time.perf_counter() - self._awaited[1] > FRAME_TIMEOUT_SECONDS:
+            self._record.errors.append(f"no frame within {FRAME_TIMEOUT_SECONDS:g} s of a {self._awaited[0]}")
+            self._awaited = None
 
     async def _read(self, channel: Channel) -> None:
         try:
             async for kind, content in channel.messages():
-                self._hear(kind, content)
+                self._on_message(kind, content)
         except Exception as error:
             self._record.errors.append(f"{type(error).__name__}: {error}")
-        if not self._leaving:
+        if not self._closing:
             self._record.errors.append("the server closed a socket")
 
-    def _hear(self, kind: str, content: str) -> None:
+    def _on_message(self, kind: str, content: str) -> None:
         if kind == "ACK":
             self._open_channel.send("PULL-DOC-REQ", {})
         elif kind == "PULL-DOC-REPLY":
             self._models = dict(_named_models(json.loads(content)["doc"]))
-            self._open_channel.tell("document_ready")
+            self._open_channel.emit("document_ready")
         elif kind == "ERROR":
             self._record.errors.append(content[:300])
         elif kind == "PATCH-DOC":
-            self._hear_patch(content)
+            self._on_patch(content)
 
-    def _hear_patch(self, content: str) -> None:
+    def _on_patch(self, content: str) -> None:
         for event in json.loads(content)["events"]:
             model = event.get("model", {}).get("id")
             if event.get("attr") == "search":
-                # The address changes as the page takes a request: pixels that come before belong to the last one.
-                self._begun |= self._wish.items() <= dict(parse_qsl(event["new"].removeprefix("?"))).items()
+                # The address changes when the server accepts the action; earlier pixels belong to an earlier map.
+                self._accepted |= self._parameters.items() <= dict(parse_qsl(event["new"].removeprefix("?"))).items()
             if event.get("attr") == "data" and model in (self._models["maps"], self._models["paths"]):
                 columns = dict(event.get("new", event.get("data"))["entries"])
                 if model == self._models["maps"]:
-                    self._see(columns)
+                    self._on_pixels(columns)
                 elif columns["xs"]:
-                    self._record.drawn += 1
+                    self._record.orbit_plots += 1
 
-    def _see(self, columns: dict[str, Any]) -> None:
-        """Pixels: of a quick look, or of the map that is waited for."""
+    def _on_pixels(self, columns: dict[str, Any]) -> None:
+        """Record the pixels of a preview, or of the map that is awaited."""
         if columns["fate"][0]["shape"][0] == PREVIEW_SIDE:
-            self._record.looks += 1
-        elif not self._here.is_set():
-            self._here.set()
-        elif self._asked is not None and self._begun:
-            self._record.waits[self._asked[0]].append(time.perf_counter() - self._asked[1])
-            self._asked = None
+            self._record.previews += 1
+        elif not self._opened.is_set():
+            self._opened.set()
+        elif self._awaited is not None and self._accepted:
+            self._record.waits[self._awaited[0]].append(time.perf_counter() - self._awaited[1])
+            self._awaited = None
 
 
 def _named_models(part: Any) -> Iterator[tuple[str, str]]:
-    """Labels or names of models in a document, with their ids."""
+    """Names and accessible names of the models of a serialized document, with their ids."""
     if isinstance(part, dict):
-        attributes = part.get("attributes") or {}
-        for key in ("name", "label"):
-            if "id" in part and isinstance(attributes, dict) and isinstance(attributes.get(key), str):
-                yield attributes[key], part["id"]
+        attributes = part.get("attributes")
+        if "id" in part and isinstance(attributes, dict):
+            names = [attributes.get("name"), dict(attributes.get("html_attributes", {}).get("entries", ())).get("aria-label")]
+            yield from ((name, part["id"]) for name in names if isinstance(name, str))
         part = list(part.values())
     if isinstance(part, list):
         for inner in part:

@@ -1,4 +1,4 @@
-"""See why: doubtful pixels, manifolds, origins, measures, curves against energy and verdicts, on the page itself."""
+"""Analyses on the page: doubtful pixels, manifolds, origins, measures, curves against energy and verdicts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def switch(explorer: ExplorerPage, label: str) -> None:
     explorer.page.get_by_label(label, exact=True).click()
 
 
-def test_doubtful_pixels_are_those_of_the_engine_and_go_with_the_switch(open_explorer: OpenExplorer) -> None:
+def test_doubtful_pixels_are_those_of_the_engine_and_follow_the_switch(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW)
     switch(explorer, "Pixels to trust")
     expect(explorer.text("of the pixels inside are doubtful")).to_be_visible()
@@ -38,7 +38,7 @@ def test_manifolds_lie_on_the_section_and_follow_the_energy(open_explorer: OpenE
     explorer.wait_for_data("manifolds", "data.xs.length > 2")
     expect(explorer.text("Stable manifolds of the Lyapunov orbits")).to_be_visible()
     first = len(explorer.model_data("manifolds")["xs"])
-    explorer.type_number("h exactly", "0.4")
+    explorer.type_number("Exact h", "0.4")
     explorer.page.wait_for_function(
         f"Bokeh.documents[0].get_model_by_name('manifolds').data.xs.length > 0"
         f" && Bokeh.documents[0].get_model_by_name('manifolds').data.xs.length != {first}"
@@ -49,7 +49,7 @@ def test_origins_have_a_picture_and_a_key(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW)
     switch(explorer, "Origin and exit")
     expect(explorer.text("Origin and exit")).to_be_visible()
-    expect(explorer.text("came in by (down), leaves by (across)")).to_be_visible()
+    expect(explorer.text("Enters by (rows), leaves by (columns)")).to_be_visible()
     explorer.page.wait_for_function("Bokeh.documents[0].get_model_by_name('maps').data.passage[0].length > 1")
     passage, origins = explorer.column("passage"), compute_origin_fates(SPEC)
     same = (origins.origin == origins.fate) & (origins.fate == 1)
@@ -60,8 +60,8 @@ def test_origins_have_a_picture_and_a_key(open_explorer: OpenExplorer) -> None:
 @pytest.mark.slow
 def test_basins_are_measured(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW + "&measures=yes")
-    for said in ("Basin entropy.", "Wada.", "Escape law."):
-        expect(explorer.text(said)).to_be_visible()
+    for text in ("Basin entropy.", "Wada.", "Escape law."):
+        expect(explorer.text(text)).to_be_visible()
     explorer.wait_for_data("survival_steps", "data.t.length > 10")
     explorer.press("Measure the uncertainty exponent")
     expect(explorer.text("α =")).to_be_visible(timeout=60_000)
@@ -69,19 +69,19 @@ def test_basins_are_measured(open_explorer: OpenExplorer) -> None:
 
 
 @pytest.mark.slow
-def test_a_sweep_draws_curves_and_a_click_opens_its_map(open_explorer: OpenExplorer) -> None:
+def test_curves_are_drawn_and_a_click_opens_a_map(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(height=2400, link=VIEW + "&energies=yes")
-    explorer.press("Sweep the energies")
+    explorer.press("Compute the curves")
     explorer.wait_for_data("energy_points", "data.h.length >= 3")
-    explorer.press("Stop")
-    expect(explorer.page.get_by_role("button", name="Sweep the energies")).to_be_visible()
+    explorer.page.get_by_role("button", name="Stop", exact=True).last.click()
+    expect(explorer.page.get_by_role("button", name="Compute the curves")).to_be_visible()
     points = explorer.model_data("energy_points")
     place = int(np.argmax(points["h"]))
-    explorer.page.get_by_role("button", name="Sweep the energies").scroll_into_view_if_needed()
+    explorer.page.get_by_role("button", name="Compute the curves").scroll_into_view_if_needed()
     explorer.forget_pixels()
     explorer.click("entropies", points["h"][place] - 1e-3, points["s_bb"][place])
     explorer.wait_for_new_pixels()
-    expect(explorer.page.get_by_label("h exactly")).to_have_value(re.compile("^0.5"))
+    expect(explorer.page.get_by_label("Exact h")).to_have_value(re.compile("^0.5"))
 
 
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
@@ -94,7 +94,7 @@ def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplor
     explorer.wait_for_data("exponent_histories", "data.xs.length == 1 && data.ys[0].length > 100")
 
 
-def test_a_link_switches_everything_on(open_explorer: OpenExplorer) -> None:
+def test_a_link_sets_the_switches(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW + "&trust=yes&origins=yes")
     for label in ("Pixels to trust", "Origin and exit"):
         expect(explorer.page.get_by_label(label, exact=True)).to_be_checked()

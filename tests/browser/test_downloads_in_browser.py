@@ -1,4 +1,4 @@
-"""What is taken along can be opened elsewhere: the link, pictures, maps, orbits and lines."""
+"""Downloads can be opened elsewhere: the link, pictures, maps, orbits and the script."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ def small(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
     return explorer
 
 
-def take(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
+def download_file(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
     with explorer.page.expect_download() as download:
-        explorer.page.get_by_text(label, exact=True).click()
+        explorer.press(label)
     return download.value.suggested_filename, Path(download.value.path()).read_bytes()
 
 
 def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
-    name, data = take(small, "Picture (PNG)")
+    name, data = download_file(small, "Picture (PNG)")
     assert name == "escapes-III-x_px-h0.45.png"
     picture = Image.open(io.BytesIO(data))
     assert picture.width > 3 * 600
@@ -41,7 +41,7 @@ def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
 
 
 def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
-    name, data = take(small, "Maps (NetCDF)")
+    name, data = download_file(small, "Maps (NetCDF)")
     assert name.endswith(".nc")
     expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (113, 113), t_max=1e3))
     with xr.open_dataset(io.BytesIO(data), engine="h5netcdf") as dataset:
@@ -49,30 +49,30 @@ def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
 
 
 def test_the_orbits_as_a_table(small: ExplorerPage) -> None:
-    name, data = take(small, "Orbits (CSV)")
+    name, data = download_file(small, "Orbits (CSV)")
     assert name.endswith("orbits.csv")
     rows = [line for line in data.decode().splitlines() if not line.startswith("#")]
     assert rows[0] == "orbit,t,x,y,px,py,sali,lyapunov_exponent,r2"
     assert {row.split(",")[0] for row in rows[1:]} == {"1", "2"}
 
 
-def test_the_lines_that_make_it_again(small: ExplorerPage) -> None:
-    name, data = take(small, "Python lines")
+def test_a_script_that_computes_the_map(small: ExplorerPage) -> None:
+    name, data = download_file(small, "Python script")
     assert name.endswith(".py")
     assert "0.45" in data.decode()
     compile(data, name, "exec")
 
 
 def test_the_link_is_copied(small: ExplorerPage) -> None:
-    small.press("Copy the link")
-    expect(small.text("The link is in the clipboard.")).to_be_visible()
+    small.press("Copy link")
+    expect(small.text("Link copied.")).to_be_visible()
     assert small.page.evaluate("() => navigator.clipboard.readText()") == small.page.url
 
 
-def test_a_link_brings_palette_orbits_and_the_one_looked_at(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_a_link_has_palette_orbits_and_the_chosen_one(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=SMALL + "&look=1&palette=safe")
     explorer.wait_for_data("starts", "data.x.length == 2")
-    expect(explorer.page.get_by_role("button", name="1", exact=True)).to_have_attribute("aria-pressed", "true")
+    expect(explorer.radio("1")).to_be_checked()
     colours = explorer.page.evaluate(
         """() => Bokeh.documents[0].get_model_by_name('basins').renderers
             .find(r => r.data_source.name == 'maps').glyph.color_mapper.palette"""

@@ -1,0 +1,44 @@
+"""Search for the nearest divergent start of an orbit: the nearest start that escapes elsewhere, on the page its twin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from app.job_clients.latest_request import LatestRequest
+from app.job_clients.locking import Locked
+from app.state.view_state import ViewState
+from engine import Answer, DivergentStart, DivergentStartRequest, JobSubmitter, describe_fate
+
+
+class DivergentStartRequests:
+    """Search of one session; the start found is added to the view state, and `notify(sentence)` reports progress."""
+
+    def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
+        self._state, self._notify = state, notify
+        self._spec: DivergentStartRequest | None = None
+        self._request = LatestRequest(jobs, self._on_answer, notify, locked)
+
+    def search(self) -> None:
+        """Search around the chosen start."""
+        self._request.cancel()
+        state, start = self._state, self._state.chosen_start
+        if start is None:
+            self._notify("Click a start first: its twin is the nearest start that escapes elsewhere.")
+            return
+        self._notify("Searching for the nearest start that escapes elsewhere …")
+        self._spec = DivergentStartRequest(state.potential, state.plane, state.energy, *start, state.t_max)
+        self._request.submit(self._spec)
+
+    def close(self) -> None:
+        """Cancel the search."""
+        self._request.cancel()
+
+    def _on_answer(self, answer: Answer[DivergentStart | None]) -> None:
+        spec, twin = self._spec, answer.value
+        if spec is None or self._state.chosen_start != (spec.x, spec.ordinate):
+            return
+        if twin is None:
+            self._notify("No start near this one escapes elsewhere.")
+        else:
+            self._state.add_start((twin.x, twin.ordinate))
+            self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate)}")

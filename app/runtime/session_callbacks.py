@@ -1,0 +1,92 @@
+"""Callbacks that worker threads may call and that run on the event loop under the lock of a session.
+
+Bokeh's ``Document.locked_callback`` is not used: it schedules its calls through events of the document. While a
+callback holds these events back (``pn.io.hold``), Panel and Bokeh copy the list of held events and then replace it; an
+event that a thread appends in between is lost, and with ``policy="latest"`` a lost event blocks all later frames.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import weakref
+from collections import deque
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from typing import Any
+
+from bokeh.application.application import SessionContext
+from bokeh.document import Document
+from panel.io.state import set_curdoc
+
+log = logging.getLogger(__name__)
+
+
+class SessionCallbacks:
+    """Wraps functions that change the document of one session; create it on the event loop, while the page is built.
+
+    A wrapped function returns at once. Its calls run on the event loop, one at a time and in order, with the document
+    locked and set as the current one. Calls after the end of the session are dropped. Without a session, as in a
+    notebook, wrapped functions are called directly.
+    """
+
+    def __init__(self, document: Document) -> None:
+        self._document = weakref.ref(document)
+        self._loop = asyncio.get_running_loop() if document.session_context is not None else None
+
+    def every(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Wrap a function; every call runs."""
+        return self._wrap(function, None)
+
+    def latest(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Wrap a function; of the calls that wait, only the latest runs."""
+        return self._wrap(function, 1)
+
+    def _wrap(self, function: Callable[..., Any], most_waiting: int | None) -> Callable[..., Any]:
+        return function if self._loop is None else _LockedCallback(self._loop, self._document, function, most_waiting)
+
+
+class _LockedCallback:
+    def __init__(
+        self,
+        loop: asyncio.AbstractEventLoop,
+        document: weakref.ref[Document],
+        function: Callable[..., Any],
+        most_waiting: int | None,
+    ) -> None:
+        self._loop, self._document, self._function = loop, document, function
+        self._calls: deque[Callable[[], Any]] = deque(maxlen=most_waiting)
+        self._task: asyncio.Task[None] | None = None
+
+    def __call__(self, *args: Any, **kwargs: Any) -> None:
+        self._calls.append(partial(self._function, *args, **kwargs))
+        # The loop is closed when the server has stopped.
+        with suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._start)
+
+    def _start(self) -> None:
+        if self._task is None or self._task.done():
+            self._task = self._loop.create_task(self._run_calls())
+
+    async def _run_calls(self) -> None:
+        while self._calls and (context := self._open_session()) is not None:
+            try:
+                await context.with_locked_document(self._run_one)
+            except Exception:
+                log.exception("the changes of a callback could not be sent")
+                self._calls.clear()
+
+    def _open_session(self) -> SessionContext | None:
+        document = self._document()
+        context = document.session_context if document is not None else None
+        return context if context is not None and not context.destroyed else None
+
+    async def _run_one(self, document: Document) -> None:
+        if self._calls:
+            call = self._calls.popleft()
+            try:
+                with set_curdoc(document):
+                    call()
+            except Exception:
+                log.exception("a callback failed")

@@ -1,0 +1,69 @@
+"""Install the server's request handlers in ``bokeh.server.urls``, from which Bokeh builds its web application.
+
+Bokeh documents both lists (https://docs.bokeh.org/en/latest/docs/reference/server/urls.html); Panel puts its own
+handlers there as well. They are the only public way to reach the handlers of ``panel serve`` without a command line
+option: lifecycle hooks get no reference to the web application, which already exists when they run.
+
+Not covered, because Bokeh and Panel add them elsewhere: the redirect from ``/``, ``/favicon.ico``, ``/app/static`` and
+Panel's ``/components`` and login pages.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from panel.io.server import DocHandler, RootHandler, WSHandler
+
+from app.runtime.process_state import process_state
+from app.runtime.settings import Tuning
+from app.server.endpoints import ROUTES, NotFound
+from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
+
+
+class PageHandler(SecurityHeaders, DocHandler):
+    """Serves the page with a nonce on its scripts."""
+
+    def write(self, chunk: Any) -> None:
+        """Write a response; a page gets the nonce and the matching policy."""
+        if isinstance(chunk, str):
+            nonce = new_nonce()
+            self.set_security_headers(nonce)
+            chunk = add_nonce(chunk, nonce)
+        super().write(chunk)
+
+
+class PageWebSocket(SecurityHeaders, WSHandler):
+    """WebSocket of a page; sends small messages at once.
+
+    A Bokeh message consists of a dozen WebSocket messages. By default, TCP delays all but the first until the client has
+    acknowledged it: one round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122,
+    4.2.3.2 and 4.2.3.4).
+    """
+
+    def open(self, *args: Any, **kwargs: Any) -> Any:
+        """Disable Nagle's algorithm and open the connection."""
+        if Tuning.TCP_NODELAY in process_state().settings.tuning:
+            self.set_nodelay(True)
+        return super().open(*args, **kwargs)
+
+
+def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
+    """Add security headers to the handlers in the lists, and append the operator's endpoints; a second call does nothing.
+
+    Parameters
+    ----------
+    per_app_patterns, toplevel_patterns
+        The lists in `bokeh.server.urls`: tuples of a path, a handler and, optionally, its arguments.
+    """
+    for patterns in (per_app_patterns, toplevel_patterns):
+        patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
+    toplevel_patterns += [route for route in (*ROUTES, ("/.*", NotFound)) if route not in toplevel_patterns]
+
+
+def _secured(handler: type) -> type:
+    """The same handler with security headers."""
+    # Bokeh recognises the root handler by identity.
+    if handler is RootHandler or issubclass(handler, SecurityHeaders):
+        return handler
+    replaced = {DocHandler: PageHandler, WSHandler: PageWebSocket}
+    return replaced.get(handler) or type(f"Secured{handler.__name__}", (SecurityHeaders, handler), {})

@@ -1,0 +1,53 @@
+"""Short messages in the corner of the page: passing ones, and lasting ones about the connection to the server."""
+
+from __future__ import annotations
+
+from html import escape
+from itertools import count
+
+import panel as pn
+from bokeh.document import Document
+from bokeh.models import CustomJS
+
+CONNECTION_LOST = "The connection to the server is lost. Reload this page: its address holds the view."
+NAME = "notice"
+"""Name of the Bokeh model, by which the server finds it in a document."""
+
+_ON_CONNECTION_LOST = """
+const pane = Bokeh.documents[0].get_model_by_name(name)
+pane.setv({text: html}, {sync: false})
+"""
+
+
+class Notice:
+    """Shows one message at a time."""
+
+    def __init__(self) -> None:
+        self._pane = pn.pane.HTML("", name=NAME, width=0, height=0, margin=0, styles={"position": "absolute"})
+        self._numbers = count()
+
+    def layout(self) -> pn.viewable.Viewable:
+        """The pane; its place on the page does not matter."""
+        return self._pane
+
+    def show(self, sentence: str) -> None:
+        """Show a message for a few seconds."""
+        # The number makes the same message twice two changes.
+        self._pane.object = _html(sentence, f"class='notice passing' data-number='{next(self._numbers)}'")
+
+
+def show_lasting_notice(document: Document, sentence: str) -> None:
+    """Show a message on the page of a document until the page is reloaded; needs the document's lock."""
+    model = document.get_model_by_name(NAME)
+    if model is not None:
+        model.text = escape(_html(sentence))
+
+
+def watch_connection(document: Document) -> None:
+    """Have the browser show `CONNECTION_LOST` when the server is gone."""
+    args = {"name": NAME, "html": _html(CONNECTION_LOST)}
+    document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
+
+
+def _html(sentence: str, attributes: str = "class='notice'") -> str:
+    return f"<div role='status' {attributes}>{escape(sentence)}</div>"

@@ -1,0 +1,53 @@
+"""Panel's widgets as this page uses them: with accessible names, and the classes that the stylesheet knows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import panel as pn
+from bokeh.document import Document
+
+NUMBER_FORMAT = "0.[0000000000000000]"
+"""Of number boxes: as many decimals as a number has."""
+
+
+class _NamedGroup:
+    """Mixin: the widget's element gets a role and its label as accessible name, which Bokeh does not set."""
+
+    _role: ClassVar[str] = "group"
+
+    def _get_properties(self, doc: Document | None) -> dict[str, Any]:
+        properties: dict[str, Any] = super()._get_properties(doc)  # type: ignore[misc]
+        return {**properties, "html_attributes": {"role": self._role, "aria-label": self.label}}  # type: ignore[attr-defined]
+
+
+class SegmentedControl(_NamedGroup, pn.widgets.RadioBoxGroup):
+    """Radio buttons drawn as one segmented control."""
+
+    _role = "radiogroup"
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(inline=True, css_classes=["segmented"], **options)
+
+
+class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
+    """Checkboxes drawn as switches; `value` lists those that are on."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(inline=True, css_classes=["switches"], **options)
+
+
+class Slider(_NamedGroup, pn.widgets.FloatSlider):
+    """A slider for a real number: `value` follows the thumb, `value_throttled` changes on release."""
+
+
+class NamedPlayer(_NamedGroup, pn.widgets.Player):
+    """A player whose buttons are named by the stylesheet."""
+
+
+def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:
+    """A button; `kind` is "default", "primary" for the main action of a section, or "light" for one without a frame."""
+    widget = pn.widgets.Button(label=label, color=kind, **options)
+    widget.on_click(lambda event: on_click())
+    return widget

@@ -1,0 +1,66 @@
+"""The state of a server process."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.runtime import process_state as module
+from app.runtime.process_state import ProcessState, process_state, start_process_state
+from app.runtime.settings import Settings
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def not_started(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setattr(module, "_started", None)
+    return
+
+
+@pytest.mark.usefixtures("not_started")
+def test_first_use_starts_with_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ESCAPE_EXPLORER_MOST_SESSIONS", "7")
+    state = process_state()
+    assert state.settings.most_sessions == 7
+    assert process_state() is state
+
+
+@pytest.mark.usefixtures("not_started")
+def test_explicit_settings_can_be_given_once() -> None:
+    state = start_process_state(Settings(most_sessions=3))
+    assert process_state() is state
+    with pytest.raises(RuntimeError, match="already been started"):
+        start_process_state(Settings())
+
+
+@pytest.mark.usefixtures("not_started")
+def test_invalid_environment_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ESCAPE_EXPLORER_THREADS", "0")
+    with pytest.raises(ValueError, match="ESCAPE_EXPLORER_THREADS"):
+        process_state()
+
+
+def test_settings_reach_the_jobs() -> None:
+    stats = ProcessState(Settings(cache_bytes=1000, most_orbits=2000, threads=3)).jobs.stats()
+    assert (stats.cache_limit, stats.orbits_limit, stats.threads) == (1000, 2000, 3)
+
+
+def test_idle_process_is_neither_busy_nor_overloaded() -> None:
+    state = ProcessState()
+    assert not state.is_busy()
+    assert not state.is_overloaded()
+
+
+def test_imports_do_not_read_the_environment() -> None:
+    script = (
+        "import os; os.environ['ESCAPE_EXPLORER_THREADS'] = '0'\n"
+        "import app.app_hooks, app.session.page\n"
+        "from app.runtime import process_state\n"
+        "assert process_state._started is None"
+    )
+    subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True, timeout=240)

@@ -1,0 +1,84 @@
+"""Bokeh models are changed under the session's lock, or while changes are held.
+
+Panel applies widget changes without the lock when a click follows within its debounce time. Bokeh then raises an error
+for every change of a bare model that is not held, and the click is lost.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from bokeh.application import Application
+from bokeh.application.handlers import FunctionHandler
+from bokeh.document import Document
+from bokeh.server.contexts import ApplicationContext
+from bokeh.server.session import ServerSession
+from panel.io.state import set_curdoc
+from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
+
+from app.rendering.palette import PALETTES
+from app.session.explorer import Explorer
+from app.session.page import explorer_page
+from app.state.view_state import SWITCHES
+from engine import Plane
+from tests.app.other_loop import run_on_new_loop
+
+CHANGES: list[Callable[[Explorer], Any]] = [
+    # Moves the markers of the orbit plots.
+    lambda explorer: explorer.playback.player.param.update(value=10),
+    lambda explorer: explorer.controls.exact_energy.param.update(value=0.3),
+    lambda explorer: explorer.controls.case.param.update(value="II"),
+    lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
+    lambda explorer: explorer.controls.t_max.param.update(value=1e3),
+    lambda explorer: explorer.controls.resolution.param.update(value=113),
+    lambda explorer: explorer.controls.palette.param.update(value=list(PALETTES)[-1]),
+    lambda explorer: explorer.analyses.switches.switches.param.update(value=list(SWITCHES)),
+    lambda explorer: explorer.analyses.switches.switches.param.update(value=[]),
+    lambda explorer: explorer.set_dark(True),
+]
+
+
+async def run_callbacks(session: ServerSession) -> None:
+    """Run the callbacks that have been scheduled."""
+    await asyncio.sleep(0.1)
+    while session._lock.locked():
+        await asyncio.sleep(0.01)
+
+
+async def with_session(change: Callable[[Explorer], Any]) -> None:
+    """Call a function with the explorer of a new session as current one, without its lock."""
+    built: list[Explorer] = []
+
+    def build(document: Document) -> None:
+        with set_curdoc(document):
+            built.append(Explorer())
+            built[0].orbit_layout.follow(2)
+            built[0].playback.follow(10.0)
+            explorer_page(built[0]).server_doc(document)
+
+    context = ApplicationContext(Application(FunctionHandler(build)))
+    context._can_initialize_document_in_worker = lambda: False  # type: ignore[method-assign]
+    headers = HTTPHeaders({"Host": "localhost"})
+    request = HTTPServerRequest(start_line=RequestStartLine("GET", "/app", "HTTP/1.1"), headers=headers)
+    session = await context.create_session_if_needed("session", request)  # type: ignore[arg-type]
+    [explorer] = built
+    try:
+        await run_callbacks(session)
+        with set_curdoc(session.document):
+            change(explorer)
+        await run_callbacks(session)
+    finally:
+        explorer.close()
+
+
+def test_widget_changes_need_no_lock(caplog: pytest.LogCaptureFixture) -> None:
+    run_on_new_loop(lambda: with_session(lambda explorer: [change(explorer) for change in CHANGES]))
+    assert [record for record in caplog.records if record.exc_info] == []
+
+
+def test_bare_models_need_the_lock() -> None:
+    with pytest.raises(RuntimeError, match="document lock"):
+        run_on_new_loop(lambda: with_session(lambda explorer: explorer.orbit_plots.set_time(1.0)))

@@ -1,0 +1,30 @@
+"""Notices are text, and the same notice can be shown twice."""
+
+from __future__ import annotations
+
+import panel as pn
+from bokeh.document import Document
+
+from app.views.components.notice import NAME, Notice, show_lasting_notice
+
+
+def test_the_same_notice_twice_is_two_changes() -> None:
+    notice = Notice()
+    contents = []
+    notice.layout().param.watch(lambda event: contents.append(event.new), "object")
+    notice.show("Link copied.")
+    notice.show("Link copied.")
+    assert len(contents) == 2
+    assert all("Link copied." in content for content in contents)
+
+
+def test_the_server_finds_the_notice_in_a_document() -> None:
+    document = Document()
+    pn.Column(Notice().layout()).server_doc(document)
+    show_lasting_notice(document, "<i>restart</i>")
+    assert "restart" in document.get_model_by_name(NAME).text
+    assert "<i>" not in document.get_model_by_name(NAME).text
+
+
+def test_a_document_without_a_notice_is_left_alone() -> None:
+    show_lasting_notice(Document(), "restart")

@@ -1,0 +1,13 @@
+"""Numbers as the page writes them."""
+
+from __future__ import annotations
+
+from app.views.components.numbers import grouped, percent
+
+
+def test_groups_of_three_digits() -> None:
+    assert [grouped(value) for value in (7, 1000.0, 1e6)] == ["7", "1 000", "1 000 000"]
+
+
+def test_percentages() -> None:
+    assert (percent(0.0333), percent(0.5, 0), percent(1.0, 2)) == ("3.3 %", "50 %", "100.00 %")

@@ -1,0 +1,41 @@
+"""The stylesheet defines every token it uses, in both themes, and loads nothing."""
+
+from __future__ import annotations
+
+import re
+
+import panel as pn
+from bokeh.document import Document
+from bokeh.models import InlineStyleSheet
+
+from app.views.components.theme import ExplorerDesign, theme_css
+
+COLOURS = re.compile(r"^  (--ui-[a-z-]+): (?:#|0 \d)", re.MULTILINE)
+
+
+def block(selector: str) -> str:
+    return theme_css().split(f"{selector} {{", 1)[1].split("\n}", 1)[0]
+
+
+def test_every_token_is_defined() -> None:
+    assert set(re.findall(r"var\((--ui-[a-z-]+)", theme_css())) <= set(re.findall(r"^  (--ui-[a-z-]+):", block(":root"), re.M))
+
+
+def test_the_dark_theme_changes_every_colour() -> None:
+    assert set(COLOURS.findall(block(":root"))) - {"--ui-focus"} == set(COLOURS.findall(block(':root[data-theme="dark"]')))
+
+
+def test_nothing_is_loaded() -> None:
+    assert not re.search(r"url\(|@import|@font-face", theme_css())
+
+
+def test_all_widgets_of_a_document_share_one_stylesheet() -> None:
+    document = Document()
+    row = pn.Row(pn.widgets.Button(label="a"), pn.widgets.Select(label="b"), design=ExplorerDesign)
+    row.server_doc(document)
+    sheets = {id(sheet) for model in document.models for sheet in getattr(model, "stylesheets", []) if is_theme(sheet)}
+    assert len(sheets) == 1
+
+
+def is_theme(sheet: object) -> bool:
+    return isinstance(sheet, InlineStyleSheet) and sheet.css == theme_css()
