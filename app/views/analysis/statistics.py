@@ -118,12 +118,14 @@ def _frame() -> dict[str, Any]:
     fonts = {"title": "14px", "labels": "12px", "ticks": "11px"}
     return {
         "width": FRAME + 60, "height": FRAME + 20, "fontsize": fonts, "toolbar": None,
-        "hooks": [_make_transparent],
+        "hooks": [_simplify],
     }  # fmt: skip
 
 
-def _make_transparent(plot: Any, _element: Any) -> None:
+def _simplify(plot: Any, _element: Any) -> None:
+    """Remove background and ticks, as in `square_figure`."""
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
+    plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
 
 
 def _plot(element: hv.Element) -> Any:

@@ -8,7 +8,7 @@ FULL_HEIGHT = {"max-height": "none"}
 """Styles: by default Bokeh limits a layout to the height of the window, and what follows overlaps it."""
 
 
-def flex_row(*views: pn.viewable.Viewable, justify: str = "flex-start", align: str = "flex-start", gap: str = "4px") -> pn.Column:
+def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = "start", gap: str = "4px") -> pn.Column:
     """A row as high as its content.
 
     It is a Column with another flex direction: a Row would be at least as wide as all its children together.
@@ -16,10 +16,15 @@ def flex_row(*views: pn.viewable.Viewable, justify: str = "flex-start", align: s
     Parameters
     ----------
     *views
-        What stands in it.
-    justify, align, gap
-        CSS values of justify-content, align-items and gap.
+        Children of the row.
+    justify
+        Horizontal place of the children, a CSS value of justify-content.
+    align
+        Vertical place of each child: start, center or end.
+    gap
+        Space between the children, a CSS length.
     """
-    flow = {"flex-direction": "row", "flex-wrap": "wrap", "gap": gap}
-    styles = FULL_HEIGHT | flow | {"justify-content": justify, "align-items": align}
-    return pn.Column(*views, styles=styles, sizing_mode="stretch_width", margin=0)
+    for view in views:
+        view.align = align
+    styles = {"flex-direction": "row", "flex-wrap": "wrap", "justify-content": justify, "gap": gap}
+    return pn.Column(*views, styles=FULL_HEIGHT | styles, sizing_mode="stretch_width", margin=0)

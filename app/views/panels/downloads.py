@@ -47,7 +47,7 @@ class Downloads:
     def layout(self) -> pn.viewable.Viewable:
         """The buttons in a row that wraps."""
         title = pn.pane.HTML("<h2>Share and download</h2>", margin=(16, 10, 4, 10))
-        row = flex_row(self.link, self.side, self.picture, self.maps, self.orbits, self.script, align="flex-end", gap="0px")
+        row = flex_row(self.link, self.side, self.picture, self.maps, self.orbits, self.script, align="end", gap="0px")
         return pn.Column(title, row, self.saver, sizing_mode="stretch_width")
 
     def show_map(self, frame: EscapeMap) -> None:
