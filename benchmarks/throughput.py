@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.steps import ENERGIES, ORBITS, T_MAX, bounded_starts, measure
 from engine import CASES, Potential
-from engine.taylor.source.recurrence import ORDER, TOLERANCE, generate_source
+from engine.taylor.source.recurrence import ORDER, TOLERANCE, generate_code
 from tests.peers.taylor_heyoka import equations
 
 REPEATS = 3
@@ -50,7 +50,7 @@ def fastest_heyoka(case: str) -> tuple[float, float, float]:
 
 def multiplications(potential: Potential) -> int:
     """In the source of one step."""
-    step = generate_source(potential.terms, potential.channels).split("@kernel\n")[0]
+    step = str(generate_code(potential.terms, potential.channels).functions[0].program)
     return sum(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) for node in ast.walk(ast.parse(step)))
 
 

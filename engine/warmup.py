@@ -20,7 +20,7 @@ _SHORT = 10.0
 
 
 # What the first picture of a map, and the exits that it needs, are computed by.
-_FOR_MAPS = ("step", "jets", "potential_value", "advance", "swing")
+_FOR_MAPS = ("step", "jets", "potential_value", "propagate", "shoot")
 
 
 def is_ready_for_maps(potential: Potential) -> bool:

@@ -182,13 +182,13 @@ def _find(potential: Potential, energy: float, channel: int, named: float) -> Ly
     frame = (*saddle, *outward, energy, _REACH * scale, TOLERANCE, steps)
 
     def drift(u: float) -> float:
-        return float(kernels.swing(u, *frame)[0])
+        return float(kernels.shoot(u, *frame)[0])
 
     bracket = _bracket(drift, scale)
     if bracket is None:
         raise ValueError(f"energy={named}: no Lyapunov orbit found across channel {channel} of potential {potential.name}")
     u = optimize.brentq(drift, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
-    _, half_period, count = kernels.swing(u, *frame)
+    _, half_period, count = kernels.shoot(u, *frame)
     if not np.isfinite(half_period):
         raise ValueError(f"energy={named}: the Lyapunov orbit of channel {channel} of {potential.name} does not turn back")
     x, y = _dense_path(kernels, steps[:count], half_period)

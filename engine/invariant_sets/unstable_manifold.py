@@ -151,5 +151,5 @@ def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
 def _cut(potential: Potential, tile: np.ndarray, most: int, curves: np.ndarray, gates: np.ndarray, horizon: float) -> np.ndarray:
     cuts = np.full((tile.shape[1], most, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
-    kernels_of(potential).cut(step_tolerance(potential), horizon, gates, curves, tile, cuts, found)
+    kernels_of(potential).find_section_passages(step_tolerance(potential), horizon, gates, curves, tile, cuts, found)
     return cuts

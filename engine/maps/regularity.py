@@ -177,5 +177,5 @@ def _carry(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
     """Orbits with two deviations and their smallest SALI, some steps on."""
     kernels = kernels_of(potential)
     with np.errstate(invalid="ignore"):
-        kernels.align(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
+        kernels.fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

@@ -18,10 +18,9 @@ import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
-from engine.execution import SerialExecutor
+from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
-from engine.taylor.kernels.dense_output import stop_if
 from engine.trajectories.trajectory import Orbit
 from engine.validation import read_state, read_t_max
 
@@ -137,7 +136,7 @@ def compute_birkhoff_digits(
         if 2.0 * window > t_max or not _stays(potential, start, 2.0 * window, cancel):
             break
         found = count_agreeing_digits(potential, start[None], window, executor=SerialExecutor(), cancel=cancel)[0]
-        stop_if(cancel)
+        raise_if_cancelled(cancel)
         if found == 0.0:
             break
         digits.append(float(found))
@@ -153,7 +152,7 @@ def _stays(potential: Potential, start: np.ndarray, t_end: float, cancel: thread
     """Whether the orbit has not left by `t_end`."""
     energy = float(potential.energy(start))
     fate = classify_orbits(potential, energy, start[None], t_end, executor=SerialExecutor(), cancel=cancel).fate[0]
-    stop_if(cancel)
+    raise_if_cancelled(cancel)
     return bool(fate == Fate.BOUNDED)
 
 

@@ -10,5 +10,14 @@ TURNED = Potential("turned", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 /
 def test_every_kernel_that_a_page_needs_is_compiled_ahead() -> None:
     prepare_kernels(TURNED)
     kernels = load_kernels(TURNED.terms, TURNED.channels)
-    for name in ("advance", "jets", "tangent", "trace", "swing", "average", "pierce", "align"):
+    for name in (
+        "propagate",
+        "jets",
+        "tangent",
+        "record_steps",
+        "shoot",
+        "birkhoff_averages",
+        "find_section_points",
+        "fixed_step_sali",
+    ):
         assert getattr(kernels, name).signatures, name

@@ -1,4 +1,4 @@
-"""Compiled kernels on disk: whatever became of them, the next start computes the same."""
+"""Compiled kernels on disk: damaged files and unusable folders change no result."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from typing import Any
 
 import pytest
 
+import engine.taylor
 from engine.taylor.jit import disk_cache
 from engine.taylor.jit.decorator import kernel
-from engine.taylor.jit.disk_cache import CACHE_VARIABLE, ENDING
+from engine.taylor.jit.disk_cache import CACHE_VARIABLE, SUFFIX
 
 _PROGRAM = """
 import sys
@@ -51,19 +52,19 @@ def hits(compiled: Any) -> int:
     return sum(compiled.stats.cache_hits.values())
 
 
-def said(caplog: pytest.LogCaptureFixture) -> list[str]:
+def warnings(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
 
 
-def test_a_kernel_is_compiled_once_and_loaded_from_then_on(folder: Path) -> None:
+def test_a_kernel_is_compiled_once_and_then_loaded(folder: Path) -> None:
     assert fresh_kernel()(2.0) == 6.0
-    (kept,) = folder.iterdir()
-    assert kept.suffix == ENDING
-    written = kept.stat().st_mtime_ns
+    (file,) = folder.iterdir()
+    assert file.suffix == SUFFIX
+    written = file.stat().st_mtime_ns
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1
-    assert kept.stat().st_mtime_ns == written
+    assert file.stat().st_mtime_ns == written
 
 
 @pytest.mark.parametrize(
@@ -78,33 +79,33 @@ def test_a_kernel_is_compiled_once_and_loaded_from_then_on(folder: Path) -> None
     ],
     ids=["empty", "half", "one byte short", "garbage", "one bit", "longer"],
 )
-def test_a_damaged_file_is_noticed_and_replaced(
+def test_a_damaged_file_is_detected_and_replaced(
     damage: Callable[[bytes], bytes], folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     fresh_kernel()(2.0)
-    (kept,) = folder.iterdir()
-    whole = kept.read_bytes()
-    kept.write_bytes(damage(whole))
+    (file,) = folder.iterdir()
+    whole = file.read_bytes()
+    file.write_bytes(damage(whole))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 0
-    (sentence,) = said(caplog)
-    assert str(kept) in sentence
+    (message,) = warnings(caplog)
+    assert str(file) in message
     after = fresh_kernel()
     assert after(2.0) == 6.0
     assert hits(after) == 1
 
 
-def test_a_folder_in_the_place_of_a_file_is_no_obstacle(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_folder_in_the_place_of_a_file_is_ignored(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
     fresh_kernel()(2.0)
-    (kept,) = folder.iterdir()
-    kept.unlink()
-    kept.mkdir()
+    (file,) = folder.iterdir()
+    file.unlink()
+    file.mkdir()
     assert fresh_kernel()(2.0) == 6.0
-    assert said(caplog)
+    assert warnings(caplog)
 
 
-def test_a_cache_that_cannot_be_a_folder_is_done_without(
+def test_kernels_work_without_a_cache_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     obstacle = tmp_path / "file"
@@ -112,12 +113,12 @@ def test_a_cache_that_cannot_be_a_folder_is_done_without(
     monkeypatch.setenv(CACHE_VARIABLE, str(obstacle))
     disk_cache._warn_once.cache_clear()
     assert [fresh_kernel()(2.0), fresh_kernel()(2.0)] == [6.0, 6.0]
-    assert len([sentence for sentence in said(caplog) if "cannot be kept" in sentence]) == 1
+    assert len([message for message in warnings(caplog) if "cannot be stored" in message]) == 1
     assert obstacle.read_text() == ""
 
 
 @pytest.mark.parametrize("reason", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EDQUOT])
-def test_a_disk_that_takes_nothing_is_done_without(
+def test_kernels_work_when_files_cannot_be_written(
     reason: int, folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def refuse(*arguments: Any) -> None:
@@ -125,12 +126,12 @@ def test_a_disk_that_takes_nothing_is_done_without(
 
     monkeypatch.setattr(disk_cache.os, "replace", refuse)
     assert fresh_kernel()(2.0) == 6.0
-    (sentence,) = said(caplog)
-    assert os.strerror(reason) in sentence
+    (message,) = warnings(caplog)
+    assert os.strerror(reason) in message
     assert not any(folder.iterdir())
 
 
-def test_a_cache_that_can_only_be_read_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh_kernel()(2.0)
     monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
     again = fresh_kernel()
@@ -138,7 +139,7 @@ def test_a_cache_that_can_only_be_read_is_read(folder: Path, monkeypatch: pytest
     assert hits(again) == 1
 
 
-def test_programs_that_compile_at_once_do_not_harm_each_other(folder: Path, tmp_path: Path) -> None:
+def test_processes_that_compile_at_once_do_not_affect_each_other(folder: Path, tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text(_PROGRAM)
     root = Path(__file__).parents[2]
@@ -150,12 +151,11 @@ def test_programs_that_compile_at_once_do_not_harm_each_other(folder: Path, tmp_
     ]
     answers = [process.communicate(timeout=120) for process in started]
     assert answers == [("3.0\n", ""), ("6.0\n", ""), ("12.0\n", "")]
-    (kept,) = folder.iterdir()
-    assert kept.suffix == ENDING
+    (file,) = folder.iterdir()
+    assert file.suffix == SUFFIX
 
 
-def test_other_source_is_another_file(folder: Path) -> None:
-    """Else a function would be what it was before it was edited."""
+def test_an_edited_function_has_another_file(folder: Path) -> None:
     fresh_kernel()(2.0)
 
     @kernel
@@ -165,3 +165,23 @@ def test_other_source_is_another_file(folder: Path) -> None:
     scaled.py_func.__qualname__ = fresh_kernel().py_func.__qualname__  # type: ignore[attr-defined]
     assert scaled(2.0) == 8.0
     assert len(list(folder.iterdir())) == 2
+
+
+@pytest.mark.parametrize("path", ["constants.py", "kernels/events.py", "source/deep/er.py"])
+def test_a_change_anywhere_in_the_package_gives_another_file(
+    path: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compiled code contains copies of kernels and constants from other modules and subpackages."""
+    changed = tmp_path / "package" / path
+    changed.parent.mkdir(parents=True)
+    monkeypatch.setattr(disk_cache, "_PACKAGE", tmp_path / "package")
+    for expected, text in enumerate(["A = 1", "A = 2", "A = 2"], 1):
+        changed.write_text(text)
+        disk_cache._hash_source.cache_clear()
+        disk_cache._hash_package.cache_clear()
+        fresh_kernel()(2.0)
+        assert len(list(folder.iterdir())) == min(expected, 2)
+
+
+def test_the_package_is_all_of_engine_taylor() -> None:
+    assert Path(engine.taylor.__file__).parent == disk_cache._PACKAGE
