@@ -4,7 +4,7 @@ Numba's own cache loads whatever it finds: a truncated file ends the program, an
 processes that compile at once can load each other's code. Here the name of a file contains a hash of everything its code depends
 on, the file is moved into place when complete, and it starts with a hash of its content.
 
-Numba has no public interface for caches, so this module uses internal names of it, which may change with any version (numba 0.68):
+Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
 
 - ``Dispatcher._cache``, set in `engine.taylor.jit.decorator`: the cache that a function asks before it compiles;
 - ``numba.core.caching._Cache``: the abstract base class of such caches, which declares the methods;

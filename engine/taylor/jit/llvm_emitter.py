@@ -1,7 +1,7 @@
 """Straight-line programs written directly as LLVM instructions: a tenth of a second where Numba's front end takes seconds.
 
 Numba infers a type for every variable of a function and lowers each operation with all of Python's semantics. A generated program
-has a few thousand assignments of doubles and integers without branches, of which each operation is one or two instructions.
+is a few thousand operations on doubles and integers without branches, of which each is one or two instructions.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numba import types
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
-from engine.taylor.source.expressions import TABLE, Expression, StraightLine
+from engine.taylor.source.straight_line import TABLE, StraightLine
 
 _FLOAT, _INT = ir.DoubleType(), ir.IntType(64)
 _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
@@ -74,23 +74,19 @@ def _llvm_type(given: Any) -> Any:
 
 def _write(program: StraightLine, builder: ir.IRBuilder, passed: list[Any]) -> list[Any]:
     """Append the instructions of a program; returns its results."""
-    values = dict(zip(program.parameters, passed, strict=True))
-    for target, value in program.assignments:
-        values[target] = _evaluate(value, builder, values)
-    return [values[name] for name in program.results]
-
-
-def _evaluate(expression: Expression, builder: ir.IRBuilder, values: dict[str, Any]) -> Any:
-    """Append the instructions of an expression; returns its value."""
-    match expression.symbol, expression.operands:
-        case "variable", (name,):
-            return values[name]
-        case "constant", (number,):
-            return ir.Constant(_INT if isinstance(number, int) else _FLOAT, number)
-        case "entry", (number,):
-            return builder.extract_value(values[TABLE], number)
-        case symbol, nodes:
-            return _operate(symbol, builder, [_evaluate(node, builder, values) for node in nodes])
+    parameters = dict(zip(program.parameters, passed, strict=True))
+    values: list[Any] = []
+    for symbol, operands in program.operations:
+        match symbol, operands:
+            case "input", (name,):
+                values.append(parameters[name])
+            case "constant", (number,):
+                values.append(ir.Constant(_INT if isinstance(number, int) else _FLOAT, number))
+            case "entry", (index,):
+                values.append(builder.extract_value(parameters[TABLE], index))
+            case _:
+                values.append(_operate(symbol, builder, [values[index] for index in operands]))
+    return [values[index] for index in program.results]
 
 
 def _operate(symbol: str, builder: ir.IRBuilder, operands: list[Any]) -> Any:

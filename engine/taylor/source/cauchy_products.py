@@ -1,4 +1,4 @@
-"""Planning of Cauchy products: a cheap sequence that yields every monomial in the forces, and the scale factors of their series."""
+"""Planning of Cauchy products: a cheap sequence that yields every monomial in the forces, and the scales of their series."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
 def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
     """A short list of Cauchy products that yields every needed monomial.
 
-    A greedy search, monomial by monomial, repeated with each divisor of a needed monomial formed first; returns the cheapest plan.
+    A greedy search, monomial by monomial, repeated with each divisor of a needed monomial formed first; the cheapest plan wins.
     """
     seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
     plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]

@@ -23,7 +23,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+import operator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -40,17 +41,7 @@ from engine.taylor.source.cauchy_products import (
     find_scales,
     plan_products,
 )
-from engine.taylor.source.expressions import (
-    TABLE,
-    Assignment,
-    Expression,
-    StraightLine,
-    constant,
-    entry,
-    operation,
-    total,
-    variable,
-)
+from engine.taylor.source.straight_line import TABLE, StraightLine, Value, where
 
 ORDER = 19
 """Order of the series; with TOLERANCE the fastest tried that keeps the energy error well below 1e-11 over 1e5 time units."""
@@ -75,9 +66,11 @@ HIDDEN, GATE, OVERSHOOT = 1, 2, 4
 
 Terms = tuple[tuple[int, int, float], ...]
 
-Derivative = Mapping[Monomial, tuple[Monomial, float]]
-"""A derivative of V: for each of its monomials the term of V that it comes from, and the factor from differentiating it."""
+Entry = tuple[Monomial, float, float]
+"""(term, multiple, factor): an entry of the table with the value factor · multiple · (the coefficient of a term of V)."""
 
+# A derivative of V: for each of its monomials the term of V that it comes from, and the factor from differentiating it.
+_Derivative = Mapping[Monomial, tuple[Monomial, float]]
 
 # Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and in the variational equations too.
 _GRADIENT = ((0,), (1,))
@@ -85,7 +78,7 @@ _GRADIENT_AND_HESSIAN = (*_GRADIENT, (0, 0), (0, 1), (1, 1))
 
 
 class GeneratedFunction(NamedTuple):
-    """A kernel as Python source, and the straight-line program that it calls."""
+    """A kernel as Python source, and the straight-line program that it calls by the program's name."""
 
     name: str
     program: StraightLine
@@ -99,14 +92,14 @@ class GeneratedCode:
     Attributes
     ----------
     functions
-        ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Their kernels refer to ``kernel``,
-        ``read_table`` and the names of the programs.
+        ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
+        ``kernel`` and ``read_table``.
     entries
-        (term, multiple, factor) of each entry of the table: factor · multiple · (the coefficient of the term).
+        The entries of the table, see `Entry`.
     """
 
     functions: tuple[GeneratedFunction, ...]
-    entries: tuple[tuple[Monomial, float, float], ...]
+    entries: tuple[Entry, ...]
 
     @functools.cached_property
     def source(self) -> str:
@@ -121,18 +114,20 @@ class GeneratedCode:
         return table
 
 
-class _Table:
-    """Collects the multiples of coefficients of V that generated code reads at run time, each once."""
-
-    def __init__(self) -> None:
-        self.entries: dict[tuple[Monomial, float, float], int] = {}
-
-    def entry(self, term: Monomial, multiple: float, factor: float = 1.0) -> Expression:
-        """factor · multiple · (the coefficient of a term of V)."""
-        return entry(self.entries.setdefault((term, multiple, factor), len(self.entries)))
+_Difference = tuple[Product, Product] | None
 
 
-def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> Derivative:
+class _Structure(NamedTuple):
+    """What generated code depends on; the differences are those of `_find_difference` without and with the Hessian."""
+
+    monomials: tuple[Monomial, ...]
+    channels: int
+    can_hide: bool
+    difference: _Difference
+    tangent_difference: _Difference
+
+
+def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
     """The derivative of V with respect to each of `axes` in turn."""
     factors: Polynomial = dict.fromkeys(monomials, 1)
     for axis in axes:
@@ -146,87 +141,95 @@ def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], .
     return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
 
 
-def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, Product] | None:
+def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
     """Two squares of which only the difference enters some derivatives of V."""
     derived = [_derivative(polynomial, axes) for axes in derivatives]
     values = [{m: factor * polynomial[term] for m, (term, factor) in each.items()} for each in derived]
     return find_difference(_plan(tuple(polynomial), derivatives), values)
 
 
-def _stem(monomial: Monomial) -> str:
-    """Name of a monomial's series: the variables that hold its coefficients are this name and the order."""
-    return {X: "x", Y: "y"}.get(monomial, f"x{monomial[0]}y{monomial[1]}_")
+_Series = Sequence[Value]
 
 
-def _coefficient(series: str, k: int) -> Expression:
-    return variable(f"{series}{k}")
+def _total(program: StraightLine, parts: Iterator[Value]) -> Value:
+    """The sum from left to right, each part computed just before it is added; 0.0 for no parts."""
+    first = next(parts, None)
+    return program.constant(0.0) if first is None else functools.reduce(operator.add, parts, first)
 
 
-_Factors = tuple[Expression, Expression]
+def _sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
+    """a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
+    return functools.reduce(operator.add, (left * right for left, right in pairs))
 
 
-def _sum_of_products(pairs: Sequence[_Factors], subtracted: Sequence[_Factors] = ()) -> Expression:
-    """a·b + c·d + … − e·f − …, nested so that each addition contracts into a multiply-add."""
-    result = total(left * right for left, right in pairs)
-    for left, right in subtracted:
-        result = result - left * right
-    return result
-
-
-def _cauchy(left: str, right: str, k: int) -> Expression:
+def _cauchy(left: _Series, right: _Series, k: int) -> Value:
     """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
-    if left == right:
+    if left is right:
         return _sum_of_products(_half_square(left, k))
-    order = sorted(range(k + 1), key=lambda j: max(j, k - j))
-    return _sum_of_products([(_coefficient(left, j), _coefficient(right, k - j)) for j in order])
+    return _sum_of_products((left[j], right[k - j]) for j in sorted(range(k + 1), key=lambda j: max(j, k - j)))
 
 
-def _half_square(factor: str, k: int) -> list[_Factors]:
-    pairs: list[_Factors] = [(_coefficient(factor, j), _coefficient(factor, k - j)) for j in reversed(range((k + 1) // 2))]
-    middle = _coefficient(factor, k // 2)
-    return pairs if k % 2 else [(0.5 * middle, middle), *pairs]
+def _half_square(series: _Series, k: int) -> Iterator[tuple[Value, Value]]:
+    """The factors of the products whose sum is coefficient k of half the square of a series."""
+    if k % 2 == 0:
+        yield 0.5 * series[k // 2], series[k // 2]
+    yield from ((series[j], series[k - j]) for j in reversed(range((k + 1) // 2)))
 
 
 def _linear_combination(
-    table: _Table, derived: Derivative, scales: Mapping[Monomial, float], k: int, factor: float
-) -> Expression:
+    program: StraightLine,
+    derived: _Derivative,
+    series: Mapping[Monomial, _Series],
+    scales: Mapping[Monomial, float],
+    k: int,
+    factor: float,
+) -> Value:
     """factor · (coefficient k of the series of a derivative of V).
 
     Low degrees last: a sum of two products contracts into the product that comes first, and the linear term is known earliest.
     """
-    parts: list[Expression] = []
-    for m, (term, multiple) in reversed(list(derived.items())):
-        if sum(m) > 0:
-            parts.append(table.entry(term, multiple / scales[m], factor) * _coefficient(_stem(m), k))
-        elif k == 0:
-            parts.append(table.entry(term, multiple / scales[m], factor))
-    return total(parts)
+
+    def part(m: Monomial) -> Value:
+        term, multiple = derived[m]
+        entry = program.entry((term, multiple / scales[m], factor))
+        return entry * series[m][k] if sum(m) > 0 else entry
+
+    return _total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
 
 
 def _recurrence(
-    table: _Table, monomials: Iterable[Monomial], products: Sequence[Product], difference: tuple[Product, Product] | None
-) -> list[Assignment]:
-    """Assignments to x0 … x_ORDER, y0 … y_ORDER and the series of `products`, of which one may serve for a difference."""
-    forces = {"x": _derivative(monomials, (0,)), "y": _derivative(monomials, (1,))}
+    program: StraightLine, monomials: tuple[Monomial, ...], products: Sequence[Product], difference: _Difference
+) -> dict[Monomial, list[Value]]:
+    """The series of x and y to ORDER and of `products`, where a difference of two squares is stored as the first of them."""
+    series: dict[Monomial, list[Value]] = {
+        X: [program.input("x0"), program.input("x1")],
+        Y: [program.input("y0"), program.input("y1")],
+        **{p.monomial: [] for p in products},
+    }
+    forces = {X: _derivative(monomials, (0,)), Y: _derivative(monomials, (1,))}
     scales = find_scales(products)
     if difference is not None:
         one, other = difference
         products = [p for p in products if p not in difference]
-        forces = {name: {m: origin for m, origin in force.items() if m != other.monomial} for name, force in forces.items()}
-    body: list[Assignment] = []
+        forces = {axis: {m: origin for m, origin in force.items() if m != other.monomial} for axis, force in forces.items()}
     for k in range(ORDER - 1):
-        body += [Assignment(f"{_stem(p.monomial)}{k}", _cauchy(_stem(p.left), _stem(p.right), k)) for p in products]
+        for p in products:
+            series[p.monomial].append(_cauchy(series[p.left], series[p.right], k))
         if difference is not None:
-            halves = (_half_square(_stem(p.left), k) for p in difference)
-            body.append(Assignment(f"{_stem(one.monomial)}{k}", _sum_of_products(*halves)))
-        factor = -1.0 / ((k + 1) * (k + 2))
-        body += [
-            Assignment(f"{name}{k + 2}", _linear_combination(table, force, scales, k, factor)) for name, force in forces.items()
-        ]
-    return body
+            subtracted = (left * right for left, right in _half_square(series[other.left], k))
+            square = _cauchy(series[one.left], series[one.left], k)
+            series[one.monomial].append(functools.reduce(operator.sub, subtracted, square))
+        for axis, force in forces.items():
+            series[axis].append(_linear_combination(program, force, series, scales, k, -1.0 / ((k + 1) * (k + 2))))
+    return series
 
 
-def _step_size() -> list[Assignment]:
+def _orbit(program: StraightLine, structure: _Structure) -> dict[Monomial, list[Value]]:
+    """The recurrence with the products for the equations of motion only."""
+    return _recurrence(program, structure.monomials, _plan(structure.monomials, _GRADIENT), structure.difference)
+
+
+def _step_size(program: StraightLine, x: _Series, y: _Series) -> Value:
     """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
 
     The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
@@ -234,25 +237,22 @@ def _step_size() -> list[Assignment]:
     divides that by 16: h is up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down.
     """
     one = 1023 << 52
-    last, before, earlier = (abs(_coefficient("x", k)) + abs(_coefficient("y", k)) for k in (ORDER, ORDER - 1, ORDER - 2))
-    norm, bits, h = variable("norm"), variable("bits"), variable("h")
-    return [
-        Assignment("norm", last + before + _EARLIER_WEIGHT * earlier),
-        Assignment("bits", operation("bits_of", norm * (1.0 / variable("tolerance")))),
-        Assignment("h", operation("double_of", (one + one // 16) - (bits >> 4))),
-        Assignment("h", operation("where", h < LONGEST_STEP, h, LONGEST_STEP)),
-        Assignment("h", operation("where", norm < _LARGEST_NORM, h, math.nan)),
-    ]
+    last, before, earlier = (abs(x[k]) + abs(y[k]) for k in (ORDER, ORDER - 1, ORDER - 2))
+    norm = last + before + _EARLIER_WEIGHT * earlier
+    bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
+    h = program.apply("double_of", (one + one // 16) - (bits >> 4))
+    h = where(h < LONGEST_STEP, h, LONGEST_STEP)
+    return where(norm < _LARGEST_NORM, h, math.nan)
 
 
-def _horner(series: str, value: str, slope: str) -> list[Assignment]:
-    """Assignments to the value and the time derivative of a series at h."""
-    h, at_h, slope_at_h = variable("h"), variable(value), variable(slope)
-    last = _coefficient(series, ORDER)
-    body = [Assignment(value, last), Assignment(slope, last), Assignment(value, at_h * h + _coefficient(series, ORDER - 1))]
+def _horner(series: _Series, h: Value) -> tuple[Value, Value]:
+    """The value and the time derivative of a series at h."""
+    slope = series[ORDER]
+    value = slope * h + series[ORDER - 1]
     for k in reversed(range(ORDER - 1)):
-        body += [Assignment(slope, slope_at_h * h + at_h), Assignment(value, at_h * h + _coefficient(series, k))]
-    return body
+        slope = slope * h + value
+        value = value * h + series[k]
+    return value, slope
 
 
 def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
@@ -268,140 +268,135 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 
-def _hidden_crossings() -> list[Assignment]:
-    """The test of a step for hidden crossings of y = 0, for potentials where there can be any.
+def _hidden_crossings(y: _Series, end: Value, h: Value) -> Value:
+    """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
 
     bound = ½ Σ_{k≥2} |y_k| (2h)^k is at least h · max|ẏ − ẏ(0)|, and at least twice the distance of y from its chord.
     So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both ends lie on one side, further off than bound/2.
     """
-    h, twice, bound, near, far = map(variable, ("h", "twice", "bound", "near", "far"))
-    start, slope, end = _coefficient("y", 0), _coefficient("y", 1), variable("yh")
-    body = [Assignment("twice", h + h), Assignment("bound", abs(_coefficient("y", ORDER)))]
-    body += [Assignment("bound", bound * twice + abs(_coefficient("y", k))) for k in reversed(range(2, ORDER))]
-    one_side = (start * end > 0.0) & (near > 0.5 * bound)
-    return [
-        *body,
-        Assignment("bound", bound * twice * h),
-        Assignment("near", abs(start)),
-        Assignment("far", abs(end)),
-        Assignment("near", operation("where", near < far, near, far)),
-        Assignment("hidden", operation("where", abs(slope) * h > bound, 0, operation("where", one_side, 0, HIDDEN))),
+    twice = h + h
+    bound = abs(y[ORDER])
+    for k in reversed(range(2, ORDER)):
+        bound = bound * twice + abs(y[k])
+    bound = bound * twice * h
+    near, far = abs(y[0]), abs(end)
+    near = where(near < far, near, far)
+    return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (near > 0.5 * bound), 0, HIDDEN))
+
+
+def _lane_loop(
+    program: StraightLine,
+    arguments: str,
+    reads: Mapping[str, str],
+    writes: Mapping[str, Value | str],
+    constants: Mapping[str, str] | None = None,
+) -> GeneratedFunction:
+    """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
+
+    reads, constants: {input: source}; writes: {left-hand side with its operator: value or source}. Constants are read before the
+    loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing
+    is vectorised.
+    """
+    program.results = [value.index for value in writes.values() if isinstance(value, Value)]
+    sources = {target: f"r{value.index}" if isinstance(value, Value) else value for target, value in writes.items()}
+    name = program.name.removeprefix("_")
+    lines = [
+        "@kernel",
+        f"def {name}(coefficients, n, {arguments}):",
+        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **(constants or {})}.items()),
+        "    for i in range(n):",
+        *(f"        {each} = {source}" for each, source in reads.items()),
+        f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
+        *(f"        {target} {source}" for target, source in sources.items()),
     ]
-
-
-def _gates(channels: int) -> list[Assignment]:
-    """Whether a step ends past the gate of any exit: a line across the channel on the inner side of its exit curve."""
-    body = [Assignment("gate", constant(0))]
-    for k in range(channels):
-        x, y, offset = (variable(f"g{k}{name}") for name in ("x", "y", ""))
-        past = x * variable("xh") + y * variable("yh") > offset
-        body.append(Assignment("gate", operation("where", past, GATE, variable("gate"))))
-    return body
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
 
 
 _START = {"x0": "x[i]", "y0": "y[i]", "x1": "px[i]", "y1": "py[i]"}
 
 
-def _lane_loop(
-    name: str,
-    arguments: str,
-    reads: Mapping[str, str],
-    body: Sequence[Assignment],
-    writes: Mapping[str, str],
-    constants: Mapping[str, str] | None = None,
-) -> GeneratedFunction:
-    """A kernel with a loop over lanes that reads variables from arrays, runs a straight-line program and writes its results.
-
-    `reads` and `constants` are {variable: source}, `writes` is {left-hand side with its operator: source}. Constants are read
-    before the loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100
-    checks nothing is vectorised.
-    """
-    assigned = {assignment.target for assignment in body}
-    program = StraightLine(f"_{name}", tuple(body), tuple(source for source in writes.values() if source in assigned))
-    constants = {TABLE: "read_table(coefficients)", **(constants or {})}
-    lines = [
-        "@kernel",
-        f"def {name}(coefficients, n, {arguments}):",
-        *(f"    {name} = {source}" for name, source in constants.items()),
-        "    for i in range(n):",
-        *(f"        {name} = {source}" for name, source in reads.items()),
-        f"        ({', '.join(program.results)},) = {program.name}({', '.join(program.parameters)})",
-        *(f"        {target} {source}" for target, source in writes.items()),
-    ]
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
-
-
-def _step(recurrence: list[Assignment], hidden: list[Assignment], channels: int) -> GeneratedFunction:
-    flagged, start, end = variable("flagged"), _coefficient("y", 0), variable("yh")
-    upward = (start < 0.0) & (end >= 0.0) & operation("==", flagged, 0)
-    body = [
-        *recurrence,
-        *_step_size(),
-        *_horner("x", "xh", "pxh"),
-        *_horner("y", "yh", "pyh"),
-        *hidden,
-        *_gates(channels),
-        Assignment("th", variable("t0") + variable("h")),
-        Assignment("late", operation("where", variable("th") <= variable("horizon"), 0, OVERSHOOT)),
-        Assignment("flagged", variable("hidden") + variable("gate") + variable("late")),
-        Assignment("upward", operation("where", upward, 1, 0)),
-    ]
+def _step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    program = StraightLine("_step", table)
+    series = _orbit(program, structure)
+    x, y = series[X], series[Y]
+    h = _step_size(program, x, y)
+    x_end, px_end = _horner(x, h)
+    y_end, py_end = _horner(y, h)
+    hidden = _hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
+    gate, columns = program.constant(0), {"x": 0, "y": 1, "": 2}
+    for k in range(structure.channels):
+        g_x, g_y, g = (program.input(f"g{k}{name}") for name in columns)
+        gate = where(g_x * x_end + g_y * y_end > g, GATE, gate)
+    t_end = program.input("t0") + h
+    flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
-        "crossed[i] +=": "upward",
-        "flag[i] =": "flagged",
-        "h_taken[i] =": "h",
-        "x_new[i] =": "xh",
-        "y_new[i] =": "yh",
-        "px_new[i] =": "pxh",
-        "py_new[i] =": "pyh",
-        "t_new[i] =": "th",
+        "crossed[i] +=": where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
+        "flag[i] =": flags,
+        "h_taken[i] =": h,
+        "x_new[i] =": x_end,
+        "y_new[i] =": y_end,
+        "px_new[i] =": px_end,
+        "py_new[i] =": py_end,
+        "t_new[i] =": t_end,
     }
     arguments = "tolerance, horizon, gates, x, y, px, py, t, x_new, y_new, px_new, py_new, t_new, h_taken, flag, crossed"
-    gates = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(channels) for column, name in enumerate(("x", "y", ""))}
-    return _lane_loop("step", arguments, {**_START, "t0": "t[i]"}, body, writes, gates)
+    gates = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(structure.channels) for name, column in columns.items()}
+    return _lane_loop(program, arguments, {**_START, "t0": "t[i]"}, writes, gates)
 
 
-def _fixed_step(recurrence: list[Assignment]) -> GeneratedFunction:
-    body = [*recurrence, *_horner("x", "xh", "pxh"), *_horner("y", "yh", "pyh")]
-    writes = {
+def _fixed_step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    program = StraightLine("_fixed_step", table)
+    series = _orbit(program, structure)
+    h = program.input("h")
+    x_end, px_end = _horner(series[X], h)
+    y_end, py_end = _horner(series[Y], h)
+    # The sums are left to the loop: within the program they make it up to a sixth slower.
+    writes: dict[str, Value | str] = {
         "x_sum[i] +=": "weight*(x0*x0)",
         "y_sum[i] +=": "weight*(y0*y0)",
-        "x[i] =": "xh",
-        "y[i] =": "yh",
-        "px[i] =": "pxh",
-        "py[i] =": "pyh",
+        "x[i] =": x_end,
+        "y[i] =": y_end,
+        "px[i] =": px_end,
+        "py[i] =": py_end,
     }
-    return _lane_loop("fixed_step", "h, weight, x, y, px, py, x_sum, y_sum", _START, body, writes)
+    return _lane_loop(program, "h, weight, x, y, px, py, x_sum, y_sum", _START, writes)
 
 
-def _jets(recurrence: list[Assignment]) -> GeneratedFunction:
-    writes = {f"{name}_jet[{k}, i] =": f"{name}{k}" for name in "xy" for k in range(ORDER + 1)}
-    return _lane_loop("jets", "x, y, px, py, x_jet, y_jet", _START, recurrence, writes)
+def _jets(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    program = StraightLine("_jets", table)
+    series = _orbit(program, structure)
+    writes = {f"{name}_jet[{k}, i] =": series[axis][k] for name, axis in (("x", X), ("y", Y)) for k in range(ORDER + 1)}
+    return _lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
 
 
-def _tangent(table: _Table, monomials: tuple[Monomial, ...], difference: tuple[Product, Product] | None) -> GeneratedFunction:
+def _tangent(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
     """Variational equations ẅ = −(Hessian of V along the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
-    hessian = {name: _derivative(monomials, axes) for name, axes in (("hxx", (0, 0)), ("hxy", (0, 1)), ("hyy", (1, 1)))}
-    forces = {"u": (("hxx", "u"), ("hxy", "v")), "v": (("hxy", "u"), ("hyy", "v"))}
-    products = _plan(monomials, _GRADIENT_AND_HESSIAN)
+    program = StraightLine("_tangent", table)
+    products = _plan(structure.monomials, _GRADIENT_AND_HESSIAN)
     scales = find_scales(products)
-    reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
-    body = _recurrence(table, monomials, products, difference)
+    series = _recurrence(program, structure.monomials, products, structure.tangent_difference)
+    hessian = {axes: _derivative(structure.monomials, axes) for axes in ((0, 0), (0, 1), (1, 1))}
+    second: dict[tuple[int, int], list[Value]] = {axes: [] for axes in hessian}
+    u, v = ([program.input(f"{name}{k}") for k in (0, 1)] for name in "uv")
     for k in range(ORDER - 1):
-        body += [Assignment(f"{h}{k}", _linear_combination(table, hessian[h], scales, k, -1.0)) for h in hessian]
-        for w, pairs in forces.items():
-            force = total(_cauchy(h, v, k) for h, v in pairs if hessian[h])
-            body.append(Assignment(f"{w}{k + 2}", force * (1.0 / ((k + 1) * (k + 2)))))
-    body += [*_horner("u", "uh", "puh"), *_horner("v", "vh", "pvh")]
-    writes = {"wx[i] =": "uh", "wy[i] =": "vh", "wpx[i] =": "puh", "wpy[i] =": "pvh"}
-    return _lane_loop("tangent", "duration, x, y, px, py, wx, wy, wpx, wpy", reads, body, writes)
+        for axes, derived in hessian.items():
+            second[axes].append(_linear_combination(program, derived, series, scales, k, -1.0))
+        for w, row in ((u, ((0, 0), (0, 1))), (v, ((0, 1), (1, 1)))):
+            parts = (_cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes])
+            w.append(_total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
+    h = program.input("h")
+    (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
+    reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
+    writes = {"wx[i] =": u_end, "wy[i] =": v_end, "wpx[i] =": pu_end, "wpy[i] =": pv_end}
+    return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
-def _potential_value(table: _Table, terms: Iterable[Monomial]) -> GeneratedFunction:
+def _potential_value(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
     """V at one point."""
-    x, y = variable("x"), variable("y")
-    value = total(math.prod([x] * i + [y] * j, start=table.entry((i, j), 1.0)) for i, j in terms)
-    program = StraightLine("_potential_value", (Assignment("value", value),), ("value",))
+    program = StraightLine("_potential_value", table)
+    x, y = program.input("x"), program.input("y")
+    parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, 1.0))) for i, j in structure.monomials)
+    program.results = [_total(program, parts).index]
     lines = [
         "@kernel",
         "def potential_value(coefficients, x, y):",
@@ -426,7 +421,7 @@ def generate_code(terms: Terms, channels: int, reach: float = REACH) -> Generate
     """
     polynomial = _sorted(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
-    return _generate(tuple(polynomial), channels, crossings_can_hide(polynomial, reach), *differences)
+    return _generate(_Structure(tuple(polynomial), channels, crossings_can_hide(polynomial, reach), *differences))
 
 
 def _sorted(terms: Terms) -> dict[Monomial, float]:
@@ -435,21 +430,7 @@ def _sorted(terms: Terms) -> dict[Monomial, float]:
 
 
 @functools.cache
-def _generate(
-    monomials: tuple[Monomial, ...],
-    channels: int,
-    can_hide: bool,
-    difference: tuple[Product, Product] | None,
-    tangent_difference: tuple[Product, Product] | None,
-) -> GeneratedCode:
-    table = _Table()
-    recurrence = _recurrence(table, monomials, _plan(monomials, _GRADIENT), difference)
-    hidden = _hidden_crossings() if can_hide else [Assignment("hidden", constant(0))]
-    functions = (
-        _step(recurrence, hidden, channels),
-        _fixed_step(recurrence),
-        _jets(recurrence),
-        _tangent(table, monomials, tangent_difference),
-        _potential_value(table, monomials),
-    )
-    return GeneratedCode(functions, tuple(table.entries))
+def _generate(structure: _Structure) -> GeneratedCode:
+    table: dict[Entry, int] = {}
+    functions = tuple(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent, _potential_value))
+    return GeneratedCode(functions, tuple(table))
