@@ -204,12 +204,12 @@ def count_products(terms: tuple) -> int:
 
 
 def test_squares_that_enter_as_their_difference_become_one_series() -> None:
-    x_squared, y_squared = (2, 0, 0.5), (0, 2, 0.5)
-    separate = (x_squared, y_squared, (3, 0, -0.1), (1, 2, 0.7))
     for factor in np.linspace(0.1, 2.0, 20):
-        as_difference = (x_squared, y_squared, (3, 0, -factor / 3), (1, 2, factor))
-        # One product less in each of the orders 0 … ORDER − 2 of V_x.
-        assert count_products(as_difference) == count_products(separate) - (ORDER - 1)
+        # V_x contains factor · (y² − x²), or y² and x² with different coefficients.
+        others = ((2, 0, 0.5), (0, 2, 0.5), (1, 2, factor))
+        as_difference, separate = (count_products((*others, (3, 0, c))) for c in (-factor / 3, 0.1))
+        # One product less in each of the orders 0 … ORDER − 2.
+        assert as_difference == separate - (ORDER - 1)
 
 
 def test_other_coefficients_or_another_order_of_terms_give_the_same_code() -> None:
