@@ -21,6 +21,7 @@ from engine.potentials.catalogue import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.kernels.events import NOT_COMPUTED
+from engine.taylor.kernels.propagate import Exits, Orbits
 from engine.taylor.source.recurrence import TOLERANCE
 
 ORBITS = 64
@@ -40,15 +41,15 @@ def step_nanoseconds(potential: Potential) -> float:
     starts = np.ascontiguousarray(states[inside][:ORBITS])
     curves = closed_channel_curves(potential)[None]
     gates = exit_gates(curves)
-    advance = load_kernels(potential.terms, potential.channels).advance
+    kernels = load_kernels(potential.terms, potential.channels)
     shortest = np.inf
     for _ in range(REPEATS):
         state, counts = starts.copy(), np.zeros((3, ORBITS), np.int64)
+        fate, pending = np.full(ORBITS, NOT_COMPUTED, np.int8), np.ones(ORBITS, np.uint8)
+        orbits = Orbits(state, np.zeros(ORBITS), counts[1], counts[2], fate, pending)
+        exits = Exits(gates, curves, counts[0])
         started = time.thread_time()
-        steps = advance(
-            np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, ORBITS, gates, curves, counts[0], state,
-            np.zeros(ORBITS), counts[1], counts[2], np.full(ORBITS, NOT_COMPUTED, np.int8), np.ones(ORBITS, np.uint8),
-        )  # fmt: skip
+        steps = kernels.propagate(np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, ORBITS, exits, orbits)
         shortest = min(shortest, (time.thread_time() - started) / steps)
     return shortest * 1e9
 

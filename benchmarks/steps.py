@@ -59,10 +59,11 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
         n = len(state)
         counts = np.zeros((3, n), np.int64)
         begin = time.perf_counter()
-        steps = kernels.advance(
-            np.arange(n), horizon, True, tolerance, 2**62, 64, gates, curves, counts[0],
-            state, np.zeros(n), counts[1], counts[2], np.full(n, NOT_COMPUTED, np.int8), np.ones(n, np.uint8),
-        )  # fmt: skip
+        orbits = propagate.Orbits(
+            state, np.zeros(n), counts[1], counts[2], np.full(n, NOT_COMPUTED, np.int8), np.ones(n, np.uint8)
+        )
+        exits = propagate.Exits(gates, curves, counts[0])
+        steps = kernels.propagate(np.arange(n), horizon, True, tolerance, 2**62, 64, exits, orbits)
         return state, steps, time.perf_counter() - begin
 
     run(10.0)

@@ -8,7 +8,6 @@ Run: uv run python -m benchmarks.throughput
 
 from __future__ import annotations
 
-import ast
 import statistics
 import time
 
@@ -18,7 +17,7 @@ import numpy as np
 
 from benchmarks.steps import ENERGIES, ORBITS, T_MAX, bounded_starts, measure
 from engine import CASES, Potential
-from engine.taylor.source.recurrence import ORDER, TOLERANCE, generate_source
+from engine.taylor.source.recurrence import ORDER, TOLERANCE, generate_code
 from tests.peers.taylor_heyoka import equations
 
 REPEATS = 3
@@ -49,9 +48,9 @@ def fastest_heyoka(case: str) -> tuple[float, float, float]:
 
 
 def multiplications(potential: Potential) -> int:
-    """Number of multiplications in the source of one step."""
-    step = generate_source(potential.terms, potential.channels).split("@kernel\n")[0]
-    return sum(isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult) for node in ast.walk(ast.parse(step)))
+    """Number of multiplications in one step."""
+    step = generate_code(potential.terms, potential.channels).functions[0].program
+    return sum(symbol == "*" for symbol, _ in step.operations)
 
 
 @numba.njit(fastmath={"contract"})

@@ -20,7 +20,7 @@ from engine.trajectories.trajectory import integrate_orbit
 _T_MAX = 10.0
 
 # Kernels of the first frame of a map and of the Lyapunov orbits it needs.
-_MAP_KERNELS = ("step", "jets", "potential_value", "advance", "swing")
+_MAP_KERNELS = ("step", "jets", "potential_value", "propagate", "shoot")
 
 
 def is_ready_for_maps(potential: Potential) -> bool:

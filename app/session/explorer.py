@@ -75,7 +75,9 @@ class Explorer:
             self.state, jobs, self.orbit_controls.show_indicators, self.orbit_controls.say, self._locked
         )
         self.progress = ProgressView(self._locked(self.map_requests.stop_map), self._locked(self.map_requests.request_map))
-        self.animation = EnergyAnimation(document, lambda: self.map_requests.previews.under_way, self._show_animated, self._end_animation)
+        self.animation = EnergyAnimation(
+            document, lambda: self.map_requests.previews.under_way, self._show_animated, self._end_animation
+        )
         self._orbits_shown: tuple[ChosenOrbit, ...] = ()
         self._requested_at: float | None = None
         self._connect()

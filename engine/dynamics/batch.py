@@ -17,7 +17,7 @@ from engine.dynamics.lyapunov_orbits import exit_gates
 from engine.execution import count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.events import find_outside
-from engine.taylor.kernels.propagate import VECTOR
+from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import TOLERANCE
 
 LANES = 64
@@ -165,9 +165,9 @@ def _advance_tile(
     kernels = kernels_of(potential)
     todo = np.flatnonzero(tile.active)
     b = tile.batch
-    kernels.advance(
-        todo, horizon, final, step_tolerance(potential, tolerance), STEP_BUDGET, LANES, gates, curves, b.curve_row,
-        b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active,
+    kernels.propagate(
+        todo, horizon, final, step_tolerance(potential, tolerance), STEP_BUDGET, LANES, Exits(gates, curves, b.curve_row),
+        Orbits(b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active),
     )  # fmt: skip
     return tile
 

@@ -56,5 +56,5 @@ def propagate_deviations(
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:
     """(lanes, 13) rows of a tile (13, lanes) after some steps."""
     with np.errstate(invalid="ignore"):
-        kernels_of(potential).align(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
+        kernels_of(potential).fixed_step_sali(fixed_step_size(potential), steps, tile[:4], tile[4:8], tile[8:12], tile[12])
     return tile.T

@@ -182,13 +182,13 @@ def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOr
 
     def outward_velocity(u: float) -> float:
         """The velocity along the channel at the turning point, after a start at rest at offset u from the saddle."""
-        return float(kernels.swing(u, *arguments)[0])
+        return float(kernels.shoot(u, *arguments)[0])
 
     bracket = _find_bracket(outward_velocity, distance)
     if bracket is None:
         raise _SearchError(f"no Lyapunov orbit found across channel {channel}")
     u = optimize.brentq(outward_velocity, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
-    _, half_period, count = kernels.swing(u, *arguments)
+    _, half_period, count = kernels.shoot(u, *arguments)
     if not np.isfinite(half_period):
         raise _SearchError(f"the Lyapunov orbit of channel {channel} does not turn back")
     x, y = _sample_path(kernels, steps[:count], half_period)

@@ -51,5 +51,5 @@ def _find_section_points(potential: Potential, tile: np.ndarray, count: int, dur
     points = np.full((tile.shape[1], count, 2), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))
-    kernels_of(potential).pierce(fixed_step_size(potential), steps, tile, points, found)
+    kernels_of(potential).find_section_points(fixed_step_size(potential), steps, tile, points, found)
     return points

@@ -73,7 +73,7 @@ def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> n
     """(lanes,) digits of the orbits in a tile (4, lanes)."""
     energy, step = potential.energy(tile.T), fixed_step_size(potential)
     averages = np.zeros((2, 2, tile.shape[1]))
-    kernels_of(potential).average(step, window_weights(window, step), tile, averages)
+    kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
     with np.errstate(all="ignore"):
         difference = np.abs(averages[1] - averages[0]) / np.abs(averages).max(axis=0)
         digits = -np.log10(np.maximum(difference.max(axis=0), 10.0**-_MOST_DIGITS))

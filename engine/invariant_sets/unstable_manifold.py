@@ -179,5 +179,5 @@ def _passages(
     """(lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
     passages = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
-    kernels_of(potential).cut(step_tolerance(potential), duration, gates, curves, tile, passages, found)
+    kernels_of(potential).find_section_passages(step_tolerance(potential), duration, gates, curves, tile, passages, found)
     return passages

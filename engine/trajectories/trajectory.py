@@ -15,7 +15,7 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate, Regularity, describe_fate, judge_regularity
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.potentials.potential import Potential
-from engine.taylor.kernels.dense_output import carry_deviations, sample_path, trace_steps
+from engine.taylor.kernels.dense_output import sample_deviations, sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max
 from engine.wording import format_count
 
@@ -144,7 +144,7 @@ def _sample_orbit(
     steps = trace_steps(kernels, start, t_end, potential.channels, cancel, step_tolerance(potential))
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     path = sample_path(kernels, steps, times, cancel)
-    sali, growth = carry_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
+    sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
     exponent = np.full_like(times, np.nan)
     with np.errstate(over="ignore"):
         # The reciprocal of a very short time can overflow.

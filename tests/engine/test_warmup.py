@@ -12,5 +12,14 @@ POTENTIAL = Potential("rotated", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, 
 def test_all_kernels_are_compiled() -> None:
     prepare_kernels(POTENTIAL)
     kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-    for name in ("advance", "jets", "tangent", "trace", "swing", "average", "pierce", "align"):
+    for name in (
+        "propagate",
+        "jets",
+        "tangent",
+        "record_steps",
+        "shoot",
+        "birkhoff_averages",
+        "find_section_points",
+        "fixed_step_sali",
+    ):
         assert getattr(kernels, name).signatures, name

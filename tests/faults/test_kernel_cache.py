@@ -1,4 +1,4 @@
-"""Kernel cache on disk: damaged files, unusable folders and concurrent processes do not change results."""
+"""Compiled kernels on disk: damaged files and unusable folders change no result."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from typing import Any
 
 import pytest
 
+import engine.taylor
 from engine.taylor.jit import disk_cache
 from engine.taylor.jit.decorator import kernel
-from engine.taylor.jit.disk_cache import CACHE_VARIABLE, ENDING
+from engine.taylor.jit.disk_cache import CACHE_VARIABLE, SUFFIX
 
 _PROGRAM = """
 import sys
@@ -30,7 +31,7 @@ print(scaled(float(sys.argv[1])))
 
 
 def fresh_kernel() -> Callable[[float], float]:
-    """The same kernel, not loaded yet, as in a new process."""
+    """The same function, as a new process would see it."""
 
     @kernel
     def scaled(x: float) -> float:
@@ -55,10 +56,10 @@ def warnings(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
 
 
-def test_kernel_is_compiled_once_and_then_loaded(folder: Path) -> None:
+def test_a_kernel_is_compiled_once_and_then_loaded(folder: Path) -> None:
     assert fresh_kernel()(2.0) == 6.0
     (file,) = folder.iterdir()
-    assert file.suffix == ENDING
+    assert file.suffix == SUFFIX
     written = file.stat().st_mtime_ns
     again = fresh_kernel()
     assert again(2.0) == 6.0
@@ -78,7 +79,7 @@ def test_kernel_is_compiled_once_and_then_loaded(folder: Path) -> None:
     ],
     ids=["empty", "half", "one byte short", "garbage", "one bit", "longer"],
 )
-def test_damaged_file_is_detected_and_replaced(
+def test_a_damaged_file_is_detected_and_replaced(
     damage: Callable[[bytes], bytes], folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     fresh_kernel()(2.0)
@@ -95,7 +96,7 @@ def test_damaged_file_is_detected_and_replaced(
     assert hits(after) == 1
 
 
-def test_folder_in_place_of_a_file_is_ignored(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_folder_in_the_place_of_a_file_is_ignored(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
     fresh_kernel()(2.0)
     (file,) = folder.iterdir()
     file.unlink()
@@ -104,7 +105,7 @@ def test_folder_in_place_of_a_file_is_ignored(folder: Path, caplog: pytest.LogCa
     assert warnings(caplog)
 
 
-def test_cache_path_that_is_a_file_disables_the_cache(
+def test_kernels_work_without_a_cache_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     obstacle = tmp_path / "file"
@@ -112,12 +113,12 @@ def test_cache_path_that_is_a_file_disables_the_cache(
     monkeypatch.setenv(CACHE_VARIABLE, str(obstacle))
     disk_cache._warn_once.cache_clear()
     assert [fresh_kernel()(2.0), fresh_kernel()(2.0)] == [6.0, 6.0]
-    assert len([message for message in warnings(caplog) if str(obstacle) in message and ENDING not in message]) == 1
+    assert len([message for message in warnings(caplog) if "cannot be stored" in message]) == 1
     assert obstacle.read_text() == ""
 
 
 @pytest.mark.parametrize("reason", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EDQUOT])
-def test_write_errors_disable_the_cache(
+def test_kernels_work_when_files_cannot_be_written(
     reason: int, folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def refuse(*arguments: Any) -> None:
@@ -130,15 +131,15 @@ def test_write_errors_disable_the_cache(
     assert not any(folder.iterdir())
 
 
-def test_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh_kernel()(2.0)
-    monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("the cache was written to"))
+    monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1
 
 
-def test_concurrent_processes_share_the_cache(folder: Path, tmp_path: Path) -> None:
+def test_processes_that_compile_at_once_do_not_affect_each_other(folder: Path, tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     program.write_text(_PROGRAM)
     root = Path(__file__).parents[2]
@@ -148,13 +149,13 @@ def test_concurrent_processes_share_the_cache(folder: Path, tmp_path: Path) -> N
         subprocess.Popen([*command, str(x)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         for x in (1.0, 2.0, 4.0)
     ]
-    outputs = [process.communicate(timeout=120) for process in started]
-    assert outputs == [("3.0\n", ""), ("6.0\n", ""), ("12.0\n", "")]
+    answers = [process.communicate(timeout=120) for process in started]
+    assert answers == [("3.0\n", ""), ("6.0\n", ""), ("12.0\n", "")]
     (file,) = folder.iterdir()
-    assert file.suffix == ENDING
+    assert file.suffix == SUFFIX
 
 
-def test_changed_source_gets_another_file(folder: Path) -> None:
+def test_an_edited_function_has_another_file(folder: Path) -> None:
     fresh_kernel()(2.0)
 
     @kernel
@@ -164,3 +165,23 @@ def test_changed_source_gets_another_file(folder: Path) -> None:
     scaled.py_func.__qualname__ = fresh_kernel().py_func.__qualname__  # type: ignore[attr-defined]
     assert scaled(2.0) == 8.0
     assert len(list(folder.iterdir())) == 2
+
+
+@pytest.mark.parametrize("path", ["constants.py", "kernels/events.py", "source/deep/er.py"])
+def test_a_change_anywhere_in_the_package_gives_another_file(
+    path: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compiled code contains copies of kernels and constants from other modules and subpackages."""
+    changed = tmp_path / "package" / path
+    changed.parent.mkdir(parents=True)
+    monkeypatch.setattr(disk_cache, "_PACKAGE", tmp_path / "package")
+    for expected, text in enumerate(["A = 1", "A = 2", "A = 2"], 1):
+        changed.write_text(text)
+        disk_cache._hash_source.cache_clear()
+        disk_cache._hash_package.cache_clear()
+        fresh_kernel()(2.0)
+        assert len(list(folder.iterdir())) == min(expected, 2)
+
+
+def test_the_package_is_all_of_engine_taylor() -> None:
+    assert Path(engine.taylor.__file__).parent == disk_cache._PACKAGE

@@ -1,8 +1,18 @@
-"""Compiled kernels on disk, from one run to the next: each in a file that is whole, or not taken.
+"""Compiled kernels on disk: each in a file that is written atomically and verified when it is read.
 
-Numba's own cache takes what it finds: a file that was cut short ends the program, one that was altered may compute anything, and
-two processes that compile at once can take each other's code. Here a file is named after all that its code depends on,
-appears at once, and carries its own hash.
+Numba's own cache loads whatever it finds: a truncated file ends the program, an altered one may compute anything, and two
+processes that compile at once can load each other's code. Here the name of a file contains a hash of everything its code depends
+on, the file is moved into place when complete, and it starts with a hash of its content.
+
+Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
+
+- ``Dispatcher._cache``, set in `engine.taylor.jit.decorator`: the cache that a function asks before it compiles;
+- ``numba.core.caching._Cache``: the abstract base class of such caches, which declares the methods;
+- ``CompileResult._reduce`` and ``CompileResult._rebuild``: compiled code to and from objects that can be pickled;
+- ``numba.core.serialize.dumps``: Numba's pickling of these objects;
+- ``library.has_dynamic_globals``: whether code contains addresses that are valid in this process only;
+- ``codegen.magic_tuple()``: the target, processor and its features that code was compiled for;
+- ``target_context.refresh()``: registers implementations that the loaded code may need.
 """
 
 from __future__ import annotations
@@ -25,30 +35,31 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 CACHE_VARIABLE = "ESCAPE_EXPLORER_CACHE"
-"""Environment variable that names the folder for compiled kernels, instead of the user's cache folder."""
+"""Environment variable with the folder for compiled kernels, instead of the user's cache folder."""
 
-ENDING = ".kernel"
-"""Of the files' names."""
+SUFFIX = ".kernel"
+"""Suffix of the files."""
 
+_PACKAGE = Path(__file__).parents[1]
 _HASH_BYTES = hashlib.sha256().digest_size
 
 log = logging.getLogger(__name__)
 
 
 def cache_folder() -> Path:
-    """The folder for compiled kernels; it need not be there."""
+    """The folder for compiled kernels, which may not exist yet."""
     return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("escape-explorer")) / "kernels"
 
 
 class KernelCache(_Cache):
-    """What Numba asks for a function's machine code, and hands it to.
+    """The cache of one function, called by Numba before and after compilation.
 
-    Whatever is wrong with the folder or with a file, the function is compiled, and a sentence goes to the log.
+    If the folder or a file cannot be used, a warning is logged and the function is compiled.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._name = f"{function.__module__}.{function.__qualname__}"
-        self._source = _hash_package() + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
+        self._source = _hash_package(_PACKAGE) + _hash_source(function.__code__.co_filename) + function.__code__.co_code.hex()
 
     @property
     def cache_path(self) -> str:
@@ -56,23 +67,23 @@ class KernelCache(_Cache):
         return str(cache_folder())
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """The code for arguments of some types; None where there is none of use."""
+        """The code for arguments of some types; None if there is no valid file."""
         target_context.refresh()
         path = self._path(sig, target_context.codegen())
         try:
             content = path.read_bytes()
             payload = content[_HASH_BYTES:]
             if hashlib.sha256(payload).digest() != content[:_HASH_BYTES]:
-                raise ValueError("it is not what was written")
+                raise ValueError("its hash does not match")
             return CompileResult._rebuild(target_context, *pickle.loads(payload))  # type: ignore[no-untyped-call]
         except FileNotFoundError:
             return None
         except Exception as error:
-            log.warning("the compiled kernel %s is of no use (%s); it is compiled again", path, error)
+            log.warning("invalid compiled kernel %s: %s; compiling it again", path, error)
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep the code, if that can be done."""
+        """Store the code if possible."""
         if data.library.has_dynamic_globals:
             return
         payload: bytes = dumps(data._reduce())  # type: ignore[no-untyped-call]
@@ -81,37 +92,36 @@ class KernelCache(_Cache):
             path.parent.mkdir(parents=True, exist_ok=True)
             _write_atomically(path, hashlib.sha256(payload).digest() + payload)
         except OSError as error:
-            _warn_once(f"compiled kernels cannot be kept in {path.parent}, so each start compiles them again: {error.strerror}")
+            _warn_once(f"compiled kernels cannot be stored in {path.parent} and are compiled at every start: {error.strerror}")
 
     def enable(self) -> None:
-        """Part of Numba's interface; this cache is never off."""
+        """Does nothing: the cache is always enabled."""
 
     def disable(self) -> None:
-        """Part of Numba's interface; this cache is never off."""
+        """Does nothing: the cache is always enabled."""
 
     def flush(self) -> None:
-        """Forget what is kept."""
-        for path in cache_folder().glob(f"{self._name}.*{ENDING}"):
+        """Delete the function's files."""
+        for path in cache_folder().glob(f"{self._name}.*{SUFFIX}"):
             path.unlink(missing_ok=True)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
-        """Named after types, machine, source and versions, so that a file never has to hold anything else than it did."""
+        """Named after argument types, processor, source and versions, so that the content of a file never changes."""
         key = repr((signature, codegen.magic_tuple(), self._source, _versions()))
-        return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{ENDING}"
+        return cache_folder() / f"{self._name}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
 
 
 @functools.cache
 def _hash_source(file: str) -> str:
-    """Of a source file; nothing for generated source, whose module is named after it."""
+    """Hash of a source file; empty for generated source, whose module name contains its hash."""
     path = Path(file)
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
 
 
 @functools.cache
-def _hash_package() -> str:
-    """Hash of all source of `engine.taylor`: a kernel holds copies of the kernels and constants that it names."""
-    package = Path(__file__).parents[1]
-    return "".join(_hash_source(str(path)) for path in sorted(package.rglob("*.py")))
+def _hash_package(folder: Path) -> str:
+    """Hashes of all source files in a package and its subpackages: a kernel contains copies of kernels and constants it names."""
+    return "".join(_hash_source(str(path)) for path in sorted(folder.rglob("*.py")))
 
 
 @functools.cache
@@ -120,8 +130,8 @@ def _versions() -> tuple[str, ...]:
 
 
 @functools.cache
-def _warn_once(sentence: str) -> None:
-    log.warning(sentence)
+def _warn_once(message: str) -> None:
+    log.warning(message)
 
 
 def _write_atomically(path: Path, content: bytes) -> None:

@@ -1,7 +1,8 @@
-"""How kernels that are compiled once for all potentials call the functions of one: by address, handed over at run time.
+"""Calls of generated functions by address, from kernels that are compiled once for all potentials.
 
-Compiled code that names a function holds a copy of it, and would have to be compiled again for every structure of a potential. So
-the loops around the step know of `step`, `glide`, `jets`, `tangent` and `potential_value` only the types of their arguments.
+A kernel that calls a function by name contains a copy of it, and would have to be compiled again for every structure of a
+potential. Therefore kernels take the addresses of `step`, `fixed_step`, `jets`, `tangent` and `potential_value` as arguments, and
+only the types of these functions are compiled in.
 """
 
 from __future__ import annotations
@@ -20,21 +21,21 @@ _series = types.float64[:, ::1]
 
 SIGNATURES: dict[str, Signature] = {
     "step": types.void(_table, types.int64, types.float64, types.float64, _gates, *[_lanes] * 11, _flags, _flags),
-    "glide": types.void(_table, types.int64, types.float64, types.float64, *[_lanes] * 6),
+    "fixed_step": types.void(_table, types.int64, types.float64, types.float64, *[_lanes] * 6),
     "jets": types.void(_table, types.int64, *[_lanes] * 4, _series, _series),
     "tangent": types.void(_table, types.int64, *[_lanes] * 9),
     "potential_value": types.float64(_table, types.float64, types.float64),
 }
-"""For each generated function the only types that it is compiled for."""
+"""Types that each generated function is compiled for."""
 
 
 def _caller(name: str) -> Any:
-    """A function for use in kernels that takes the address of a generated function, then its arguments."""
+    """A function for use in kernels that takes the address of a generated function and then its arguments."""
     callee = SIGNATURES[name]
 
     @intrinsic
     def call(typing_context: Any, address: Any, *arguments: Any) -> Any:
-        """Nothing at other types than the callee's: the compiler then says so."""
+        """None, which is a compilation error, for arguments that cannot be converted to the types of the generated function."""
         given = tuple(map(types.unliteral, arguments))
         if len(given) != len(callee.args) or any(
             typing_context.can_convert(one, other) is None for one, other in zip(given, callee.args, strict=True)
@@ -54,4 +55,4 @@ def _caller(name: str) -> Any:
     return call
 
 
-call_step, call_glide, call_jets, call_tangent, call_potential_value = map(_caller, SIGNATURES)
+call_step, call_fixed_step, call_jets, call_tangent, call_potential_value = map(_caller, SIGNATURES)

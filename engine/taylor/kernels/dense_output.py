@@ -1,41 +1,40 @@
-"""One orbit in full: its path from the dense output, and its deviation vectors from the linearised recurrence."""
+"""Single orbits: the path from dense output, and deviation vectors from the linearised recurrence."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import CancelledError
 from threading import Event
 from types import ModuleType
 
 import numpy as np
 
+from engine.execution import raise_if_cancelled
 from engine.taylor.jit.decorator import kernel
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 
 _CHUNK = 8192
 
 
-def stop_if(cancel: Event | None) -> None:
-    """Raise CancelledError when nobody waits any more."""
-    if cancel is not None and cancel.is_set():
-        raise CancelledError
-
-
 def trace_pieces(
     kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """(m, 5) x, y, px, py, t at the start of each step of a piece of the way up to `t_end`, and the time at which it ends."""
+    """The steps of an orbit from t = 0 to `t_end`, in pieces of limited length.
+
+    Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time at which the piece ends. Raises
+    CancelledError when cancelled.
+    """
+    # No step is past these gates: exits are ignored.
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0
-    begin, start, count = 0.0, state, _CHUNK
-    while count == _CHUNK:
-        stop_if(cancel)
+    begin, start, full = 0.0, state, True
+    while full:
+        raise_if_cancelled(cancel)
         piece = np.empty((_CHUNK, 5))
-        count = kernels.trace(start, begin, t_end, tolerance, gates, piece)
-        # A full piece ends where the next begins.
-        whole = count == _CHUNK
+        count = kernels.record_steps(start, begin, t_end, tolerance, gates, piece)
+        # The last row of a full piece is the first of the next.
+        full = count == _CHUNK
         start, begin = piece[count - 1, :4].copy(), float(piece[count - 1, 4])
-        yield (piece[: count - 1], begin) if whole else (piece[:count], t_end)
+        yield (piece[: count - 1], begin) if full else (piece[:count], t_end)
 
 
 def trace_steps(
@@ -46,11 +45,11 @@ def trace_steps(
 
 
 def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cancel: Event | None = None) -> np.ndarray:
-    """(4, n) x, y, px, py at increasing `times`, from the series of the steps they fall into."""
+    """(4, n) x, y, px, py at increasing `times`, from the series of the steps (m, 5) that contain them."""
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
-        stop_if(cancel)
+        raise_if_cancelled(cancel)
         part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
         jets = np.empty((2, ORDER + 1, part.shape[1]))
         kernels.jets(part.shape[1], *part[:4], *jets)
@@ -62,6 +61,7 @@ def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cance
 
 @kernel
 def _evaluate(jets, row, tau):
+    """(4, n) x, y, px, py at times tau (n,) after the start of the steps `row` (n,)."""
     order = jets.shape[1] - 1
     out = np.empty((4, row.size))
     for n in range(row.size):
@@ -76,21 +76,20 @@ def _evaluate(jets, row, tau):
     return out
 
 
-def carry_deviations(
+def sample_deviations(
     kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, cancel: Event | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of the first of two deviation vectors, at `times` along a path (4, n).
 
-    vectors (2, 4) = δx, δy, δpx, δpy at the start of the path. The map of deviations over each interval is found for all
-    intervals at once, then they are applied in turn, each vector brought back to unit length every time. `times` may be at
-    most a step of the integrator apart.
+    vectors (2, 4): δx, δy, δpx, δpy at the start of the path. The transition matrices of all intervals are computed together,
+    then applied in turn, with the vectors normalised after each. `times` must be at most one step of the integrator apart.
     """
     sali = np.empty(times.size)
     stretch = np.ones(times.size)
     w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
     for begin in range(0, times.size - 1, _CHUNK):
-        stop_if(cancel)
+        raise_if_cancelled(cancel)
         end = min(begin + _CHUNK, times.size - 1)
         matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
         _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
@@ -98,7 +97,7 @@ def carry_deviations(
 
 
 def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
-    """(4, 4, n): [row, column, interval] of the linearised flow over each interval."""
+    """(4, 4, n): row, column and interval of the linearised flow over each interval."""
     n = durations.size
     state = [np.ascontiguousarray(row) for row in path]
     matrices = np.zeros((4, 4, n))
@@ -112,7 +111,10 @@ def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.nd
 
 @kernel
 def _apply(matrices, w, sali, stretch):
-    """Apply the maps in turn to w (2, 4); `stretch` becomes the squared length of the first vector after each, from length 1."""
+    """Apply the matrices in turn to w (2, 4), normalised after each.
+
+    sali (n,): SALI after each matrix; stretch (n,): squared growth of the first vector by each matrix.
+    """
     moved = np.empty((2, 4))
     for n in range(sali.size):
         for v in range(2):
@@ -127,9 +129,9 @@ def _apply(matrices, w, sali, stretch):
                 w[v, row] = moved[v, row] / np.sqrt(square)
             if v == 0:
                 stretch[n] = square
-        apart = 0.0
-        opposed = 0.0
+        difference = 0.0
+        sum_ = 0.0
         for row in range(4):
-            apart += (w[0, row] - w[1, row]) ** 2
-            opposed += (w[0, row] + w[1, row]) ** 2
-        sali[n] = np.sqrt(min(apart, opposed))
+            difference += (w[0, row] - w[1, row]) ** 2
+            sum_ += (w[0, row] + w[1, row]) ** 2
+        sali[n] = np.sqrt(min(difference, sum_))

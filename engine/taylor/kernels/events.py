@@ -1,8 +1,9 @@
-"""What happened within one step, read off its dense output: exits through a channel, upward crossings of y = 0.
+"""Events within one step, located in its dense output: exits through a channel and upward crossings of y = 0.
 
-An exit curve is a row of numbers. In the axes of its saddle, u outward along the unstable direction and q across (90°
+An exit curve is a row of numbers. In coordinates from its saddle, u outward along the unstable direction and q across (90°
 counterclockwise from u), the Lyapunov orbit is the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond
-its ends, on the walls, it goes on straight up the hill, where no orbit can be. A closed channel has f = 0.
+its ends, which lie on the zero-velocity curve, it is continued by straight lines through the forbidden region. A closed channel
+has f = 0.
 """
 
 from __future__ import annotations
@@ -16,13 +17,13 @@ SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WID
     11
 )
 
-# Outcomes of an orbit; one that has left carries the number of its channel, 1 or more.
+# Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
 BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
 
 CURVE_DEGREE = 16
 CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
-# A step is looked at in this many parts; within one, ẏ is taken to change its sign at most once.
+# Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
 _PARTS = 8
 _ROOT_ITERATIONS = 80
 _ROOT_ACCURACY = 1e-15
@@ -30,7 +31,7 @@ _ROOT_ACCURACY = 1e-15
 
 @kernel
 def exit_distance(x, y, curve):
-    """How far (x, y) lies beyond an exit curve, along the channel: positive outside, negative inside."""
+    """Distance of (x, y) from an exit curve along the channel: positive outside, negative inside."""
     dx = x - curve[SADDLE_X]
     dy = y - curve[SADDLE_Y]
     u = curve[OUTWARD_X] * dx + curve[OUTWARD_Y] * dy
@@ -51,7 +52,7 @@ def exit_distance(x, y, curve):
 
 @kernel
 def outside_channel(x, y, curves):
-    """The channel beyond whose exit curve (x, y) lies, 0 inside: the channel whose saddle lies nearest in direction decides."""
+    """The channel beyond whose exit curve (x, y) lies, 0 for inside; only the saddle nearest in direction is considered."""
     nearest = -1
     largest = -np.inf
     for k in range(curves.shape[0]):
@@ -66,7 +67,7 @@ def outside_channel(x, y, curves):
 
 @kernel
 def find_outside(x, y, curves, curve_row):
-    """(n,) the channel beyond which each point lies, 0 inside; curves (rows, channels, columns), curve_row (n,)."""
+    """(n,) the channel beyond which each point lies, 0 for inside; curves (rows, channels, columns), curve_row (n,)."""
     channels = np.empty(x.shape[0], np.int8)
     for i in range(x.shape[0]):
         channels[i] = outside_channel(x[i], y[i], curves[curve_row[i]])
@@ -94,7 +95,7 @@ def series_slope(jet, i, tau):
 
 @kernel
 def find_extremum(jet, i, low, high):
-    """Where the slope changes its sign between low and high."""
+    """The time between `low` and `high` at which the slope of a series changes its sign, by bisection."""
     rising = series_slope(jet, i, low) > 0.0
     for _ in range(_ROOT_ITERATIONS):
         middle = 0.5 * (low + high)
@@ -109,7 +110,7 @@ def find_extremum(jet, i, low, high):
 
 @kernel
 def count_upward_crossings(y_jet, i, duration):
-    """How often y goes from below 0 to 0 or above within `duration` of the start of a step, double ones included."""
+    """Number of times y goes from y < 0 to y ≥ 0 within `duration` of the start of a step, pairs of zeros included."""
     count = 0
     low = 0.0
     y_low = series_value(y_jet, i, low)
@@ -118,7 +119,7 @@ def count_upward_crossings(y_jet, i, duration):
         high = duration * part / _PARTS
         y_high = series_value(y_jet, i, high)
         slope_high = series_slope(y_jet, i, high)
-        # An orbit that starts on y = 0 on its way down is below it from then on.
+        # An orbit that starts on y = 0 downward is below from then on.
         below = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
         if below and y_high >= 0.0:
             count += 1
@@ -132,7 +133,7 @@ def count_upward_crossings(y_jet, i, duration):
 
 @kernel
 def find_exit_time(x_jet, y_jet, i, duration, curve):
-    """When, after the start of a step that ends outside, the orbit crosses the exit curve (Illinois method)."""
+    """Time from the start of a step that ends outside to the crossing of the exit curve, by the Illinois method."""
     low, high = 0.0, duration
     at_low = exit_distance(series_value(x_jet, i, low), series_value(y_jet, i, low), curve)
     at_high = exit_distance(series_value(x_jet, i, high), series_value(y_jet, i, high), curve)

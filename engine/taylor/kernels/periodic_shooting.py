@@ -1,6 +1,6 @@
-"""Half a swing between the walls of a channel: what the search for Lyapunov orbits repeats.
+"""Shooting for Lyapunov orbits: half a period of motion across a channel, from one zero-velocity curve to the other.
 
-Like `loop`, compiled once for all potentials.
+Compiled once for all potentials, as `engine.taylor.kernels.propagate`.
 """
 
 from __future__ import annotations
@@ -16,11 +16,16 @@ _WALL_STRIDE = 0.02
 _FURTHEST_WALL = 20.0
 _BISECTIONS = 80
 _MOST_STEPS = 400
+# At least the number of saddles of any potential of the highest degree that is supported.
+_MOST_CHANNELS = 128
 
 
 @kernel
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
-    """The q < 0 at which V = energy on the line across the channel at u; NaN where there is no wall."""
+    """The q < 0 at which V = energy on the line across the channel at u, on the zero-velocity curve; NaN where there is none.
+
+    (u, q) are coordinates from the saddle along `outward` and 90° counterclockwise from it.
+    """
     x = saddle_x + u * outward_x
     y = saddle_y + u * outward_y
     high = 0.0
@@ -43,14 +48,14 @@ def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, o
 
 
 @kernel
-def swing(
+def shoot(
     step, jets, potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy, reach, tolerance, steps
 ):
-    """From rest on the wall q < 0 at u until the motion across the channel turns back.
+    """Start at rest on the zero-velocity curve at u, q < 0, and follow the orbit until its motion across the channel turns back.
 
-    Returns (u̇ at that moment, its time, number of steps): u̇ < 0 for a start too far in, > 0 for one too far out, 0 for the
-    Lyapunov orbit. A start that runs further than `reach` along the channel before it turns returns ∓1 and NaN.
-    steps (m, 5): x, y, px, py, t at the start of each step.
+    Returns (u̇ at the turning point, its time, number of steps): u̇ < 0 for a start too far in, > 0 for one too far out, 0 for the
+    Lyapunov orbit. For an orbit that moves further than `reach` along the channel before it turns, returns ∓1 and NaN.
+    steps (m, 5): x, y, px, py, t at the start of each step, written in place.
     """
     lanes = 1
     now = np.zeros((5, lanes))
@@ -58,7 +63,8 @@ def swing(
     h = np.empty(lanes)
     flag = np.zeros(lanes, np.int64)
     crossed = np.zeros(lanes, np.int64)
-    gates = np.full((16, 3), np.inf)
+    # No step is past these gates: exits are ignored.
+    gates = np.full((_MOST_CHANNELS, 3), np.inf)
     gates[:, :2] = 0.0
     q = find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy)
     if np.isnan(q):
@@ -74,15 +80,16 @@ def swing(
         )  # fmt: skip
         if outward_x * new[3, 0] - outward_y * new[2, 0] <= 0.0:
             return _turning_point(jets, coefficients, now, h[0], outward_x, outward_y, count)
-        run = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
-        if not abs(run) < reach:
-            return (1.0 if run > 0.0 else -1.0), np.nan, count + 1
+        moved = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
+        if not abs(moved) < reach:
+            return (1.0 if moved > 0.0 else -1.0), np.nan, count + 1
         now, new = new, now
     return np.nan, np.nan, 0
 
 
 @kernel
 def _turning_point(jets, coefficients, now, h, outward_x, outward_y, count):
+    """What `shoot` returns for an orbit whose motion across the channel turns back within the step from `now`."""
     x_jet = np.empty((ORDER + 1, 1))
     y_jet = np.empty((ORDER + 1, 1))
     call_jets(jets, coefficients, 1, now[0], now[1], now[2], now[3], x_jet, y_jet)

@@ -1,12 +1,15 @@
-"""The loop around the step: lanes that never idle, and the few steps in which something happened set aside for a look.
+"""The loop over steps that propagates many orbits until they escape, reach a horizon or use up a budget of steps.
 
-Compiled once for all potentials: `step` and `jets` are the addresses of one potential's (see `calls`). Orbits live in the
-caller's arrays; up to `lanes` of them ride in the lanes at a time. The vector step tells by a flag which lanes
-need a scalar look; exits, last steps and possible hidden crossings go to a small buffer whose jets are computed together.
-No orbit's arithmetic depends on its neighbours, so results do not depend on lane width, order, budget or threads.
+Compiled once for all potentials: `step` and `jets` are the addresses of one potential's functions, see
+`engine.taylor.jit.function_pointers`. A fixed number of lanes is stepped together in vector code, and a lane whose orbit ends
+takes the next orbit. Flags set by the vector step tell which lanes need scalar code. Steps that contain an exit, the horizon or
+possibly hidden crossings are collected in a buffer, and the series of a full buffer are computed together. No orbit's arithmetic
+depends on the other lanes, so results do not depend on the number of lanes, the order, the budget or threads.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,161 +27,220 @@ from engine.taylor.kernels.events import (
 )
 from engine.taylor.source.recurrence import GATE, HIDDEN, ORDER, OVERSHOOT
 
-# Arrays of lanes are padded to whole vectors, so that no lane is ever computed by different (scalar) code.
 VECTOR = 16
+"""The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""
 
-_LEAVES, _STAYS = 0, 1
+
+class Exits(NamedTuple):
+    """Exits at one or more energies.
+
+    Attributes
+    ----------
+    gates
+        (channels, 3) g_x, g_y, g: beyond the line g_x x + g_y y = g an orbit may be outside; the same for all energies.
+    curves
+        (energies, channels, columns) exit curves, see `engine.taylor.kernels.events`.
+    curve_row
+        (n,) the row of `curves` for each orbit.
+    """
+
+    gates: np.ndarray
+    curves: np.ndarray
+    curve_row: np.ndarray
+
+
+class Orbits(NamedTuple):
+    """Arrays of n orbits, changed in place by `propagate`.
+
+    Attributes
+    ----------
+    state
+        (n, 4) x, y, px, py at time `t`.
+    t
+        (n,) time reached: the escape time, or the start of the next step.
+    crossings
+        (n,) upward crossings of y = 0 until `t`.
+    last_crossings
+        (n,) those between `t` and t_max, for bounded orbits.
+    fate
+        (n,) int8: the channel of an orbit that escaped, BOUNDED, NOT_COMPUTED or FAILED.
+    pending
+        (n,) uint8: set to 0 when an orbit has escaped, failed or reached the horizon.
+    """
+
+    state: np.ndarray
+    t: np.ndarray
+    crossings: np.ndarray
+    last_crossings: np.ndarray
+    fate: np.ndarray
+    pending: np.ndarray
+
+
+class _StepBuffer(NamedTuple):
+    """Steps whose events are still to be located.
+
+    start (4, lanes): state; h, orbit, ends (lanes,): size of the step, number of the orbit, and whether the orbit ends in it.
+    """
+
+    start: np.ndarray
+    h: np.ndarray
+    orbit: np.ndarray
+    ends: np.ndarray
 
 
 @kernel
-def resolve(
-    jets, coefficients, n, orbit, leaves, start, h, horizon, curves, curve_row, state, t, crossings, last_crossings, fate
-):
-    """Look into `n` whole steps set aside: count their upward crossings and, for orbits that leave, settle the fate."""
-    x_jet = np.empty((ORDER + 1, start.shape[1]))
-    y_jet = np.empty((ORDER + 1, start.shape[1]))
-    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
-    for i in range(n):
-        j = orbit[i]
-        if leaves[i] == _STAYS:
-            crossings[j] += count_upward_crossings(y_jet, i, h[i])
-            continue
-        curve = curves[curve_row[j]]
-        channel = outside_channel(series_value(x_jet, i, h[i]), series_value(y_jet, i, h[i]), curve)
-        # The whole step decides, so that an exit has the same time to the bit whatever the horizon.
-        tau = find_exit_time(x_jet, y_jet, i, h[i], curve[channel - 1]) if channel > 0 else h[i]
-        if channel == 0 or t[j] + tau > horizon:
-            # Resumable: the state stays at the start of the step that would pass t_max.
-            last_crossings[j] = count_upward_crossings(y_jet, i, horizon - t[j])
-            fate[j] = BOUNDED
-            continue
-        crossings[j] += count_upward_crossings(y_jet, i, tau)
-        t[j] += tau
-        state[j, 0] = series_value(x_jet, i, tau)
-        state[j, 1] = series_value(y_jet, i, tau)
-        state[j, 2] = series_slope(x_jet, i, tau)
-        state[j, 3] = series_slope(y_jet, i, tau)
-        fate[j] = channel
+def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, lanes, exits, orbits):
+    """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps are taken.
 
-
-@kernel
-def advance(
-    step, jets, coefficients, todo, horizon, final, tolerance, budget, lanes, gates, curves, curve_row,
-    state, t, crossings, last_crossings, fate, waiting,
-):  # fmt: skip
-    """Carry orbits on until they leave, pass `horizon`, or `budget` steps are spent.
-
-    todo: numbers of the orbits to carry on; state (n, 4), t, crossings, last_crossings, fate, waiting: of all orbits,
-    changed in place. waiting[j] turns 0 when orbit j has left or reached the horizon. With `final` the horizon is t_max:
-    the last, partial step is looked into and an orbit still inside is BOUNDED; without, it stays NOT_COMPUTED.
-    Returns the number of steps taken.
+    exits: `Exits`; orbits: `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located and an orbit
+    still inside is BOUNDED; without, it stays NOT_COMPUTED. Returns the number of steps taken.
     """
     now = np.empty((5, lanes))
     new = np.empty((5, lanes))
-    for row in range(4):
-        now[row] = 0.0
+    # Lanes without an orbit take harmless steps that never reach the horizon.
     now[0] = 0.01
+    now[1:4] = 0.0
     now[4] = -np.inf
     h = np.empty(lanes)
     flag = np.zeros(lanes, np.int64)
     crossed = np.zeros(lanes, np.int64)
-    rider = np.empty(lanes, np.int64)
-    aside_start = np.zeros((4, lanes))
-    aside_h = np.zeros(lanes)
-    aside_orbit = np.zeros(lanes, np.int64)
-    aside_leaves = np.zeros(lanes, np.int64)
-    aside = 0
-    riding = 0
-    following = 0
+    lane_orbit = np.empty(lanes, np.int64)
+    buffer = _StepBuffer(np.zeros((4, lanes)), np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.bool_))
+    buffered = 0
+    active = min(lanes, todo.shape[0])
+    next_orbit = active
     taken = 0
-    while riding < lanes and following < todo.shape[0]:
-        j = todo[following]
-        following += 1
-        for c in range(4):
-            now[c, riding] = state[j, c]
-        now[4, riding] = t[j]
-        rider[riding] = j
-        riding += 1
-    while riding > 0 and taken < budget:
-        width = (riding + VECTOR - 1) // VECTOR * VECTOR
+    for i in range(active):
+        _load_orbit(orbits, todo[i], now, i, lane_orbit, crossed)
+    while active > 0 and taken < budget:
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
         call_step(
-            step, coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
+            step, coefficients, width, tolerance, horizon, exits.gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
-        taken += riding
-        i = riding
-        while i > 0:
-            i -= 1
-            flagged = flag[i]
-            if flagged == 0:
+        taken += active
+        # Downward, since the last active lane replaces one whose orbit has ended.
+        for i in range(active - 1, -1, -1):
+            if flag[i] == 0:
                 continue
-            j = rider[i]
-            channel = 0
-            failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and h[i] > 0.0)
-            late = flagged & OVERSHOOT != 0
-            if not late and flagged & GATE != 0:
-                channel = outside_channel(new[0, i], new[1, i], curves[curve_row[j]])
-            look = channel > 0 or (late and final) or (not late and flagged & HIDDEN != 0)
-            leaves = late or channel > 0 or failed
-            if leaves:
-                for c in range(4):
-                    state[j, c] = now[c, i]
-                t[j] = now[4, i]
-                crossings[j] += crossed[i]
-                waiting[j] = 0
-                fate[j] = FAILED if failed else NOT_COMPUTED
-            if look and not failed:
-                for c in range(4):
-                    aside_start[c, aside] = now[c, i]
-                aside_h[aside] = h[i]
-                aside_orbit[aside] = j
-                aside_leaves[aside] = _LEAVES if leaves else _STAYS
-                aside += 1
-                if aside == lanes:
-                    resolve(
-                        jets, coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
-                        curves, curve_row, state, t, crossings, last_crossings, fate,
-                    )  # fmt: skip
-                    aside = 0
-            elif not leaves and now[1, i] < 0.0 and new[1, i] >= 0.0:
+            j = lane_orbit[i]
+            ends, failed, has_events = _judge_step(flag[i], new[0, i], new[1, i], h[i], final, exits, j)
+            if ends:
+                _store_orbit(now, i, crossed, orbits, j)
+                orbits.pending[j] = 0
+                orbits.fate[j] = FAILED if failed else NOT_COMPUTED
+            if has_events:
+                _buffer_step(now, i, h, j, ends, buffer, buffered)
+                buffered += 1
+                if buffered == lanes:
+                    _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
+                    buffered = 0
+            elif not ends and now[1, i] < 0.0 and new[1, i] >= 0.0:
                 crossed[i] += 1
-            if not leaves:
-                continue
-            if following < todo.shape[0]:
-                j = todo[following]
-                following += 1
-                for c in range(4):
-                    new[c, i] = state[j, c]
-                new[4, i] = t[j]
-                rider[i] = j
-                crossed[i] = 0
-            else:
-                riding -= 1
-                for c in range(5):
-                    new[c, i] = new[c, riding]
-                rider[i] = rider[riding]
-                crossed[i] = crossed[riding]
+            if ends and next_orbit < todo.shape[0]:
+                _load_orbit(orbits, todo[next_orbit], new, i, lane_orbit, crossed)
+                next_orbit += 1
+            elif ends:
+                active -= 1
+                _move_lane(new, active, i, lane_orbit, crossed)
         now, new = new, now
-    if aside > 0:
-        resolve(
-            jets, coefficients, aside, aside_orbit, aside_leaves, aside_start, aside_h, horizon,
-            curves, curve_row, state, t, crossings, last_crossings, fate,
-        )  # fmt: skip
-    for i in range(riding):
-        j = rider[i]
-        for c in range(4):
-            state[j, c] = now[c, i]
-        t[j] = now[4, i]
-        crossings[j] += crossed[i]
+    if buffered > 0:
+        _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
+    for i in range(active):
+        _store_orbit(now, i, crossed, orbits, lane_orbit[i])
     return taken
 
 
 @kernel
-def trace(step, coefficients, start, begin, end, tolerance, gates, steps):
-    """The starts of the steps of one orbit from time `begin` up to `end`, as `advance` takes them, until `steps` is full.
+def _judge_step(flags, x, y, h, final, exits, orbit):
+    """Whether an orbit ends in a flagged step, whether it has failed, and whether there are events to locate.
 
-    steps (m, 5): x, y, px, py, t at the start of each step. Returns how many were written; when the last step reaches `end`
-    it is fewer than m, otherwise the last row is where to go on from.
+    x, y: end of the step; h: its size.
+    """
+    failed = not (np.isfinite(x) and np.isfinite(y) and h > 0.0)
+    late = flags & OVERSHOOT != 0
+    channel = 0
+    if not late and flags & GATE != 0:
+        channel = outside_channel(x, y, exits.curves[exits.curve_row[orbit]])
+    ends = late or channel > 0 or failed
+    has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
+    return ends, failed, has_events and not failed
+
+
+@kernel
+def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
+    """Put an orbit into lane i of the (5, n) array `lanes`."""
+    for c in range(4):
+        lanes[c, i] = orbits.state[orbit, c]
+    lanes[4, i] = orbits.t[orbit]
+    lane_orbit[i] = orbit
+    crossed[i] = 0
+
+
+@kernel
+def _store_orbit(lanes, i, crossed, orbits, orbit):
+    """Write lane i of the (5, n) array `lanes` back to its orbit."""
+    for c in range(4):
+        orbits.state[orbit, c] = lanes[c, i]
+    orbits.t[orbit] = lanes[4, i]
+    orbits.crossings[orbit] += crossed[i]
+
+
+@kernel
+def _move_lane(lanes, source, target, lane_orbit, crossed):
+    for c in range(5):
+        lanes[c, target] = lanes[c, source]
+    lane_orbit[target] = lane_orbit[source]
+    crossed[target] = crossed[source]
+
+
+@kernel
+def _buffer_step(now, i, h, orbit, ends, buffer, k):
+    """Put the step of lane i into place k of the buffer."""
+    for c in range(4):
+        buffer.start[c, k] = now[c, i]
+    buffer.h[k] = h[i]
+    buffer.orbit[k] = orbit
+    buffer.ends[k] = ends
+
+
+@kernel
+def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
+    """Locate the events in the first `n` buffered steps: upward crossings and, for orbits that end, the exit and its time."""
+    x_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
+    y_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
+    start = buffer.start
+    call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
+    for i in range(n):
+        j = buffer.orbit[i]
+        h = buffer.h[i]
+        if not buffer.ends[i]:
+            orbits.crossings[j] += count_upward_crossings(y_jet, i, h)
+            continue
+        curves = exits.curves[exits.curve_row[j]]
+        channel = outside_channel(series_value(x_jet, i, h), series_value(y_jet, i, h), curves)
+        # The whole step decides, so that the escape time is the same to the bit for every horizon.
+        tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
+        if channel == 0 or orbits.t[j] + tau > horizon:
+            # The state stays at the start of the step that would pass t_max, so that the orbit can be continued.
+            orbits.last_crossings[j] = count_upward_crossings(y_jet, i, horizon - orbits.t[j])
+            orbits.fate[j] = BOUNDED
+            continue
+        orbits.crossings[j] += count_upward_crossings(y_jet, i, tau)
+        orbits.t[j] += tau
+        orbits.state[j, 0] = series_value(x_jet, i, tau)
+        orbits.state[j, 1] = series_value(y_jet, i, tau)
+        orbits.state[j, 2] = series_slope(x_jet, i, tau)
+        orbits.state[j, 3] = series_slope(y_jet, i, tau)
+        orbits.fate[j] = channel
+
+
+@kernel
+def record_steps(step, coefficients, start, begin, end, tolerance, gates, steps):
+    """Record the starts of the steps of one orbit from time `begin` to `end`, as `propagate` takes them, until `steps` is full.
+
+    start (4,); gates (channels, 3); steps (m, 5): x, y, px, py, t at the start of each step. Returns the number of rows written:
+    fewer than m when the last step reaches `end`, otherwise the last row is where to continue from.
     """
     now = np.zeros((5, VECTOR))
     new = np.zeros((5, VECTOR))

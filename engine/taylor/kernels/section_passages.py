@@ -1,9 +1,11 @@
-"""Where orbits pass y = 0 downward before they leave, at steps of free size: the cuts of a tube of orbits with the section.
+"""Passages of orbits through y = 0 downward before they escape, with adaptive steps: sections of the tubes of unstable manifolds.
 
-Like `loop`, compiled once for all potentials.
+Compiled once for all potentials, as `engine.taylor.kernels.propagate`.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,42 +15,50 @@ from engine.taylor.kernels.events import find_exit_time, find_extremum, outside_
 from engine.taylor.kernels.propagate import VECTOR
 from engine.taylor.source.recurrence import GATE, HIDDEN, ORDER, OVERSHOOT
 
-_CUT_PARTS = 8
-_CUT_ITERATIONS = 60
-_CUT_ACCURACY = 1e-15
+# Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
+_PARTS = 8
+_ROOT_ITERATIONS = 60
+_ROOT_ACCURACY = 1e-15
+
+
+class _StepBuffer(NamedTuple):
+    """Steps whose passages are still to be located.
+
+    start (6, lanes): x, y, px, py, t and step size; orbit (lanes,); channel (lanes,): where the step escapes, 0 for inside.
+    """
+
+    start: np.ndarray
+    orbit: np.ndarray
+    channel: np.ndarray
 
 
 @kernel
-def cut(step, jets, coefficients, tolerance, horizon, gates, curves, state, cuts, found):
-    """The first downward passages of y = 0 of each orbit, until it has found enough, leaves through an exit or passes `horizon`.
+def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
+    """The first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
 
-    curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR`; cuts (lanes, m, 3): x, px and time; found
-    (lanes,), zeros. A passage is one from y > 0 to y ≤ 0; none is counted after the moment at which the orbit leaves.
+    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR`; passages (lanes, m, 3): x, px
+    and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the escape time.
     """
     lanes = state.shape[1]
-    most = cuts.shape[1]
+    most = passages.shape[1]
     now = np.zeros((5, lanes))
     now[:4] = state
     new = np.empty((5, lanes))
     h = np.empty(lanes)
     flag = np.zeros(lanes, np.int64)
     crossed = np.zeros(lanes, np.int64)
-    rider = np.arange(lanes)
-    aside = np.zeros((6, lanes))
-    aside_rider = np.zeros(lanes, np.int64)
-    aside_channel = np.zeros(lanes, np.int64)
-    waiting = 0
-    riding = lanes
-    while riding > 0:
-        width = (riding + VECTOR - 1) // VECTOR * VECTOR
+    lane_orbit = np.arange(lanes)
+    buffer = _StepBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
+    buffered = 0
+    active = lanes
+    while active > 0:
+        width = (active + VECTOR - 1) // VECTOR * VECTOR
         call_step(
             step, coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
             new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
         )  # fmt: skip
-        i = riding
-        while i > 0:
-            i -= 1
-            j = rider[i]
+        for i in range(active - 1, -1, -1):
+            j = lane_orbit[i]
             full = found[j] == most
             down = now[1, i] > 0.0 and new[1, i] <= 0.0
             if flag[i] == 0 and not down and not full:
@@ -59,39 +69,40 @@ def cut(step, jets, coefficients, tolerance, horizon, gates, curves, state, cuts
                 channel = outside_channel(new[0, i], new[1, i], curves)
             if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
-                    aside[c, waiting] = now[c, i]
-                aside[5, waiting] = h[i]
-                aside_rider[waiting] = j
-                aside_channel[waiting] = channel
-                waiting += 1
-                if waiting == lanes:
-                    _find_cuts(jets, coefficients, waiting, aside, aside_rider, aside_channel, curves, cuts, found)
-                    waiting = 0
+                    buffer.start[c, buffered] = now[c, i]
+                buffer.start[5, buffered] = h[i]
+                buffer.orbit[buffered] = j
+                buffer.channel[buffered] = channel
+                buffered += 1
+                if buffered == lanes:
+                    _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
+                    buffered = 0
             if late or full or channel > 0:
-                riding -= 1
+                active -= 1
                 for c in range(5):
-                    new[c, i] = new[c, riding]
-                rider[i] = rider[riding]
+                    new[c, i] = new[c, active]
+                lane_orbit[i] = lane_orbit[active]
         now, new = new, now
-    _find_cuts(jets, coefficients, waiting, aside, aside_rider, aside_channel, curves, cuts, found)
+    _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
 
 
 @kernel
-def _find_cuts(jets, coefficients, n, start, rider, channel, curves, cuts, found):
-    """Locate the downward passages within each of `n` steps set aside, x, y, px, py, t, h, in the order in which they were."""
+def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
+    """Append the downward passages in each of the first `n` buffered steps to those of the step's orbit."""
+    start = buffer.start
     x_jet = np.empty((ORDER + 1, start.shape[1]))
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
-        j = rider[i]
+        j = buffer.orbit[i]
         duration = start[5, i]
-        if channel[i] > 0:
-            duration = find_exit_time(x_jet, y_jet, i, duration, curves[channel[i] - 1])
+        if buffer.channel[i] > 0:
+            duration = find_exit_time(x_jet, y_jet, i, duration, curves[buffer.channel[i] - 1])
         high = 0.0
         y_high, slope_high = start[1, i], start[3, i]
-        for part in range(1, _CUT_PARTS + 1):
+        for part in range(1, _PARTS + 1):
             low, y_low, slope_low = high, y_high, slope_high
-            high = duration * part / _CUT_PARTS
+            high = duration * part / _PARTS
             y_high = series_value(y_jet, i, high)
             slope_high = series_slope(y_jet, i, high)
             above, below = low, high
@@ -101,20 +112,22 @@ def _find_cuts(jets, coefficients, n, start, rider, channel, curves, cuts, found
                     below = turning
                 else:
                     above = turning
-            if found[j] == cuts.shape[1] or not (series_value(y_jet, i, above) > 0.0 and series_value(y_jet, i, below) <= 0.0):
+            if found[j] == passages.shape[1] or not (
+                series_value(y_jet, i, above) > 0.0 and series_value(y_jet, i, below) <= 0.0
+            ):
                 continue
-            tau = _descent(y_jet, i, above, below)
-            cuts[j, found[j], 0] = series_value(x_jet, i, tau)
-            cuts[j, found[j], 1] = series_slope(x_jet, i, tau)
-            cuts[j, found[j], 2] = start[4, i] + tau
+            tau = _find_passage_time(y_jet, i, above, below)
+            passages[j, found[j], 0] = series_value(x_jet, i, tau)
+            passages[j, found[j], 1] = series_slope(x_jet, i, tau)
+            passages[j, found[j], 2] = start[4, i] + tau
             found[j] += 1
 
 
 @kernel
-def _descent(y_jet, i, above, below):
-    """Where a series that is positive at `above` and not at `below` vanishes between them: Newton's method, kept in a bracket."""
+def _find_passage_time(y_jet, i, above, below):
+    """The zero between `above`, where a series is positive, and `below`, where it is not: Newton's method with bisection."""
     tau = 0.5 * (above + below)
-    for _ in range(_CUT_ITERATIONS):
+    for _ in range(_ROOT_ITERATIONS):
         value = series_value(y_jet, i, tau)
         if value > 0.0:
             above = tau
@@ -122,7 +135,7 @@ def _descent(y_jet, i, above, below):
             below = tau
         slope = series_slope(y_jet, i, tau)
         newton = tau - value / slope if slope != 0.0 else above
-        if abs(newton - tau) < _CUT_ACCURACY or below - above < _CUT_ACCURACY:
+        if abs(newton - tau) < _ROOT_ACCURACY or below - above < _ROOT_ACCURACY:
             break
         tau = newton if above < newton < below else 0.5 * (above + below)
     return tau

@@ -1,4 +1,4 @@
-"""Which Cauchy products to form: the cheapest few that yield every monomial in the forces, and the factors they carry."""
+"""Planning of Cauchy products: a cheap sequence that yields every monomial in the forces, and the scales of their series."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Polynomial = Mapping[Monomial, float]
 
 X, Y = (1, 0), (0, 1)
 
-# Coefficients that cancel in exact arithmetic, of a term like −x³ ε/3, do so to a few roundings.
+# Relative error up to which coefficients count as equal: those of terms like −x³ ε/3 have a few rounding errors.
 _ROUNDING = 1e-15
 
 
@@ -22,8 +22,8 @@ _ROUNDING = 1e-15
 class Product:
     """One Cauchy product: the series of `monomial` from the series of two factors already known.
 
-    What is kept of a square is half of it, which saves a multiplication in every other coefficient; so the series of a
-    monomial carries a factor, see `find_scales`.
+    For a square only half of it is computed, which saves a multiplication in every other coefficient; therefore the series of a
+    monomial has a scale factor, see `find_scales`.
     """
 
     monomial: Monomial
@@ -41,7 +41,7 @@ def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
 def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
     """A short list of Cauchy products that yields every needed monomial.
 
-    Greedy, monomial after monomial; tried also with each monomial that divides a needed one made first, and the cheapest kept.
+    A greedy search, monomial by monomial, repeated with each divisor of a needed monomial formed first; the cheapest plan wins.
     """
     seeds = {(a, b) for i, j in needed for a in range(i + 1) for b in range(j + 1) if a + b > 1}
     plans = [_greedy_plan([*seed, *sorted(needed, key=_by_degree)]) for seed in ([], *([m] for m in sorted(seeds)))]
@@ -53,7 +53,7 @@ def _by_degree(monomial: Monomial) -> tuple[int, Monomial]:
 
 
 def _cost(product: Product) -> float:
-    """In full products: a square has half the terms and a little more to do."""
+    """In units of a full product: a square has half the terms and some extra work."""
     return 0.55 if product.left == product.right else 1.0
 
 
@@ -69,6 +69,7 @@ def _greedy_plan(wanted: list[Monomial]) -> list[Product]:
 
 @functools.cache
 def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[Product]]:
+    """The cost and the products of the cheapest way to form a monomial."""
     if monomial in known:
         return 0.0, []
     best: tuple[float, list[Product]] = (float("inf"), [])
@@ -85,16 +86,16 @@ def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, li
     return best
 
 
-def find_scales(plan: list[Product]) -> dict[Monomial, float]:
-    """The factor that the series of each monomial carries."""
+def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:
+    """{monomial: scale}: the computed series is that of the monomial times its scale."""
     scales = {X: 1.0, Y: 1.0, (0, 0): 1.0}
     for p in plan:
         scales[p.monomial] = scales[p.left] * scales[p.right] * (0.5 if p.left == p.right else 1.0)
     return scales
 
 
-def find_difference(products: list[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
-    """Two squares that enter everything as their difference only, to rounding: one series then does for both."""
+def find_difference(products: Sequence[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
+    """Two squares that enter all `polynomials` only as their difference, to rounding, so that one series replaces both."""
     factors = {monomial for p in products for monomial in (p.left, p.right)}
     squares = [p for p in products if p.left == p.right and p.monomial not in factors]
     for one, other in itertools.combinations(squares, 2):

@@ -1,29 +1,32 @@
-"""From a polynomial potential to the source text of its Taylor kernels.
+"""From a polynomial potential to straight-line programs for its Taylor kernels.
 
 Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. With
 ẍ = −V_x, ÿ = −V_y and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in
-V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written out flat, one statement a coefficient, inside
-one loop over orbits, that recurrence has neither branch nor call and the compiler turns all of it into vector code.
+V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside
+one loop over orbits, this recurrence has neither branches nor calls, so the compiler vectorises all of it.
 
-Four functions come out for each potential, every one a loop over lanes `i`:
+For each potential there are four functions with a loop over lanes `i`, and one for a single point:
 
-``step``     one step of each orbit, its size chosen from the last coefficients, with the tests that tell whether
-             anything worth a closer look may have happened within it;
-``glide``    one step of a given size, summing weighted squares of x and y on the way;
-``jets``     the coefficients themselves: the dense output of a step;
-``tangent``  a deviation vector carried over a given time: the same recurrence, linearised.
+``step``             one step of each orbit with a size chosen from the last coefficients, and flags for steps that may
+                     contain an event;
+``fixed_step``       one step of a given size, which also adds weighted x² and y² to sums;
+``jets``             the coefficients of x and y: the dense output of a step;
+``tangent``          propagates a deviation vector over a given time by the linearised recurrence;
+``potential_value``  V at one point.
 
-The source depends on the structure of V alone, that is on which exponents occur and on a few facts about the coefficients
-that save work (`find_difference`, `crossings_can_hide`). Its coefficients come at run time, in a table that is every
-function's first argument, so that potentials which differ in numbers only share their compiled code.
+The code depends on the structure of V only, that is on its exponents and on a few facts about the coefficients
+that save work (`find_difference`, `crossings_can_hide`). The coefficients are passed at run time in a table, every
+function's first argument, so that potentials of the same structure share compiled code.
 """
 
 from __future__ import annotations
 
 import functools
 import math
-import re
-from collections.abc import Iterable, Mapping, Sequence
+import operator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,161 +41,222 @@ from engine.taylor.source.cauchy_products import (
     find_scales,
     plan_products,
 )
+from engine.taylor.source.straight_line import TABLE, StraightLine, Value, where
 
 ORDER = 19
-"""Order of the series. With TOLERANCE the cheapest tried that keeps energy well within 1e-11 over 1e5 time units."""
+"""Order of the series; with TOLERANCE the fastest tried that keeps the energy error well below 1e-11 over 1e5 time units."""
 
 TOLERANCE = 3e-15
-"""What the last coefficients of a step's series, times the 16th power of the step, come to."""
+"""Norm of the last coefficients of a step's series times the 16th power of the step size."""
 
-# What the third coefficient from the end counts in the step rule, found with ORDER and TOLERANCE in `benchmarks/steps.py`.
+# Weight of the third coefficient from the end in the step size, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
 _EARLIER_WEIGHT = 0.3
 
 LONGEST_STEP = 1.0
-"""Steps near rest or of nearly linear motion stop growing here, well within reach of the series."""
+"""Upper limit of a step, for motion near rest or nearly linear in time; well within the convergence of the series."""
 
 REACH = 3.0
-"""Where no orbit inside the exits of a well of size 1 gets to within a step: y oscillates at its fastest within this disc."""
+"""Radius of a disc that contains all steps of orbits inside the exits of a well of size 1."""
 
-# Coefficients that ask for steps too short to move the clock at any t_max; an orbit with these, or with NaN, has failed.
-_BROKEN_DOWN = 1e90
+# Norms of the last coefficients above this would give steps too short to change t; an orbit with these, or with NaN, has failed.
+_LARGEST_NORM = 1e90
 
 HIDDEN, GATE, OVERSHOOT = 1, 2, 4
-"""Flags of a step: crossings of y = 0 may hide in it; its end is past an exit's gate; it ends beyond the horizon."""
+"""Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon."""
 
 Terms = tuple[tuple[int, int, float], ...]
 
-Origins = Mapping[Monomial, tuple[Monomial, int]]
-"""A derivative of V: for each of its monomials, the term of V that it comes from and the whole number that it has gained."""
+Entry = tuple[Monomial, float, float]
+"""(term, multiple, factor): an entry of the table with the value factor · multiple · (the coefficient of a term of V)."""
+
+# A derivative of V: for each of its monomials the term of V that it comes from, and the factor from differentiating it.
+_Derivative = Mapping[Monomial, tuple[Monomial, float]]
+
+# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and in the variational equations too.
+_GRADIENT = ((0,), (1,))
+_GRADIENT_AND_HESSIAN = (*_GRADIENT, (0, 0), (0, 1), (1, 1))
 
 
-class _Table:
-    """The numbers that the source leaves open. What is the same multiple of the same coefficient of V has one entry."""
+class GeneratedFunction(NamedTuple):
+    """A kernel as Python source, and the straight-line program that it calls by the program's name."""
 
-    def __init__(self, terms: Polynomial) -> None:
-        self._terms = terms
-        self._entries: dict[tuple[Monomial, float, float], float] = {}
-        self._names: dict[tuple[Monomial, float, float], str] = {}
-
-    def name(self, term: Monomial, multiple: float, factor: float = 1.0) -> str:
-        """The local variable that holds factor · multiple · (the coefficient of a term of V)."""
-        key = (term, multiple, factor)
-        if key not in self._entries:
-            self._names[key] = f"c{len(self._entries)}_"
-            self._entries[key] = factor * (self._terms[term] * multiple)
-        return self._names[key]
-
-    def values(self) -> np.ndarray:
-        """(m,) every entry, in order; read-only."""
-        values = np.array(list(self._entries.values()), dtype=float)
-        values.flags.writeable = False
-        return values
-
-    def differentiated(self, *axes: int) -> Origins:
-        """Where the monomials of ∂^n V / ∂(axes) come from."""
-        origins = {term: (term, 1) for term in self._terms}
-        for axis in axes:
-            gained = {m: (term, multiple * m[axis]) for m, (term, multiple) in origins.items() if m[axis]}
-            origins = {(i - (axis == 0), j - (axis == 1)): origin for (i, j), origin in gained.items()}
-        return origins
-
-    def evaluated(self, origins: Origins) -> dict[Monomial, float]:
-        """A derivative with its coefficients."""
-        return {m: multiple * self._terms[term] for m, (term, multiple) in origins.items()}
+    name: str
+    program: StraightLine
+    kernel: str
 
 
-def _series(monomial: Monomial) -> str:
-    """The stem of the names that hold the coefficients of a monomial's series."""
-    return {X: "x", Y: "y"}.get(monomial, f"x{monomial[0]}y{monomial[1]}_")
+@dataclass(frozen=True, eq=False)
+class GeneratedCode:
+    """The generated functions of all potentials of one structure.
+
+    Attributes
+    ----------
+    functions
+        ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
+        ``kernel`` and ``read_table``.
+    entries
+        The entries of the table, see `Entry`.
+    """
+
+    functions: tuple[GeneratedFunction, ...]
+    entries: tuple[Entry, ...]
+
+    @functools.cached_property
+    def source(self) -> str:
+        """All programs and kernels as text."""
+        return "\n\n".join(f"{function.program}\n\n{function.kernel}" for function in self.functions)
+
+    def tabulate(self, terms: Terms) -> np.ndarray:
+        """(m,) the table of a potential, which every function takes as its first argument; read-only."""
+        polynomial = _sorted(terms)
+        table = np.array([factor * (polynomial[term] * multiple) for term, multiple, factor in self.entries], dtype=float)
+        table.flags.writeable = False
+        return table
 
 
-def _sum_of_products(pairs: list[tuple[str, str]], subtracted: Sequence[tuple[str, str]] = ()) -> str:
-    """a·b + c·d + … − e·f − …, nested so that each addition contracts into a multiply-add."""
-    text = "*".join(pairs[0])
-    for left, right in pairs[1:]:
-        text = f"({text} + {left}*{right})"
-    for left, right in subtracted:
-        text = f"({text} - {left}*{right})"
-    return text
+_Difference = tuple[Product, Product] | None
 
 
-def _cauchy(left: str, right: str, k: int) -> str:
+class _Structure(NamedTuple):
+    """What generated code depends on; the differences are those of `_find_difference` without and with the Hessian."""
+
+    monomials: tuple[Monomial, ...]
+    channels: int
+    can_hide: bool
+    difference: _Difference
+    tangent_difference: _Difference
+
+
+def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
+    """The derivative of V with respect to each of `axes` in turn."""
+    factors: Polynomial = dict.fromkeys(monomials, 1)
+    for axis in axes:
+        factors = derivative(factors, axis)
+    return {(i, j): ((i + axes.count(0), j + axes.count(1)), factor) for (i, j), factor in factors.items()}
+
+
+@functools.cache
+def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
+    """The products from which the series of some derivatives of V are formed."""
+    return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
+
+
+def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
+    """Two squares of which only the difference enters some derivatives of V."""
+    derived = [_derivative(polynomial, axes) for axes in derivatives]
+    values = [{m: factor * polynomial[term] for m, (term, factor) in each.items()} for each in derived]
+    return find_difference(_plan(tuple(polynomial), derivatives), values)
+
+
+_Series = Sequence[Value]
+
+
+def _total(program: StraightLine, parts: Iterator[Value]) -> Value:
+    """The sum from left to right, each part computed just before it is added; 0.0 for no parts."""
+    first = next(parts, None)
+    return program.constant(0.0) if first is None else functools.reduce(operator.add, parts, first)
+
+
+def _sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
+    """a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
+    return functools.reduce(operator.add, (left * right for left, right in pairs))
+
+
+def _cauchy(left: _Series, right: _Series, k: int) -> Value:
     """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
-    if left == right:
+    if left is right:
         return _sum_of_products(_half_square(left, k))
-    order = sorted(range(k + 1), key=lambda j: max(j, k - j))
-    return _sum_of_products([(f"{left}{j}", f"{right}{k - j}") for j in order])
+    return _sum_of_products((left[j], right[k - j]) for j in sorted(range(k + 1), key=lambda j: max(j, k - j)))
 
 
-def _half_square(factor: str, k: int) -> list[tuple[str, str]]:
-    pairs = [(f"{factor}{j}", f"{factor}{k - j}") for j in reversed(range((k + 1) // 2))]
-    middle = [(f"(0.5*{factor}{k // 2})", f"{factor}{k // 2}")] if k % 2 == 0 else []
-    return [*middle, *pairs]
+def _half_square(series: _Series, k: int) -> Iterator[tuple[Value, Value]]:
+    """The factors of the products whose sum is coefficient k of half the square of a series."""
+    if k % 2 == 0:
+        yield 0.5 * series[k // 2], series[k // 2]
+    yield from ((series[j], series[k - j]) for j in reversed(range((k + 1) // 2)))
 
 
-def _linear_combination(table: _Table, origins: Origins, scales: Mapping[Monomial, float], k: int, factor: float) -> str:
+def _linear_combination(
+    program: StraightLine,
+    derived: _Derivative,
+    series: Mapping[Monomial, _Series],
+    scales: Mapping[Monomial, float],
+    k: int,
+    factor: float,
+) -> Value:
     """factor · (coefficient k of the series of a derivative of V).
 
     Low degrees last: a sum of two products contracts into the product that comes first, and the linear term is known earliest.
     """
-    parts = [
-        table.name(term, multiple / scales[m], factor) + (f"*{_series(m)}{k}" if sum(m) else "")
-        for m, (term, multiple) in reversed(list(origins.items()))
-        if sum(m) > 0 or k == 0
-    ]
-    return " + ".join(parts) or "0.0"
+
+    def part(m: Monomial) -> Value:
+        term, multiple = derived[m]
+        entry = program.entry((term, multiple / scales[m], factor))
+        return entry * series[m][k] if sum(m) > 0 else entry
+
+    return _total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
 
 
-def _recurrence(table: _Table, products: list[Product], also: Sequence[Origins] = ()) -> list[str]:
-    """Statements for x0 … x_ORDER, y0 … y_ORDER and the products that they, and the derivatives `also`, need."""
-    vx, vy = table.differentiated(0), table.differentiated(1)
-    lines: list[str] = []
+def _recurrence(
+    program: StraightLine, monomials: tuple[Monomial, ...], products: Sequence[Product], difference: _Difference
+) -> dict[Monomial, list[Value]]:
+    """The series of x and y to ORDER and of `products`, where a difference of two squares is stored as the first of them."""
+    series: dict[Monomial, list[Value]] = {
+        X: [program.input("x0"), program.input("x1")],
+        Y: [program.input("y0"), program.input("y1")],
+        **{p.monomial: [] for p in products},
+    }
+    forces = {X: _derivative(monomials, (0,)), Y: _derivative(monomials, (1,))}
     scales = find_scales(products)
-    difference = find_difference(products, [table.evaluated(origins) for origins in (vx, vy, *also)])
     if difference is not None:
         one, other = difference
         products = [p for p in products if p not in difference]
-        vx, vy = ({m: origin for m, origin in force.items() if m != other.monomial} for force in (vx, vy))
+        forces = {axis: {m: origin for m, origin in force.items() if m != other.monomial} for axis, force in forces.items()}
     for k in range(ORDER - 1):
-        lines += [f"{_series(p.monomial)}{k} = {_cauchy(_series(p.left), _series(p.right), k)}" for p in products]
+        for p in products:
+            series[p.monomial].append(_cauchy(series[p.left], series[p.right], k))
         if difference is not None:
-            halves = (_half_square(_series(p.left), k) for p in difference)
-            lines.append(f"{_series(one.monomial)}{k} = {_sum_of_products(*halves)}")
-        factor = -1.0 / ((k + 1) * (k + 2))
-        lines += [
-            f"{name}{k + 2} = {_linear_combination(table, force, scales, k, factor)}" for name, force in (("x", vx), ("y", vy))
-        ]
-    return lines
+            subtracted = (left * right for left, right in _half_square(series[other.left], k))
+            square = _cauchy(series[one.left], series[one.left], k)
+            series[one.monomial].append(functools.reduce(operator.sub, subtracted, square))
+        for axis, force in forces.items():
+            series[axis].append(_linear_combination(program, force, series, scales, k, -1.0 / ((k + 1) * (k + 2))))
+    return series
 
 
-def _step_size() -> list[str]:
-    """The h whose 16th power times a norm of the last coefficients is the tolerance: no call, no square root, no branch.
+def _orbit(program: StraightLine, structure: _Structure) -> dict[Monomial, list[Value]]:
+    """The recurrence with the products for the equations of motion only."""
+    return _recurrence(program, structure.monomials, _plan(structure.monomials, _GRADIENT), structure.difference)
 
-    Three orders of both coordinates, so that a coefficient that happens to vanish leaves no step too long. The bits of a
-    double, read as an integer, are its binary logarithm but for a piecewise linear mantissa, and a shift by four divides
-    that by 16: h comes out up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down.
+
+def _step_size(program: StraightLine, x: _Series, y: _Series) -> Value:
+    """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
+
+    The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
+    The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa, and a shift by four
+    divides that by 16: h is up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down.
     """
     one = 1023 << 52
-    last, before, earlier = (f"(abs(x{k}) + abs(y{k}))" for k in (ORDER, ORDER - 1, ORDER - 2))
-    return [
-        f"size = {last} + {before} + {_EARLIER_WEIGHT!r}*{earlier}",
-        "bits = bits_of(size*(1.0/tolerance))",
-        f"h = double_of({one + one // 16} - (bits >> 4))",
-        f"h = h if h < {LONGEST_STEP!r} else {LONGEST_STEP!r}",
-        f"h = h if size < {_BROKEN_DOWN!r} else np.nan",
-    ]
+    last, before, earlier = (abs(x[k]) + abs(y[k]) for k in (ORDER, ORDER - 1, ORDER - 2))
+    norm = last + before + _EARLIER_WEIGHT * earlier
+    bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
+    h = program.apply("double_of", (one + one // 16) - (bits >> 4))
+    h = where(h < LONGEST_STEP, h, LONGEST_STEP)
+    return where(norm < _LARGEST_NORM, h, math.nan)
 
 
-def _horner(name: str, value: str, slope: str) -> list[str]:
-    """A series and its time derivative at h."""
-    lines = [f"{value} = {name}{ORDER}", f"{slope} = {name}{ORDER}", f"{value} = {value}*h + {name}{ORDER - 1}"]
+def _horner(series: _Series, h: Value) -> tuple[Value, Value]:
+    """The value and the time derivative of a series at h."""
+    slope = series[ORDER]
+    value = slope * h + series[ORDER - 1]
     for k in reversed(range(ORDER - 1)):
-        lines += [f"{slope} = {slope}*h + {value}", f"{value} = {value}*h + {name}{k}"]
-    return lines
+        slope = slope * h + value
+        value = value * h + series[k]
+    return value, slope
 
 
 def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
-    """Can a step hold two crossings of y = 0, which the signs at its ends do not show?
+    """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show.
 
     Where V is even in y, ÿ = −g(x, y) y. With g below (π/h)² two zeros of y are further than h apart, by Sturm's comparison
     with the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
@@ -204,183 +268,169 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 
-def _hidden_crossings() -> list[str]:
-    """The test of a step for crossings of y = 0 that may hide in it, where they can.
+def _hidden_crossings(y: _Series, end: Value, h: Value) -> Value:
+    """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
 
     bound = ½ Σ_{k≥2} |y_k| (2h)^k is at least h · max|ẏ − ẏ(0)|, and at least twice the distance of y from its chord.
     So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both ends lie on one side, further off than bound/2.
     """
-    lines = ["twice = h + h", f"bound = abs(y{ORDER})"]
-    lines += [f"bound = bound*twice + abs(y{k})" for k in reversed(range(2, ORDER))]
-    return [
-        *lines,
-        "bound = bound*twice*h",
-        "near = abs(y0)",
-        "far = abs(yh)",
-        "near = near if near < far else far",
-        f"hidden = 0 if abs(y1)*h > bound else (0 if (y0*yh > 0.0 and near > 0.5*bound) else {HIDDEN})",
+    twice = h + h
+    bound = abs(y[ORDER])
+    for k in reversed(range(2, ORDER)):
+        bound = bound * twice + abs(y[k])
+    bound = bound * twice * h
+    near, far = abs(y[0]), abs(end)
+    near = where(near < far, near, far)
+    return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (near > 0.5 * bound), 0, HIDDEN))
+
+
+def _lane_loop(
+    program: StraightLine,
+    arguments: str,
+    reads: Mapping[str, str],
+    writes: Mapping[str, Value | str],
+    constants: Mapping[str, str] | None = None,
+) -> GeneratedFunction:
+    """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
+
+    reads, constants: {input: source}; writes: {left-hand side with its operator: value or source}. Constants are read before the
+    loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing
+    is vectorised.
+    """
+    program.results = [value.index for value in writes.values() if isinstance(value, Value)]
+    sources = {target: f"r{value.index}" if isinstance(value, Value) else value for target, value in writes.items()}
+    name = program.name.removeprefix("_")
+    lines = [
+        "@kernel",
+        f"def {name}(coefficients, n, {arguments}):",
+        *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **(constants or {})}.items()),
+        "    for i in range(n):",
+        *(f"        {each} = {source}" for each, source in reads.items()),
+        f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
+        *(f"        {target} {source}" for target, source in sources.items()),
     ]
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
 
 
-def _gates(channels: int) -> list[str]:
-    """Is the end of the step past any exit's gate: the line across a channel that its exit curve lies beyond?"""
-    test = "gate = {flag} if g{k}x*xh + g{k}y*yh > g{k} else gate"
-    return ["gate = 0", *(test.format(flag=GATE, k=k) for k in range(channels))]
+_START = {"x0": "x[i]", "y0": "y[i]", "x1": "px[i]", "y1": "py[i]"}
 
 
-def _entries(body: Iterable[str]) -> list[str]:
-    """Statements that take the entries that `body` names out of the table."""
-    used = {int(n) for n in re.findall(r"\bc(\d+)_\b", "\n".join(body))}
-    return [f"c{n}_ = table[{n}]" for n in sorted(used)]
-
-
-def _split(statement: str) -> tuple[str, str]:
-    left, right = re.split(r" \+?= ", statement, maxsplit=1)
-    return left, right
-
-
-_Statements = Sequence[str]
-
-
-def _function(
-    name: str, arguments: str, reads: _Statements, body: _Statements, writes: _Statements, before: _Statements = ()
-) -> str:
-    """A loop over lanes: each reads its numbers, computes in straight lines, writes."""
-    body = [*_entries(body), *body]
-    made = {_split(line)[0] for line in body}
-    named = [n for line in body for n in re.findall(r"(?<![\w.])[a-z]\w*\b(?![(.])", _split(line)[1])]
-    taken = list(dict.fromkeys(n for n in named if n not in made and n not in _WORDS))
-    given = list(dict.fromkeys(n for line in writes for n in re.findall(r"\b[a-z]\w*\b", _split(line)[1]) if n in made))
-    lines = ["", "", "@straight_line", f"def _{name}({', '.join(taken)}):"]
-    lines += [f"    {line}" for line in (*body, f"return ({', '.join(given)},)")]
-    lines += ["", "", "@kernel", f"def {name}(coefficients, n, {arguments}):"]
-    # Read in the loop, each would be checked against all that the loop writes; past some 100 checks nothing is vector code.
-    lines += [f"    {line}" for line in ("table = read_table(coefficients)", *before, "for i in range(n):")]
-    lines += [f"        {line}" for line in (*reads, f"({', '.join(given)},) = _{name}({', '.join(taken)})", *writes)]
-    return "\n".join(lines) + "\n"
-
-
-# What an expression of straight lines may name beside its numbers.
-_WORDS = frozenset({"if", "else", "and", "np"})
-
-_START = ("x0 = x[i]", "y0 = y[i]", "x1 = px[i]", "y1 = py[i]")
-
-
-def _step(recurrence: list[str], hidden: list[str], channels: int) -> str:
-    body = [
-        *recurrence,
-        *_step_size(),
-        *_horner("x", "xh", "pxh"),
-        *_horner("y", "yh", "pyh"),
-        *hidden,
-        *_gates(channels),
-        "th = t0 + h",
-        f"late = 0 if th <= horizon else {OVERSHOOT}",
-        "flagged = hidden + gate + late",
-        "upward = 1 if ((y0 < 0.0 and yh >= 0.0) and flagged == 0) else 0",
-    ]
-    writes = [
-        "crossed[i] += upward",
-        "flag[i] = flagged",
-        "h_taken[i] = h",
-        "x_new[i] = xh",
-        "y_new[i] = yh",
-        "px_new[i] = pxh",
-        "py_new[i] = pyh",
-        "t_new[i] = th",
-    ]
+def _step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    program = StraightLine("_step", table)
+    series = _orbit(program, structure)
+    x, y = series[X], series[Y]
+    h = _step_size(program, x, y)
+    x_end, px_end = _horner(x, h)
+    y_end, py_end = _horner(y, h)
+    hidden = _hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
+    gate, columns = program.constant(0), {"x": 0, "y": 1, "": 2}
+    for k in range(structure.channels):
+        g_x, g_y, g = (program.input(f"g{k}{name}") for name in columns)
+        gate = where(g_x * x_end + g_y * y_end > g, GATE, gate)
+    t_end = program.input("t0") + h
+    flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
+    writes = {
+        "crossed[i] +=": where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
+        "flag[i] =": flags,
+        "h_taken[i] =": h,
+        "x_new[i] =": x_end,
+        "y_new[i] =": y_end,
+        "px_new[i] =": px_end,
+        "py_new[i] =": py_end,
+        "t_new[i] =": t_end,
+    }
     arguments = "tolerance, horizon, gates, x, y, px, py, t, x_new, y_new, px_new, py_new, t_new, h_taken, flag, crossed"
-    gates = [f"g{k}{w} = gates[{k}, {c}]" for k in range(channels) for c, w in enumerate(("x", "y", ""))]
-    return _function("step", arguments, [*_START, "t0 = t[i]"], body, writes, gates)
+    gates = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(structure.channels) for name, column in columns.items()}
+    return _lane_loop(program, arguments, {**_START, "t0": "t[i]"}, writes, gates)
 
 
-def _glide(recurrence: list[str]) -> str:
-    body = [
-        *recurrence,
-        *_horner("x", "xh", "pxh"),
-        *_horner("y", "yh", "pyh"),
-    ]
-    writes = [
-        "x_square[i] += weight*(x0*x0)",
-        "y_square[i] += weight*(y0*y0)",
-        "x[i] = xh",
-        "y[i] = yh",
-        "px[i] = pxh",
-        "py[i] = pyh",
-    ]
-    return _function("glide", "h, weight, x, y, px, py, x_square, y_square", _START, body, writes)
+def _fixed_step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    program = StraightLine("_fixed_step", table)
+    series = _orbit(program, structure)
+    h = program.input("h")
+    x_end, px_end = _horner(series[X], h)
+    y_end, py_end = _horner(series[Y], h)
+    # The sums are left to the loop: within the program they make it up to a sixth slower.
+    writes: dict[str, Value | str] = {
+        "x_sum[i] +=": "weight*(x0*x0)",
+        "y_sum[i] +=": "weight*(y0*y0)",
+        "x[i] =": x_end,
+        "y[i] =": y_end,
+        "px[i] =": px_end,
+        "py[i] =": py_end,
+    }
+    return _lane_loop(program, "h, weight, x, y, px, py, x_sum, y_sum", _START, writes)
 
 
-def _jets(recurrence: list[str]) -> str:
-    stores = [f"{name}_jet[{k}, i] = {name}{k}" for name in "xy" for k in range(ORDER + 1)]
-    return _function("jets", "x, y, px, py, x_jet, y_jet", _START, recurrence, stores)
+def _jets(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    program = StraightLine("_jets", table)
+    series = _orbit(program, structure)
+    writes = {f"{name}_jet[{k}, i] =": series[axis][k] for name, axis in (("x", X), ("y", Y)) for k in range(ORDER + 1)}
+    return _lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
 
 
-def _tangent(table: _Table) -> str:
+def _tangent(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
     """Variational equations ẅ = −(Hessian of V along the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
-    hessian = {name: table.differentiated(*axes) for name, axes in (("hxx", (0, 0)), ("hxy", (0, 1)), ("hyy", (1, 1)))}
-    forces = {"u": (("hxx", "u"), ("hxy", "v")), "v": (("hxy", "u"), ("hyy", "v"))}
-    needed = (table.differentiated(0), table.differentiated(1), *hessian.values())
-    products = plan_products(frozenset(m for origins in needed for m in origins))
+    program = StraightLine("_tangent", table)
+    products = _plan(structure.monomials, _GRADIENT_AND_HESSIAN)
     scales = find_scales(products)
-    reads = [*_START, "u0 = wx[i]", "v0 = wy[i]", "u1 = wpx[i]", "v1 = wpy[i]", "h = duration[i]"]
-    body = _recurrence(table, products, tuple(hessian.values()))
+    series = _recurrence(program, structure.monomials, products, structure.tangent_difference)
+    hessian = {axes: _derivative(structure.monomials, axes) for axes in ((0, 0), (0, 1), (1, 1))}
+    second: dict[tuple[int, int], list[Value]] = {axes: [] for axes in hessian}
+    u, v = ([program.input(f"{name}{k}") for k in (0, 1)] for name in "uv")
     for k in range(ORDER - 1):
-        body += [f"{name}{k} = {_linear_combination(table, origins, scales, k, -1.0)}" for name, origins in hessian.items()]
-        for name, pairs in forces.items():
-            parts = [_cauchy(h, w, k) for h, w in pairs if hessian[h]]
-            body.append(f"{name}{k + 2} = ({' + '.join(parts) or '0.0'})*({1.0 / ((k + 1) * (k + 2))!r})")
-    body += [*_horner("u", "uh", "wpx_new"), *_horner("v", "vh", "wpy_new")]
-    writes = ["wx[i] = uh", "wy[i] = vh", "wpx[i] = wpx_new", "wpy[i] = wpy_new"]
-    return _function("tangent", "duration, x, y, px, py, wx, wy, wpx, wpy", reads, body, writes)
+        for axes, derived in hessian.items():
+            second[axes].append(_linear_combination(program, derived, series, scales, k, -1.0))
+        for w, row in ((u, ((0, 0), (0, 1))), (v, ((0, 1), (1, 1)))):
+            parts = (_cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes])
+            w.append(_total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
+    h = program.input("h")
+    (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
+    reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
+    writes = {"wx[i] =": u_end, "wy[i] =": v_end, "wpx[i] =": pu_end, "wpy[i] =": pv_end}
+    return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
-def _potential_value(table: _Table, terms: Iterable[Monomial]) -> str:
-    """V itself, at one point."""
-    body = " + ".join("*".join([table.name((i, j), 1.0), *["x"] * i, *["y"] * j]) for i, j in terms) or "0.0"
-    entries = re.sub(r"\bc(\d+)_", r"coefficients[\1]", body)
-    return f"\n\n@kernel\ndef potential_value(coefficients, x, y):\n    return {entries}\n"
+def _potential_value(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+    """V at one point."""
+    program = StraightLine("_potential_value", table)
+    x, y = program.input("x"), program.input("y")
+    parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, 1.0))) for i, j in structure.monomials)
+    program.results = [_total(program, parts).index]
+    lines = [
+        "@kernel",
+        "def potential_value(coefficients, x, y):",
+        f"    {TABLE} = read_table(coefficients)",
+        f"    (value,) = {program.name}({', '.join(program.parameters)})",
+        "    return value",
+    ]
+    return GeneratedFunction("potential_value", program, "\n".join(lines) + "\n")
 
 
-def generate_source(terms: Terms, channels: int, reach: float = REACH) -> str:
-    """The source of ``step``, ``glide``, ``jets``, ``tangent`` and ``potential_value`` for the structure of one potential.
+def generate_code(terms: Terms, channels: int, reach: float = REACH) -> GeneratedCode:
+    """The generated functions for a potential, the same object for all potentials of the same structure.
 
     Parameters
     ----------
     terms
         ((i, j, c), …) of V = Σ c x^i y^j, in any order.
     channels
-        How many gates ``step`` tests.
+        How many gates ``step`` tests, 0 or more.
     reach
-        How far from the origin orbits get, above 0.
-
-    Returns
-    -------
-    Python source that needs ``np``, ``kernel``, ``straight_line`` and ``table_reader`` in its namespace.
-    The first argument of each function is the table of
-    `tabulate_coefficients`; no coefficient of V stands in the text.
+        Radius about the origin, above 0, that contains all orbits.
     """
-    return _generate(terms, channels, reach)[0]
+    polynomial = _sorted(terms)
+    differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
+    return _generate(_Structure(tuple(polynomial), channels, crossings_can_hide(polynomial, reach), *differences))
 
 
-def tabulate_coefficients(terms: Terms) -> np.ndarray:
-    """(m,) what the functions of `generate_source` take as their first argument, for a potential of these terms; read-only."""
-    return _generate(terms, 0)[1]
+def _sorted(terms: Terms) -> dict[Monomial, float]:
+    """The terms by degree, so that the order in which they are given does not matter."""
+    return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}
 
 
-@functools.lru_cache(maxsize=64)
-def _generate(terms: Terms, channels: int, reach: float = REACH) -> tuple[str, np.ndarray]:
-    # One order for all who write the same potential.
-    polynomial = {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}
-    table = _Table(polynomial)
-    recurrence = _recurrence(table, plan_products(frozenset({*table.differentiated(0), *table.differentiated(1)})))
-    hidden = _hidden_crossings() if crossings_can_hide(polynomial, reach) else ["hidden = 0"]
-    functions = [
-        _step(recurrence, hidden, channels),
-        _glide(recurrence),
-        _jets(recurrence),
-        _tangent(table),
-        _potential_value(table, polynomial),
-    ]
-    values = table.values()
-    return f"\n\nread_table = table_reader({values.size})\n" + "".join(functions), values
+@functools.cache
+def _generate(structure: _Structure) -> GeneratedCode:
+    table: dict[Entry, int] = {}
+    functions = tuple(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent, _potential_value))
+    return GeneratedCode(functions, tuple(table))

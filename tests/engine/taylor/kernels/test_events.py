@@ -1,4 +1,4 @@
-"""Upward crossings of y = 0 within one step, on series that are known polynomials; and the time of an exit."""
+"""Upward crossings of y = 0 and exits within one step, for series that are known polynomials."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def with_roots(*roots: float) -> Polynomial:
         ((-0.3, 1.2), -1, 0),
     ],
 )
-def test_crossings_are_the_roots_with_rising_y(roots: tuple[float, ...], sign: int, expected: int) -> None:
+def test_crossings_are_the_roots_with_positive_slope(roots: tuple[float, ...], sign: int, expected: int) -> None:
     assert crossings(sign * with_roots(*roots)) == expected
 
 
@@ -47,7 +47,7 @@ def test_crossings_are_the_roots_with_rising_y(roots: tuple[float, ...], sign: i
 @pytest.mark.parametrize("where", [0.01, 0.13, 0.3, 0.6180339, 0.97])
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_two_roots_in_one_part_of_a_step_are_one_crossing(apart: float, where: float, sign: int) -> None:
-    # Above–below–above and below–above–below both hold exactly one way up.
+    # Above, below, above and below, above, below both contain exactly one upward crossing.
     low, high = where, min(where + apart, 0.999)
     assert crossings(sign * with_roots(low, high)) == 1
 
@@ -55,26 +55,26 @@ def test_two_roots_in_one_part_of_a_step_are_one_crossing(apart: float, where: f
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
 @pytest.mark.parametrize("where", [0.05, 0.3, 0.77])
 @pytest.mark.parametrize("sign", [-1, 1])
-def test_turning_just_before_zero_is_no_crossing(gap: float, where: float, sign: int) -> None:
+def test_an_extremum_just_before_zero_is_no_crossing(gap: float, where: float, sign: int) -> None:
     assert crossings(sign * (with_roots(where, where) + gap)) == 0
 
 
 @pytest.mark.parametrize(("sign", "expected"), [(1, 0), (-1, 1)])
 def test_touching_zero_counts_from_below_only(sign: int, expected: int) -> None:
-    # Exact in floating point. From below y reaches "0 or above"; from above it was never below.
+    # Exact in floating point. From below, y reaches y ≥ 0; from above, it is never negative.
     assert crossings(sign * with_roots(0.25, 0.25)) == expected
 
 
-def test_start_on_zero_going_up_is_not_counted() -> None:
+def test_an_upward_start_on_zero_is_not_counted() -> None:
     assert crossings(with_roots(0.0)) == 0
 
 
-def test_start_on_zero_going_up_counts_a_later_return() -> None:
+def test_an_upward_start_on_zero_counts_a_later_return() -> None:
     assert crossings(with_roots(0.0, 0.4, 0.7)) == 1
 
 
 @pytest.mark.parametrize("turn", [0.5, 0.05, 0.01, 1e-4])
-def test_start_on_zero_going_down_counts_the_way_back(turn: float) -> None:
+def test_a_downward_start_on_zero_counts_the_return(turn: float) -> None:
     assert crossings(with_roots(0.0, turn)) == 1
 
 
@@ -91,12 +91,12 @@ def test_start_on_zero_after_a_step_that_ended_there_is_not_counted_twice() -> N
     assert crossings(whole, 0.5) + crossings(whole(Polynomial([0.5, 1.0]))) == 1
 
 
-def test_only_the_given_duration_is_looked_at() -> None:
+def test_only_crossings_within_the_duration_are_counted() -> None:
     assert [crossings(with_roots(0.2, 0.5, 0.8), duration) for duration in (0.1, 0.4, 0.7, 0.9)] == [0, 1, 1, 2]
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_crossings_of_random_series_are_those_of_dense_sampling(seed: int) -> None:
+def test_crossings_of_random_series_are_their_roots_with_positive_slope(seed: int) -> None:
     polynomial = Polynomial(np.random.default_rng(seed).normal(size=7) * [0.3, 1, 2, 2, 1, 1, 1])
     roots = polynomial.roots()
     real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
@@ -119,19 +119,19 @@ def test_every_point_of_a_lyapunov_orbit_lies_on_its_curve(name: str, energy: fl
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.3), ("II", 0.4), ("III", 0.8)])
-def test_a_line_leaves_where_it_meets_the_lyapunov_orbit(name: str, energy: float) -> None:
+def test_exit_time_of_a_straight_line_is_that_of_its_intersection_with_the_lyapunov_orbit(name: str, energy: float) -> None:
     for orbit in find_lyapunov_orbits(CASES[name], energy):
-        goal = np.array([orbit.x[30], orbit.y[30]])
-        tau = find_exit_time(*orbit_through(0.0, 0.0, *goal), 0, 1.2, orbit.curve)
+        end = np.array([orbit.x[30], orbit.y[30]])
+        tau = find_exit_time(*orbit_through(0.0, 0.0, *end), 0, 1.2, orbit.curve)
         assert tau == pytest.approx(1.0, abs=1e-9)
 
 
-def test_a_step_that_starts_outside_leaves_at_once() -> None:
+def test_a_step_that_starts_outside_has_exit_time_zero() -> None:
     curve = find_lyapunov_orbits(CASES["II"], 0.3)[0].curve
     assert find_exit_time(*orbit_through(1.5, 0.0, 1.0, 0.0), 0, 0.1, curve) == 0.0
 
 
-def test_the_origin_is_inside_and_far_along_each_channel_is_outside() -> None:
+def test_the_origin_is_inside_and_twice_each_saddle_is_outside() -> None:
     potential = CASES["III"]
     curves = np.array([[o.curve for o in find_lyapunov_orbits(potential, 0.5)]])
     x, y = np.vstack([[0.0, 0.0], 2 * potential.saddles]).T

@@ -17,6 +17,6 @@ def test_every_product_is_planned_after_its_factors(needed: set[tuple[int, int]]
     assert {m for m in needed if sum(m) > 1} <= known
 
 
-def test_a_square_saves_a_product() -> None:
-    # x⁴ as (x²)² takes two products, not three.
+def test_a_fourth_power_is_the_square_of_a_square() -> None:
+    # Two products instead of three.
     assert len(plan_products({(4, 0)})) == 2
