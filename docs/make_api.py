@@ -51,8 +51,8 @@ def make_site(folder: Path) -> None:
     module = document_engine()
     pdoc.render.configure(docformat="numpy", show_source=False)
     with warnings.catch_warnings():
-        # pdoc cannot resolve type parameters; it prints their names.
-        warnings.filterwarnings("ignore", r"Error parsing type annotation .* Import of (Result|T) failed")
+        # pdoc cannot resolve type parameters and annotations inherited by dataclasses; it prints their names.
+        warnings.filterwarnings("ignore", "Error parsing type annotation")
         _write(folder / "engine.html", pdoc.render.html_module(module, {"engine": module}))
     _write(folder / "search.js", pdoc.render.search_index({"engine": module}))
     sources = _markdown_files()

@@ -48,7 +48,6 @@ def test_manifolds_lie_on_the_section_and_follow_the_energy(open_explorer: OpenE
 def test_origins_have_a_picture_and_a_key(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW)
     switch(explorer, "Origin and exit")
-    expect(explorer.text("Origin and exit")).to_be_visible()
     expect(explorer.text("Enters by (rows), leaves by (columns)")).to_be_visible()
     explorer.page.wait_for_function("Bokeh.documents[0].get_model_by_name('maps').data.passage[0].length > 1")
     passage, origins = explorer.column("passage"), compute_origin_fates(SPEC)

@@ -1,4 +1,4 @@
-"""Zooming ends where double precision does, and says so."""
+"""Zooming ends at the limit of double precision, with a message."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def link_to(window: tuple[float, float, float, float]) -> str:
     return f"?case={DEEP.case}&plane={DEEP.plane.name.lower()}&h={DEEP.energy!r}&t_max=1000&window={edges}"
 
 
-def test_a_billionth_of_a_thousandth_of_the_plane_can_be_seen(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_a_window_of_1e_12_of_the_plane_is_computed(open_explorer: Callable[..., ExplorerPage]) -> None:
     window = DEEP.window
     assert window is not None
     assert window.x_high - window.x_low < 1e-11
@@ -27,11 +27,11 @@ def test_a_billionth_of_a_thousandth_of_the_plane_can_be_seen(open_explorer: Cal
     assert len(np.unique(explorer.column("fate"))) > 2
     x = 0.5 * (window.x_low + window.x_high)
     explorer.hover("basins", x, 0.5 * (window.ordinate_low + window.ordinate_high))
-    # As many digits as tell neighbouring pixels apart.
+    # Enough digits to distinguish neighbouring pixels.
     expect(explorer.text(re.compile(r"\(-?0\.\d{14,17}, -?0\.\d{14,17}\)"))).to_be_visible()
 
 
-def test_beyond_double_precision_that_is_said_and_the_picture_stays(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_zooming_beyond_double_precision_gives_a_message_and_the_picture_stays(open_explorer: Callable[..., ExplorerPage]) -> None:
     window = DEEP.window
     assert window is not None
     explorer = open_explorer(link=link_to((window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)))
@@ -42,6 +42,6 @@ def test_beyond_double_precision_that_is_said_and_the_picture_stays(open_explore
         explorer.page.keyboard.press("+")
         explorer.page.wait_for_timeout(700)
     expect(sentence).to_be_visible()
-    # The last window that could be computed, as far as it has come.
+    # The last window that could be computed, possibly not yet complete.
     assert 0 < explorer.column("dw") < 0.1 * (window.x_high - window.x_low)
     assert explorer.column("fate").size > 1

@@ -162,7 +162,7 @@ def test_zooming_computes_the_region_and_back_returns(explorer: ExplorerPage) ->
     assert dw < 0.9 * whole[1]
     window = (x, x + dw, y, y + dh)
     assert explorer.ranges("basins") == pytest.approx(window)
-    # The browser holds the window in double precision, but as an origin and a size.
+    # The browser holds the window as an origin and a size, so its ends are rounded.
     expected = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, window=window, t_max=1e5))
     assert np.mean(explorer.column("crossings") == expected.crossings) > 0.98
     explorer.forget_pixels()
@@ -203,7 +203,7 @@ def test_bounded_orbits_show_their_certificate(shared: ExplorerPage) -> None:
     expect(shared.text("invariant curves separate it from every exit")).to_be_visible()
 
 
-def test_regular_and_chaotic_orbits_can_be_told_apart(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_regular_and_chaotic_orbits_can_be_distinguished(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link="?case=I&h=0.19&resolution=113&t_max=1000")
     title = explorer.page.get_by_text("bounded and chaotic")
     expect(title).not_to_be_visible()

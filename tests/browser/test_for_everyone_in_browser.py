@@ -37,7 +37,7 @@ def luminance(explorer: ExplorerPage) -> float:
     return sum(map(int, re.findall(r"\d+", colour)[:3])) / 3
 
 
-def test_a_dark_page_has_light_lines_and_titles_and_is_dark_again_next_time(explorer: ExplorerPage) -> None:
+def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(explorer: ExplorerPage) -> None:
     assert luminance(explorer) > 200
     explorer.press("Dark theme")
     explorer.page.wait_for_function(LIGHT_LINES)

@@ -38,7 +38,7 @@ def test_a_link_opens_a_potential_with_its_parameters(open_explorer: Callable[..
     assert {1, 2} <= set((explorer.column("fate") - len(OUTCOMES) + 1).ravel().tolist())
 
 
-def test_a_link_with_a_potential_of_no_use_says_so_and_shows_case_one(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_a_link_with_an_invalid_potential_gives_a_message_and_shows_case_one(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link="?V=" + urllib.parse.quote("x²y² <img src=x onerror=alert(1)>"))
     expect(explorer.text("Ignored the potential in the link")).to_be_visible()
     expect(explorer.text("Case I")).to_be_visible()

@@ -7,7 +7,7 @@ from panel.custom import JSComponent
 _SAVE = """
 export function render({model, el}) {
   el.setAttribute("aria-hidden", "true")
-  model.on("msg:custom", ({data: {name, content}}) => {
+  model.on("msg:custom", ({name, content}) => {
     const address = URL.createObjectURL(new Blob([content]))
     const link = Object.assign(document.createElement("a"), {href: address, download: name})
     document.body.append(link)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 from itertools import count
+from typing import Any
 
 import panel as pn
 from bokeh.document import Document
@@ -19,11 +20,18 @@ pane.setv({text: html}, {sync: false})
 """
 
 
+class _NamedPane(pn.pane.HTML):
+    """A pane whose Bokeh model has the name that `show_lasting_notice` and the browser look for."""
+
+    def _get_properties(self, doc: Document) -> dict[str, Any]:
+        return {**super()._get_properties(doc), "name": NAME}
+
+
 class Notice:
     """Shows one message at a time."""
 
     def __init__(self) -> None:
-        self._pane = pn.pane.HTML("", name=NAME, width=0, height=0, margin=0, styles={"position": "absolute"})
+        self._pane = _NamedPane("", width=0, height=0, margin=0, styles={"position": "absolute"})
         self._numbers = count()
 
     def layout(self) -> pn.viewable.Viewable:
@@ -45,7 +53,8 @@ def show_lasting_notice(document: Document, sentence: str) -> None:
 
 def watch_connection(document: Document) -> None:
     """Have the browser show `CONNECTION_LOST` when the server is gone."""
-    args = {"name": NAME, "html": _html(CONNECTION_LOST)}
+    # The Bokeh model of the pane holds escaped HTML.
+    args = {"name": NAME, "html": escape(_html(CONNECTION_LOST))}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
 
 

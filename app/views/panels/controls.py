@@ -11,6 +11,7 @@ import panel as pn
 
 from app.rendering.palette import PALETTES
 from app.runtime.process_state import process_state
+from app.state.energy_ranges import EnergyRange
 from app.state.system import SYSTEM, System
 from app.state.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
 from app.views.components.flex_row import flex_row
@@ -67,7 +68,6 @@ class Controls:
         self.case = SegmentedControl(label="Case", options=list(CASES), value=self._case(), margin=(5, 0, 5, 10))
         self.other = button("Other …", actions.choose_potential, kind="light", margin=(5, 10, 5, 4))
         self.plane = SegmentedControl(label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane)
-        self.energy = ThrottledSlider(label="Energy h", sizing_mode="stretch_width", margin=(0, 10))
         self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.play = button(PLAY, actions.play, width=84)
         self.exact_energy = pn.widgets.FloatInput(label="Exact h", value=state.energy, format=NUMBER_FORMAT, width=140)
@@ -77,15 +77,13 @@ class Controls:
             label="Colours", options={palette.name: key for key, palette in PALETTES.items()}, value=state.palette, width=170
         )
         self.facts = pn.pane.HTML(margin=(0, 10))
+        self._energy_column = pn.Column(min_width=300, max_width=620, sizing_mode="stretch_width", styles={"flex": "1 1 300px"})
         self._follow_system()
         self._connect()
 
     def layout(self) -> pn.viewable.Viewable:
         """Two rows that wrap on narrow screens: what is shown, and how it is computed."""
-        energy = pn.Column(
-            self.energy, self.ticks, min_width=300, max_width=620, sizing_mode="stretch_width", styles={"flex": "1 1 300px"}
-        )
-        what = (pn.Row(self.case, self.other, margin=0), self.plane, energy, self.play, self.exact_energy)
+        what = (pn.Row(self.case, self.other, margin=0), self.plane, self._energy_column, self.play, self.exact_energy)
         how = (self.t_max, self.resolution, self.palette, self.facts)
         return pn.Column(
             flex_row(*what, align="center", gap="6px"), flex_row(*how, align="center", gap="6px"), sizing_mode="stretch_width"
@@ -96,9 +94,6 @@ class Controls:
         self.case.param.watch(lambda event: self._take_case(event.new), "value")
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
         self.palette.param.watch(lambda event: state.param.update(palette=event.new), "value")
-        # If a move and a release arrive together, the release is handled first.
-        self.energy.param.watch(self._preview, "value", precedence=1)
-        self.energy.param.watch(self._take_slider_energy, "value_throttled")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
         self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
         self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
@@ -169,15 +164,14 @@ class Controls:
                 self.state.energy = event.new
 
     def _follow_system(self) -> None:
-        """Set the span and ticks of the slider, and the line with formula, channels and escape energy."""
+        """Show slider, ticks, formula, channels and escape energy of the system."""
         state, system, energies = self.state, self.state.system, self.state.system.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
-        step, decimals = 10.0**-energies.decimals, max(energies.decimals, 0)
-        scale = {"start": energies.low, "end": energies.high, "step": step, "format": f"0.{'0' * decimals}"}
-        self.energy.param.update(**scale, value=self._slider_energy())
-        self.ticks.object = _ticks(state.potential.escape_energy, energies.marked, energies.low, energies.high)
-        self.exact_energy.step = step
+        self.energy = self._make_slider(energies)
+        self.ticks.object = _ticks(state.potential.escape_energy, energies)
+        self._energy_column.objects = [self.energy, self.ticks]
+        self.exact_energy.step = 10.0**-energies.decimals
         marked = " · ticks: the energies of Zotos (2014)" if energies.marked else ""
         self.facts.object = (
             f"<div><b>{escape_text(system.title)}</b>: H = ½(px² + py²) + V, V = {escape_text(system.formula_shown)} · "
@@ -185,6 +179,17 @@ class Controls:
             f"{marked}</div>"
         )
         self._follow_energy()
+
+    def _make_slider(self, energies: EnergyRange) -> ThrottledSlider:
+        """A slider for a range of energies; if the range of one changed, Bokeh would report a clamped value as a user's."""
+        slider = ThrottledSlider(
+            label="Energy h", start=energies.low, end=energies.high, step=10.0**-energies.decimals, value=self._slider_energy(),
+            format=f"0.{'0' * max(energies.decimals, 0)}", sizing_mode="stretch_width", margin=(0, 10),
+        )  # fmt: skip
+        # If a move and a release arrive together, the release is handled first.
+        slider.param.watch(self._preview, "value", precedence=1)
+        slider.param.watch(self._take_slider_energy, "value_throttled")
+        return slider
 
     def _follow_energy(self) -> None:
         state = self.state
@@ -194,9 +199,9 @@ class Controls:
         self.exact_energy.param.update(value=state.energy, disabled=on_h)
 
 
-def _ticks(escape: float, marked: tuple[float, ...], low: float, high: float) -> str:
+def _ticks(escape: float, energies: EnergyRange) -> str:
     """HTML of ticks below the slider, at the marked energies and with a label at the escape energy."""
-    shares = [(energy - low) / (high - low) for energy in (escape, *marked)]
+    shares = [(energy - energies.low) / (energies.high - energies.low) for energy in (escape, *energies.marked)]
     ticks = "".join(f"<i style='{_TICK.format(share=share)}'></i>" for share in shares if 0.0 <= share <= 1.0)
     label = (
         f"<span style='{_TICK_LABEL.format(share=shares[0])}'>escape energy {escape:.4g}</span>" if 0 <= shares[0] <= 1 else ""
