@@ -116,7 +116,7 @@ class Explorer:
             preview=lambda energy: self.map_requests.request_preview(energy),
             settle=lambda: self.map_requests.request_map(),
             play=locked(self._play),
-            choose_potential=locked(lambda: self.potential.open()),
+            choose_potential=locked(lambda: self.potential.toggle()),
         )
         self.controls = Controls(state, actions)
 
@@ -128,10 +128,12 @@ class Explorer:
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda *events: self._count_in(None), [*SYSTEM, "plane", "window"])
         watch(lambda event: self._show_box(event.new), "box")
+        watch(lambda event: self.statistics.section.open(event.new), "statistics")
         watch(lambda *events: self._write_link(), list(LINKED))
         self.orbit_controls.follow_plane(state.plane)
         self._set_palette()
         self.zoom_buttons.follow(self.navigation.history)
+        self.statistics.section.open(state.statistics)
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
@@ -177,7 +179,8 @@ class Explorer:
         self.state.add_start((x, ordinate))
 
     def _count_in(self, box: Window | None) -> None:
-        self.state.box = box
+        """Count in a box, and show the statistics; None removes the box."""
+        self.state.param.update(box=box, statistics=self.state.statistics or box is not None)
 
     def _show_box(self, box: Window | None) -> None:
         self.maps.marks.show_box(box)

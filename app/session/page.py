@@ -32,7 +32,7 @@ def _frame() -> Template:
     return frame
 
 
-class ExplorerPage(BaseTemplate):
+class ExplorerTemplate(BaseTemplate):
     """The page of one session: a header and one column."""
 
     def __init__(self, header: pn.viewable.Viewable, main: pn.viewable.Viewable) -> None:
@@ -47,24 +47,22 @@ class ExplorerPage(BaseTemplate):
         return document
 
 
-def explorer_page(explorer: Explorer) -> ExplorerPage:
+def explorer_page(explorer: Explorer) -> ExplorerTemplate:
     """The page of one explorer."""
-    gallery = explorer.gallery.layout()
-    gallery.visible = False
     main = pn.Column(
-        gallery,
+        explorer.gallery.section.layout(),
+        explorer.downloads.section.layout(),
         explorer.controls.layout(),
-        explorer.potential.panel.layout(),
+        explorer.potential.panel.section.layout(),
         explorer.analyses.switches.layout(),
         explorer.progress.layout(),
         explorer.zoom_buttons.layout(),
         explorer.analyses.notes,
         explorer.maps.layout(),
         flex_row(explorer.orbit_controls.layout(explorer.playback.layout()), explorer.orbit_layout.layout(), justify="center"),
-        flex_row(*explorer.statistics.layout(), justify="center"),
+        explorer.statistics.section.layout(),
         explorer.analyses.measures.section.layout(),
         explorer.analyses.curves.section.layout(),
-        explorer.downloads.layout(),
         _equations(explorer),
         pn.pane.HTML(f"<details><summary>Keys</summary>{key_legend()}</details>", margin=(4, 10)),
         explorer.accessible_table.layout(),
@@ -74,14 +72,15 @@ def explorer_page(explorer: Explorer) -> ExplorerPage:
         sizing_mode="stretch_width",
         margin=0,
     )
-    return ExplorerPage(_header(explorer, gallery), main)
+    return ExplorerTemplate(_header(explorer), main)
 
 
-def _header(explorer: Explorer, gallery: pn.viewable.Viewable) -> pn.viewable.Viewable:
+def _header(explorer: Explorer) -> pn.viewable.Viewable:
     theme = ThemeButton(margin=0)
     theme.param.watch(lambda event: explorer.set_dark(event.new), "dark")
     return pn.Row(
-        button("Gallery", lambda: gallery.param.update(visible=not gallery.visible), kind="light", margin=0),
+        button("Gallery", explorer.gallery.section.toggle, kind="light", margin=0),
+        button("Share", explorer.downloads.section.toggle, kind="light", margin=0),
         button("Tour", explorer.tour.start, kind="light", margin=0),
         theme,
         margin=0,

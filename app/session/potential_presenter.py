@@ -24,10 +24,11 @@ class PotentialPresenter:
         self._follow()
         self.panel.section.open(state.case not in CASES or bool(state.system.changed))
 
-    def open(self) -> None:
-        """Open the section and show the properties of the current system."""
-        self.panel.section.open(True)
-        self._preview(self._state.system)
+    def toggle(self) -> None:
+        """Open the section with the properties of the current system, or close it."""
+        self.panel.section.toggle()
+        if self.panel.section.is_open:
+            self._preview(self._state.system)
 
     def close(self) -> None:
         """Cancel the request at the end of the session."""

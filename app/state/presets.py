@@ -27,7 +27,7 @@ class Preset:
         One of `GROUPS`.
     picture
         Picture of its thumbnail, one of `app.rendering.map_images.TITLES`.
-    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, origins, measures
+    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, origins, statistics, measures
         As in `ViewState`.
     """
 
@@ -47,6 +47,7 @@ class Preset:
     trust: bool = False
     manifolds: bool = False
     origins: bool = False
+    statistics: bool = False
     measures: bool = False
 
     def values(self) -> dict[str, Any]:

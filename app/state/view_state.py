@@ -46,7 +46,7 @@ def allowed_resolutions() -> dict[str, int]:
     return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
 
 
-SWITCHES = ("judge", "trust", "manifolds", "origins", "measures", "energies")
+SWITCHES = ("judge", "trust", "manifolds", "origins", "statistics", "measures", "energies")
 """Attributes of the view state that turn analyses on."""
 
 Start = tuple[float, float]
@@ -88,6 +88,7 @@ class ViewState(param.Parameterized):
     trust = param.Boolean(default=False, doc="whether pixels that depend on rounding are marked")
     manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
     origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
+    statistics = param.Boolean(default=False, doc="whether the statistics of the map are shown")
     measures = param.Boolean(default=False, doc="whether measures of the basins are shown")
     energies = param.Boolean(default=False, doc="whether curves against energy are shown")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")

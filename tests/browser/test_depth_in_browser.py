@@ -31,7 +31,9 @@ def test_a_window_of_1e_12_of_the_plane_is_computed(open_explorer: Callable[...,
     expect(explorer.text(re.compile(r"\(-?0\.\d{14,17}, -?0\.\d{14,17}\)"))).to_be_visible()
 
 
-def test_zooming_beyond_double_precision_gives_a_message_and_the_picture_stays(open_explorer: Callable[..., ExplorerPage]) -> None:
+def test_zooming_beyond_double_precision_gives_a_message_and_the_picture_stays(
+    open_explorer: Callable[..., ExplorerPage],
+) -> None:
     window = DEEP.window
     assert window is not None
     explorer = open_explorer(link=link_to((window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
+from bokeh.plotting import figure
 
 from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 from app.views.components.collapsible_section import CollapsibleSection
@@ -28,26 +29,13 @@ class BasinMeasuresView:
         self.button = button("Measure the uncertainty exponent", on_exponent)
         self.text = pn.pane.HTML("", name="measures", width=TEXT)
         self._sentences: dict[str, str] = {}
-        both = {"x_axis_type": "log", "y_axis_type": "log"}
-        self.uncertainty = square_figure(
-            "uncertainty", "Uncertain pairs of starts", x_axis_label="separation", y_axis_label="uncertain share",
-            x_range=Range1d(1e-10, 1.0), y_range=Range1d(1e-3, 1.0), **both,
-        )  # fmt: skip
-        self.survival = square_figure(
-            "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
-            x_range=Range1d(1.0, 100.0), y_range=Range1d(1e-3, 1.0), **both,
-        )  # fmt: skip
+        self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
+        self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
         self.pairs = ColumnDataSource({"separation": [], "share": [], "colour": []}, name="pairs")
         self._line = ColumnDataSource({"separation": [], "share": []}, name="exponent_line")
         self.steps = ColumnDataSource({"t": [], "share": []}, name="survival_steps")
         self._laws = {law: ColumnDataSource({"t": [], "share": []}, name=f"{law}_law") for law in LAW_COLOURS}
-        self._draw()
-        columns = [
-            pn.Column(self.button, self.text, width=COLUMN, margin=(0, 6)),
-            with_help(pn.pane.Bokeh(self.uncertainty, margin=0), "uncertainty"),
-            with_help(pn.pane.Bokeh(self.survival, margin=0), "survival", self._law_legend()),
-        ]
-        self.section = CollapsibleSection("Basin measures", columns)
+        self.section = CollapsibleSection("Basin measures", self._build)
 
     def begin(self) -> None:
         """Remove the measures of the previous map."""
@@ -70,8 +58,8 @@ class BasinMeasuresView:
         seen = laws.survival > 0.0
         if np.count_nonzero(seen) > 1 and laws.times[seen][-1] > 0.0:
             latest = float(laws.times[seen][-1])
-            set_range(self.survival.x_range, min(1.0, 0.1 * latest), 1.5 * latest)
-            set_decades(self.survival.y_range, float(laws.survival[seen].min()), 1.0)
+            set_range(self._times, min(1.0, 0.1 * latest), 1.5 * latest)
+            set_decades(self._survivors, float(laws.survival[seen].min()), 1.0)
         self._write()
 
     def wait_for_exponent(self) -> None:
@@ -96,9 +84,9 @@ class BasinMeasuresView:
         ends = found.separations[found.used]
         fitted = ends if np.isfinite(found.exponent) else ends[:0]
         self._line.data = {"separation": fitted, "share": found.amplitude * fitted**found.exponent}
-        set_range(self.uncertainty.x_range, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
+        set_range(self._separations, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
         if positive.any():
-            set_decades(self.uncertainty.y_range, float(shares[positive].min()), float(shares.max()))
+            set_decades(self._uncertain, float(shares[positive].min()), float(shares.max()))
         self._sentences["Uncertainty exponent"] = found.describe()
         self._write()
 
@@ -108,13 +96,32 @@ class BasinMeasuresView:
         self._sentences["Uncertainty exponent"] = sentence
         self._write()
 
-    def _draw(self) -> None:
+    def _build(self) -> list[pn.viewable.Viewable]:
+        return [
+            pn.Column(self.button, self.text, width=COLUMN, margin=(0, 6)),
+            with_help(pn.pane.Bokeh(self._draw_uncertainty(), margin=0), "uncertainty"),
+            with_help(pn.pane.Bokeh(self._draw_survival(), margin=0), "survival", self._law_legend()),
+        ]
+
+    def _draw_uncertainty(self) -> figure:
+        plot = square_figure(
+            "uncertainty", "Uncertain pairs of starts", x_axis_label="separation", y_axis_label="uncertain share",
+            x_range=self._separations, y_range=self._uncertain, x_axis_type="log", y_axis_type="log",
+        )  # fmt: skip
         style: dict[str, Any] = {"x": "separation", "y": "share"}
-        self.uncertainty.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
-        self.uncertainty.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
-        self.survival.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
+        plot.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
+        plot.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
+        return plot
+
+    def _draw_survival(self) -> figure:
+        plot = square_figure(
+            "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
+            x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
+        )  # fmt: skip
+        plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
         for law, source in self._laws.items():
-            self.survival.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
+            plot.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
+        return plot
 
     def _law_legend(self) -> pn.viewable.Viewable:
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]

@@ -49,21 +49,12 @@ class EnergyCurvesView:
         self.running = False
         self.button = button(START, on_sweep, width=180)
         self.text = pn.pane.HTML("", name="sweep", margin=(8, 10))
-        energies = Range1d(0.0, 1.0)
+        self._energies = Range1d(0.0, 1.0)
         self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="energy_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
-        logarithmic = {"escapes": {"y_axis_type": "log"}}
-        self.figures = {
-            name: square_figure(name, title, x_axis_label="h", x_range=energies, **logarithmic.get(name, {}))
-            for name, title in TITLES.items()
-        }
         self._legend = pn.pane.HTML(width=TEXT, margin=(0, 5))
-        self._draw()
-        for plot in self.figures.values():
-            plot.add_layout(self._here)
-            plot.on_event(Tap, lambda event: self.open_near(event.x))
-        self.section = CollapsibleSection("Against energy", self._layout())
+        self.section = CollapsibleSection("Against energy", self._build)
 
     def follow_energy(self, energy: float) -> None:
         """Mark the energy in view."""
@@ -94,7 +85,7 @@ class EnergyCurvesView:
         }
         swept = curves.spec.energies
         if len(swept) > 1:
-            set_range(self.figures["shares"].x_range, swept[0], swept[-1])
+            set_range(self._energies, swept[0], swept[-1])
         self.text.object = _progress(curves)
         self._legend.object = legend(self._entries(len(shares) - 1))
 
@@ -117,19 +108,26 @@ class EnergyCurvesView:
     def _entries(self, channels: int) -> list[Entry]:
         return [Entry("bounded", self._palette.bounded), *self._palette.channel_entries(channels)]
 
-    def _layout(self) -> list[pn.viewable.Viewable]:
+    def _build(self) -> list[pn.viewable.Viewable]:
         below = {
             "shares": [self._legend],
             "entropies": [_key({"S_b": MEASURED, "S_bb": _SECOND, "ln 2": THRESHOLD})],
             "exponents": [_key({"α with its 95 % interval": MEASURED})],
             "escapes": [_key({"mean": MEASURED, "median": _SECOND})],
         }
-        columns = [with_help(pn.pane.Bokeh(plot, margin=0), name, *below[name]) for name, plot in self.figures.items()]
+        columns = [with_help(pn.pane.Bokeh(plot, margin=0), name, *below[name]) for name, plot in self._draw().items()]
         return [pn.Row(self.button, self.text, sizing_mode="stretch_width"), *columns]
 
-    def _draw(self) -> None:
-        shares = self.figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
-        assert shares is not None
+    def _draw(self) -> dict[str, figure]:
+        logarithmic = {"escapes": {"y_axis_type": "log"}}
+        figures = {
+            name: square_figure(name, title, x_axis_label="h", x_range=self._energies, **logarithmic.get(name, {}))
+            for name, title in TITLES.items()
+        }
+        for plot in figures.values():
+            plot.add_layout(self._here)
+            plot.on_event(Tap, lambda event: self.open_near(event.x))
+        figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         drawn = {
             "entropies": {"s_b": MEASURED, "s_bb": _SECOND},
             "exponents": {"exponent": MEASURED},
@@ -137,11 +135,12 @@ class EnergyCurvesView:
         }
         for name, curves in drawn.items():
             for column, colour in curves.items():
-                _draw_curve(self.figures[name], self.points, column, colour)
+                _draw_curve(figures[name], self.points, column, colour)
         interval = Segment(x0="h", x1="h", y0="exponent_low", y1="exponent_high", line_color=MEASURED, line_alpha=0.6)
-        self.figures["exponents"].add_glyph(self.points, interval)
+        figures["exponents"].add_glyph(self.points, interval)
         ln2 = Span(location=float(np.log(2.0)), dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
-        self.figures["entropies"].add_layout(ln2)
+        figures["entropies"].add_layout(ln2)
+        return figures
 
 
 def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str) -> None:

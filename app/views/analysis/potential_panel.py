@@ -49,15 +49,14 @@ class PotentialPanel:
         self.reset = button("Reset to 1", lambda: self._apply(System(self._system.case, self._system.formula)))
         self.message = pn.pane.HTML("", name="potential-message", width=_WIDTH)
         self.facts = pn.pane.HTML("", name="potential-facts", min_width=320, max_width=700, sizing_mode="stretch_width")
+        self.section = CollapsibleSection("Potential: V = ½(ω1² x² + ω2² y²) + ε V1", self._build)
+        self._connect()
+
+    def _build(self) -> list[pn.viewable.Viewable]:
         hint = pn.pane.HTML(f"<span class='quiet'>{_HINT}</span>", margin=(0, 10), width=_WIDTH)
         choice = pn.Column(self.known, self.formula, hint, self.message, max_width=_WIDTH + 20)
         parameters = pn.Column(*self.sliders.values(), self.reset, width=270, margin=(0, 20))
-        self.section = CollapsibleSection("Potential: V = ½(ω1² x² + ω2² y²) + ε V1", (choice, parameters, self.facts))
-        self._connect()
-
-    def layout(self) -> pn.viewable.Viewable:
-        """The section as a part of the page."""
-        return self.section.layout()
+        return [choice, parameters, self.facts]
 
     def follow(self, system: System) -> None:
         """Show the system of the view state."""

@@ -10,13 +10,12 @@ import numpy as np
 import panel as pn
 
 from app.rendering.palette import PAPER, Palette
+from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent
 from app.views.components.plots import COLUMN, FRAME, TEXT, with_help
 from app.views.components.widgets import button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
-
-hv.extension("bokeh")
 
 BINS = 40
 MOST_CROSSINGS = 15
@@ -38,19 +37,13 @@ class StatisticsView:
         self._box: Window | None = None
         self.table = pn.pane.HTML("", name="statistics", width=TEXT)
         self.whole = button("Count the whole view", on_whole, disabled=True)
-        self._times, self._probabilities = _plot(_draw_times()), _plot(_draw_probabilities())
-        self.histogram, self.probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
-
-    def layout(self) -> list[pn.viewable.Viewable]:
-        """The table, and the charts with their help texts."""
-        title = pn.pane.HTML("<h2>Statistics</h2>")
-        left = pn.Column(title, self.whole, self.table, width=COLUMN, margin=(0, 6))
-        return [left, with_help(self.histogram, "histogram"), with_help(self.probabilities, "probabilities")]
+        self.section = CollapsibleSection("Statistics", self._build)
 
     def show(self, frame: EscapeMap) -> None:
         """Show the statistics of a frame."""
         self._frame = frame
-        self._count()
+        if self.section.is_open:
+            self._count()
 
     def show_box(self, box: Window | None) -> None:
         """Count in a box; None is the whole view."""
@@ -58,12 +51,22 @@ class StatisticsView:
             return
         self._box = box
         self.whole.disabled = box is None
-        self._count()
+        if self.section.is_open:
+            self._count()
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the channels."""
         self._palette = palette
+        if self.section.is_open:
+            self._count()
+
+    def _build(self) -> list[pn.viewable.Viewable]:
+        hv.extension("bokeh")
+        self._times, self._probabilities = _plot(_draw_times()), _plot(_draw_probabilities())
         self._count()
+        histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
+        left = pn.Column(self.whole, self.table, width=COLUMN, margin=(0, 6))
+        return [left, with_help(histogram, "histogram"), with_help(probabilities, "probabilities")]
 
     def _count(self) -> None:
         if self._frame is None:

@@ -14,6 +14,7 @@ LABELS = {
     "trust": "Pixels to trust",
     "manifolds": "Stable manifolds",
     "origins": "Origin and exit",
+    "statistics": "Statistics",
     "measures": "Basin measures",
     "energies": "Against energy",
 }

@@ -10,6 +10,7 @@ import numpy as np
 import panel as pn
 from bokeh.events import DoubleTap, RangesUpdate, SelectionGeometry, Tap
 from bokeh.models import ColorBar, ColumnDataSource, Image, LinearColorMapper, LogColorMapper, Range1d, Span
+from bokeh.plotting import figure
 
 from app.rendering.image_columns import character_column, longest_typical_time, passage_column
 from app.rendering.map_images import DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
@@ -60,28 +61,18 @@ class MapsView:
         self._following = False
         self._on_zoom = on_zoom
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
-        spans = Span(dimension="width", line_alpha=0.35), Span(dimension="height", line_alpha=0.35)
-        self.figures = {name: map_figure(name, title, self._ranges, spans) for name, title in TITLES.items()}
+        self._spans = Span(dimension="width", line_alpha=0.35), Span(dimension="height", line_alpha=0.35)
         self._hover = pixel_hover(self.source, *self._ranges)
-        for name in TITLES:
-            self._paint(name)
-        self.set_palette(PAPER)
+        self._on_tap, self._on_box = on_tap, on_box
+        self.figures: dict[str, figure] = {}
+        self._legends: dict[str, pn.pane.HTML] = {}
+        self._columns: dict[str, pn.viewable.Viewable] = {}
         for edges in self._ranges:
             edges.on_change("start", self._moved)
             edges.on_change("end", self._moved)
-        # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
-        self.figures["curves"].on_event(RangesUpdate, lambda event: self._rested())
-        for plot in self.figures.values():
-            # Two quick clicks, even at two places, are one tap and one double tap.
-            for tap in (Tap, DoubleTap):
-                plot.on_event(tap, lambda event: on_tap(*self.snapped(event.x, event.y)))
-            plot.on_event(SelectionGeometry, lambda event: self._boxed(event, on_box))
-        self._legends = {name: pn.pane.HTML(width=TEXT, margin=(0, 5)) for name in TITLES}
-        self._columns = {
-            name: with_help(pn.pane.Bokeh(self.figures[name], margin=0), name, self._legends[name]) for name in TITLES
-        }
         self._row = flex_row(justify="center")
         self.show_pictures(frozenset())
+        self.set_palette(PAPER)
 
     def layout(self) -> pn.viewable.Viewable:
         """The pictures in a row that wraps."""
@@ -89,8 +80,13 @@ class MapsView:
 
     def show_pictures(self, on_demand: frozenset[str]) -> None:
         """Show some of the pictures `ON_DEMAND` beside the others."""
+        shown = [name for name in TITLES if name in on_demand or name not in ON_DEMAND]
+        for name in shown:
+            if name not in self.figures:
+                self._build(name)
         # Hidden pictures would still be painted with every frame.
-        self._row.objects = [column for name, column in self._columns.items() if name in on_demand or name not in ON_DEMAND]
+        self._row.objects = [self._columns[name] for name in shown]
+        self.describe()
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, preview: bool = False) -> None:
         """Paint a frame; the ranges follow a new window. A preview changes as little as possible."""
@@ -113,7 +109,8 @@ class MapsView:
         """Paint which bounded orbits are regular and which are chaotic, as far as known."""
         self.source.data = {**self.source.data, **character_column(frame, regularity)}
         self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
-        self._legends["characters"].object = self._character_legend()
+        if "characters" in self._legends:
+            self._legends["characters"].object = self._character_legend()
 
     def set_palette(self, palette: Palette) -> None:
         """Set all colours."""
@@ -212,8 +209,22 @@ class MapsView:
             "characters": self._character_legend(),
             "origins": passage_legend(palette, spec.potential.channels),
         }
-        for name, text in texts.items():
-            self._legends[name].object = text
+        for name, pane in self._legends.items():
+            pane.object = texts[name]
+
+    def _build(self, name: str) -> None:
+        """Make a picture with its legend and help text."""
+        plot = self.figures[name] = map_figure(name, TITLES[name], self._ranges, self._spans)
+        self._paint(name)
+        # Two quick clicks, even at two places, are one tap and one double tap.
+        for tap in (Tap, DoubleTap):
+            plot.on_event(tap, lambda event: self._on_tap(*self.snapped(event.x, event.y)))
+        plot.on_event(SelectionGeometry, lambda event: self._boxed(event, self._on_box))
+        if name == "curves":
+            # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
+            plot.on_event(RangesUpdate, lambda event: self._rested())
+        self._legends[name] = pn.pane.HTML(width=TEXT, margin=(0, 5))
+        self._columns[name] = with_help(pn.pane.Bokeh(plot, margin=0), name, self._legends[name])
 
     def _paint(self, name: str) -> None:
         """Add the images and lines of a picture, from back to front."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from bokeh.models import ColumnDataSource, LinearColorMapper, Quad, Scatter, Text
@@ -19,30 +20,47 @@ NO_POINTS = np.zeros((0, 2))
 
 
 class Markers:
-    """Sources of the marks, drawn into any number of figures."""
+    """Sources of the marks; each kind of mark is added to the figures when it is first shown."""
 
     def __init__(self) -> None:
+        # Figures that a kind of mark is still to be added to, by kind.
+        self._pending: dict[str, list[figure]] = {"starts": [], "sections": [], "box": []}
         self._starts = ColumnDataSource({"x": [], "y": [], "slot": [], "text": []}, name="starts")
         self._sections = ColumnDataSource({"x": [], "y": [], "slot": []}, name="sections")
         self._box = ColumnDataSource({"left": [], "right": [], "bottom": [], "top": []}, name="box")
         self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
 
     def draw(self, plot: figure, *, sections: bool) -> None:
-        """Add the marks to a figure; section points only where `sections`, as painting them takes time."""
+        """Mark a figure; section points only where `sections`, as painting them takes time."""
+        for kind in ("starts", "box", *(["sections"] if sections else [])):
+            self._pending[kind].append(plot)
+
+    def _draw(self, kind: str) -> None:
+        """Add a kind of mark to the figures that lack it."""
+        plots, self._pending[kind] = self._pending[kind], []
+        for plot in plots:
+            for source, glyph in self._glyphs(kind):
+                plot.add_glyph(source, glyph, level="annotation")
+
+    def _glyphs(self, kind: str) -> list[tuple[ColumnDataSource, Any]]:
         colour = {"field": "slot", "transform": self._mapper}
-        if sections:
-            plot.add_glyph(self._sections, Scatter(size=3, fill_color=colour, line_color=None))
-        plot.add_glyph(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))
-        for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour)):
-            plot.add_glyph(self._starts, Scatter(marker="cross", size=size, line_width=width, line_color=ink))
+        if kind == "sections":
+            return [(self._sections, Scatter(size=3, fill_color=colour, line_color=None))]
+        if kind == "box":
+            return [(self._box, Quad(fill_alpha=0.0, line_color=MARK_EDGE, line_width=2, line_dash="dashed"))]
+        crosses = [
+            Scatter(marker="cross", size=size, line_width=width, line_color=ink)
+            for size, width, ink in ((18, 7, LIGHT.halo), (17, 5, MARK_EDGE), (16, 3, colour))
+        ]
+        style = {"x_offset": 6, "y_offset": -4, "text_font_size": "13px", "text_font_style": "bold", "text_color": MARK_EDGE}
         # The outline of a text covers the text, so the number is drawn once more without.
-        for outline in (LIGHT.halo, None):
-            number = Text(x_offset=6, y_offset=-4, text_font_size="13px", text_font_style="bold", text_color=MARK_EDGE)
-            number.text_outline_color = outline
-            plot.add_glyph(self._starts, number)
+        numbers = [Text(text_outline_color=outline, **style) for outline in (LIGHT.halo, None)]
+        return [(self._starts, glyph) for glyph in (*crosses, *numbers)]
 
     def show_starts(self, starts: Sequence[tuple[float, float]]) -> None:
         """Mark each start with a numbered cross."""
+        if starts:
+            self._draw("starts")
         x, y = ([float(start[axis]) for start in starts] for axis in (0, 1))
         numbers = list(range(len(starts)))
         self._starts.data = {"x": x, "y": y, "slot": numbers, "text": [str(number + 1) for number in numbers]}
@@ -50,6 +68,8 @@ class Markers:
     def show_sections(self, sections: Sequence[np.ndarray]) -> None:
         """Draw the section points of each orbit, arrays of shape (n, 2)."""
         shown = [points[:MOST_SECTION_POINTS] for points in sections]
+        if any(len(points) for points in shown):
+            self._draw("sections")
         points = np.concatenate([NO_POINTS, *shown]).astype(np.float32)
         slot = np.repeat(np.arange(len(shown), dtype=np.uint8), [len(points) for points in shown])
         self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slot}
@@ -57,6 +77,8 @@ class Markers:
     def show_box(self, box: Window | None) -> None:
         """Draw the box whose pixels are counted; None removes it."""
         edges = [] if box is None else [box]
+        if edges:
+            self._draw("box")
         self._box.data = {
             "left": [edge.x_low for edge in edges],
             "right": [edge.x_high for edge in edges],

@@ -18,9 +18,12 @@ _HALO_WIDTH = 3.2
 
 
 class Overlays:
-    """Sources of the overlays of one map, drawn into any number of figures."""
+    """Sources of the overlays of one map; each is added to the figures when it is first shown."""
 
     def __init__(self) -> None:
+        # Figures that an overlay is still to be added to; those of the manifolds with `coloured`.
+        self._without_doubts: list[figure] = []
+        self._without_manifolds: list[tuple[figure, bool]] = []
         self.doubts = ColumnDataSource(_no_doubts(), name="doubts")
         self.manifolds = ColumnDataSource(_no_curves(), name="manifolds")
         self._mapper = LinearColorMapper(palette=[_CLEAR, DOUBT], low=-0.5, high=1.5)
@@ -29,15 +32,23 @@ class Overlays:
         self._spec: MapSpec | None = None
 
     def draw(self, plot: figure, *, doubts: bool, coloured: bool) -> None:
-        """Add the overlays to a figure; `coloured` manifolds have the colour of their channel, others are dark with a halo."""
+        """Draw into a figure; `coloured` manifolds have the colour of their channel, others are dark with a halo."""
         if doubts:
+            self._without_doubts.append(plot)
+        self._without_manifolds.append((plot, coloured))
+
+    def _draw_doubts(self) -> None:
+        plots, self._without_doubts = self._without_doubts, []
+        for plot in plots:
             plot.add_glyph(self.doubts, Image(image="doubt", dw="dw", dh="dh", color_mapper=self._mapper))
+
+    def _draw_manifolds(self) -> None:
+        plots, self._without_manifolds = self._without_manifolds, []
         style: dict[str, Any] = {"line_width": "width", "line_alpha": "alpha"}
-        if coloured:
-            plot.add_glyph(self.manifolds, MultiLine(line_color="colour", **style))
-            return
-        plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width", line_alpha="alpha"))
-        plot.add_glyph(self.manifolds, MultiLine(line_color=MANIFOLD, **style))
+        for plot, coloured in plots:
+            if not coloured:
+                plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width", line_alpha="alpha"))
+            plot.add_glyph(self.manifolds, MultiLine(line_color="colour" if coloured else MANIFOLD, **style))
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the overlays if the map is another one."""
@@ -50,6 +61,7 @@ class Overlays:
     def show_trust(self, trust: TrustMap | None) -> None:
         """Mark the doubtful pixels; None removes the marks."""
         if trust is not None:
+            self._draw_doubts()
             window = trust.spec.window
             self.doubts.data = {
                 "doubt": [(trust.trust == Trust.DOUBTFUL).astype(np.uint8)],
@@ -63,6 +75,7 @@ class Overlays:
         """Draw the manifolds; None removes them."""
         self._manifolds_shown = manifolds
         if manifolds is not None:
+            self._draw_manifolds()
             # The first image is drawn last, over the others.
             arcs = sorted(manifolds.arcs, key=lambda arc: -arc.image)
             self.manifolds.data = {

@@ -1,4 +1,4 @@
-"""The orbit plots: those that need an orbit, or two, are added to the page with these, as empty figures cost time."""
+"""The orbit plots on the page: made with the first orbit, or the second, and removed with the last."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ class OrbitLayout:
     """A row that wraps, beside the controls while there is room for one plot."""
 
     def __init__(self, plots: OrbitPlots, separation: SeparationPlot) -> None:
-        *always, exponent = plots.layout()
-        self._columns = [*((0, column) for column in always), (1, exponent), (2, separation.layout())]
+        self._plots, self._separation = plots, separation
+        self._single: list[pn.viewable.Viewable] = []
+        self._pair: list[pn.viewable.Viewable] = []
         self._row = flex_row()
+        self._row.visible = False
         self._row.styles = {**self._row.styles, "flex": f"1 1 {COLUMN}px"}
-        self.follow(0)
 
     def layout(self) -> pn.viewable.Viewable:
         """The plots."""
@@ -26,6 +27,14 @@ class OrbitLayout:
 
     def follow(self, orbits: int) -> None:
         """Show the plots that a number of orbits needs."""
-        columns = [column for least, column in self._columns if least <= orbits]
+        if not orbits:
+            self._single = []
+        elif not self._single:
+            self._single = self._plots.build()
+        if orbits < 2:
+            self._pair = []
+        elif not self._pair:
+            self._pair = [self._separation.build()]
+        columns = [*self._single, *self._pair]
         if columns != self._row.objects:
-            self._row.objects = columns
+            self._row.param.update(objects=columns, visible=bool(columns))

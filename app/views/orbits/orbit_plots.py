@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import panel as pn
 from bokeh.models import BasicTickFormatter, ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
+from bokeh.plotting import figure
 
 from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
 from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
@@ -26,22 +28,12 @@ _NO_LINE = np.zeros(0), np.zeros(0)
 
 
 class OrbitPlots:
-    """Four figures, empty until an orbit is shown."""
+    """Four figures of the orbits; `build` makes them when there is an orbit to draw."""
 
     def __init__(self) -> None:
-        ranges = {"x_range": Range1d(-1.0, 1.0), "y_range": Range1d(-1.0, 1.0)}
-        logarithmic = {"x_axis_type": "log", "y_axis_type": "log"}
-        axes = {"x_range": Range1d(0.1, 10.0), "y_range": Range1d(LEAST_SALI, 10.0)}
-        self.path = square_figure("path", TITLES["path"], x_axis_label="x", y_axis_label="y", **ranges)
-        self.sali = square_figure("sali", TITLES["sali"], x_axis_label="t", y_axis_label="SALI", **logarithmic, **axes)
-        self.exponent = square_figure(
-            "exponent", TITLES["exponent"], x_axis_label="t", y_axis_label="(1/t) ln|w|", **logarithmic,
-            x_range=axes["x_range"], y_range=Range1d(1e-4, 10.0),
-        )  # fmt: skip
-        self.r2 = square_figure(
-            "r2", TITLES["r2"], x_axis_label="t", y_axis_label="R²", x_range=Range1d(0.0, 10.0), y_range=Range1d(0.0, 1.0)
-        )
-        self.r2.xaxis.formatter = BasicTickFormatter(use_scientific=False)
+        self._place = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
+        self._times, self._sali, self._exponents = Range1d(0.1, 10.0), Range1d(LEAST_SALI, 10.0), Range1d(1e-4, 10.0)
+        self._r2_times, self._r2 = Range1d(0.0, 10.0), Range1d(0.0, 1.0)
         self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
         self._paths, self._histories = _lines("paths"), {name: _lines(f"{name}_histories") for name in _HISTORIES}
         self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
@@ -53,12 +45,12 @@ class OrbitPlots:
         self._palette = PAPER
         # What the outlines are drawn for, as several orbits share them.
         self._outlined: tuple[Potential, float, Palette] | None = None
-        self._draw()
         self.set_palette(PAPER)
 
-    def layout(self) -> list[pn.viewable.Viewable]:
-        """The figures, each with its help text."""
-        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in (self.path, self.sali, self.r2, self.exponent)]
+    def build(self) -> list[pn.viewable.Viewable]:
+        """Make the figures: path, SALI, R² and Lyapunov exponent, each with its help text."""
+        plots = (self._draw_path(), *self._draw_histories())
+        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in plots]
 
     def show(self, potential: Potential, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
         """Draw orbits, highlighting the chosen one; None for orbits that are not known yet."""
@@ -86,22 +78,36 @@ class OrbitPlots:
         self._mapper.palette = list(palette.orbits)
         self.outlines.set_palette(palette)
 
-    def _draw(self) -> None:
-        colour = {"field": "slot", "transform": self._mapper}
-        style = {"line_color": colour, "line_alpha": "alpha"}
-        path = self.path
+    def _style(self) -> dict[str, Any]:
+        return {"line_color": {"field": "slot", "transform": self._mapper}, "line_alpha": "alpha"}
+
+    def _draw_path(self) -> figure:
+        x, y = self._place
+        path = square_figure("path", TITLES["path"], x_axis_label="x", y_axis_label="y", x_range=x, y_range=y)
+        style = self._style()
         self.outlines.draw(path, full=False)
         path.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh"))
         path.add_glyph(self._paths, MultiLine(**style))
         path.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
         path.add_glyph(self._trails, MultiLine(line_width=2.5, **style))
-        path.add_glyph(self._points, Scatter(size=11, fill_color=colour, line_color=MARK_EDGE, line_width=1.5))
-        for name, plot in zip(_HISTORIES, (self.sali, self.exponent, self.r2), strict=True):
-            plot.add_glyph(self._histories[name], MultiLine(**style))
+        path.add_glyph(self._points, Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5))
+        return path
+
+    def _draw_histories(self) -> list[figure]:
+        log: dict[str, Any] = {"x_axis_type": "log", "y_axis_type": "log", "x_range": self._times}
+        axes: dict[str, dict[str, Any]] = {
+            "sali": {"y_axis_label": "SALI", "y_range": self._sali, **log},
+            "r2": {"y_axis_label": "R²", "x_range": self._r2_times, "y_range": self._r2},
+            "exponent": {"y_axis_label": "(1/t) ln|w|", "y_range": self._exponents, **log},
+        }
+        plots = {name: square_figure(name, TITLES[name], x_axis_label="t", **options) for name, options in axes.items()}
+        for name, plot in plots.items():
+            plot.add_glyph(self._histories[name], MultiLine(**self._style()))
             plot.add_layout(self._now)
-        self.sali.add_layout(
-            Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
-        )
+        plots["r2"].xaxis.formatter = BasicTickFormatter(use_scientific=False)
+        threshold = Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
+        plots["sali"].add_layout(threshold)
+        return list(plots.values())
 
     def _scale_times(self) -> None:
         """Set the time axes: of SALI by the longest orbit, of R² by the chosen one."""
@@ -112,11 +118,11 @@ class OrbitPlots:
         earliest = min((float(drawing.sali[0][0]) for drawing in everything if drawing.sali[0].size), default=0.1)
         widest = max(float(drawing.r2[1].max()) for drawing in everything)
         if latest > earliest:
-            set_range(self.sali.x_range, earliest, latest)
+            set_range(self._times, earliest, latest)
             ends = [drawing.exponent[1] for drawing in everything if drawing.exponent[1].size]
-            set_decades(self.exponent.y_range, min(float(end[-1]) for end in ends), 1.0)
+            set_decades(self._exponents, min(float(end[-1]) for end in ends), 1.0)
         end_of_chosen = float(everything[-1].orbit.t[-1])
-        for edges, end in ((self.r2.x_range, end_of_chosen or 1.0), (self.r2.y_range, 1.05 * widest or 1.0)):
+        for edges, end in ((self._r2_times, end_of_chosen or 1.0), (self._r2, 1.05 * widest or 1.0)):
             set_range(edges, 0.0, end)
 
     def _show_paths(self, potential: Potential, alphas: list[float]) -> None:
@@ -124,7 +130,7 @@ class OrbitPlots:
             self._paths.data, self._shades.data = self._columns([], []), {name: [] for name in self._shades.data}
             return
         drawn = self._drawings[-1][1]
-        window, (x, y) = drawn.window, (self.path.x_range, self.path.y_range)
+        window, (x, y) = drawn.window, self._place
         outlined = (potential, drawn.orbit.energy, self._palette)
         if outlined != self._outlined:
             self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))

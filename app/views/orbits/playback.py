@@ -30,15 +30,17 @@ class Playback:
             width=280, height=40, margin=(8, 0),
         )  # fmt: skip
         self.text = pn.pane.HTML("", name="time", width=80, margin=(18, 0, 0, 8))
+        self._row = pn.Row(self.player, self.text, margin=0, visible=False)
         self.player.param.watch(lambda event: self._report(), "value")
 
     def layout(self) -> pn.viewable.Viewable:
         """The player and its time."""
-        return pn.Row(self.player, self.text, margin=0)
+        return self._row
 
     def follow(self, duration: float | None) -> None:
         """Set the duration of the chosen orbit; None without one."""
         self.player.disabled = not duration
+        self._row.visible = duration is not None
         if not duration:
             self.player.direction = 0
         if duration == self._duration:

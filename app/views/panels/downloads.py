@@ -13,6 +13,7 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.rendering.map_analyses import MapAnalyses
 from app.rendering.map_images import ON_DEMAND, TITLES
 from app.state.view_state import ViewState
+from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.file_saver import FileSaver
 from app.views.components.flex_row import flex_row
 from app.views.components.widgets import button
@@ -42,13 +43,12 @@ class Downloads:
         self.maps = button("Maps (NetCDF)", self._saving(self.netcdf_file))
         self.orbits = button("Orbits (CSV)", self._saving(self.csv_file))
         self.script = button("Python script", self._saving(self.python_file))
+        self.section = CollapsibleSection("Share and download", self._build)
         self._enable()
 
-    def layout(self) -> pn.viewable.Viewable:
-        """The buttons in a row that wraps."""
-        title = pn.pane.HTML("<h2>Share and download</h2>", margin=(16, 10, 4, 10))
-        row = flex_row(self.link, self.side, self.picture, self.maps, self.orbits, self.script, align="end", gap="0px")
-        return pn.Column(title, row, self.saver, sizing_mode="stretch_width")
+    def _build(self) -> list[pn.viewable.Viewable]:
+        buttons = (self.link, self.side, self.picture, self.maps, self.orbits, self.script)
+        return [flex_row(*buttons, align="end", gap="0px"), self.saver]
 
     def show_map(self, frame: EscapeMap) -> None:
         """Set the map to download; files are made of complete maps only."""

@@ -11,6 +11,7 @@ from panel.custom import JSComponent
 
 from app.rendering.map_images import TITLES
 from app.state.presets import GROUPS, PRESETS, Preset
+from app.views.components.collapsible_section import CollapsibleSection
 
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."
 
@@ -121,14 +122,14 @@ class Gallery:
     def __init__(self, on_preset: Callable[[Preset], None]) -> None:
         self._on_preset = on_preset
         self._presets = {preset.key: preset for preset in PRESETS}
-        self._cards = GalleryCards(
+        self.section = CollapsibleSection("Gallery", self._build)
+
+    def _build(self) -> list[pn.viewable.Viewable]:
+        cards = GalleryCards(
             cards=[_card(preset) for preset in PRESETS], sizing_mode="stretch_width", margin=(0, 5), stylesheets=[_STYLE]
         )
-        self._cards.on_msg(lambda event: self._receive(event.data))
-
-    def layout(self) -> pn.viewable.Viewable:
-        """Rows of cards that scroll, and a caption below."""
-        return self._cards
+        cards.on_msg(lambda event: self._receive(event.data))
+        return [cards]
 
     def _receive(self, message: Any) -> None:
         # Messages come from a browser: ignore what is not expected.
