@@ -12,15 +12,17 @@ from importlib import import_module
 from typing import Any
 
 from bokeh.server import urls
+from bokeh.settings import settings as bokeh_settings
 from tornado.ioloop import PeriodicCallback
 
+from app.bokeh_patches.batched_patches import batch_patches
+from app.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, load_monitor
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.server.admission import admit
 from app.server.log_format import set_up_logs
 from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
-from app.server.tuning import apply_tuning
 from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
 
@@ -32,7 +34,11 @@ def on_server_loaded(server_context: Any) -> None:
     state, context = _start_state(), server_context.application_context
     state.sessions = lambda: context.sessions
     set_up_logs(state.settings.log, LogRecordCounter(state.metrics), [logging.getLogger(), logging.getLogger("panel")])
-    apply_tuning(state, context.io_loop.asyncio_loop)
+    # A test validates the page; at run time Bokeh would warn of every closed section.
+    bokeh_settings.perform_document_validation = False
+    if state.settings.bokeh_patches:
+        batch_patches()
+        run_callbacks_inline()
     stop_gracefully_on_sigterm(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     PeriodicCallback(lambda: _monitor_load(state), 1000.0 * load_monitor.TICK_SECONDS).start()

@@ -1,4 +1,4 @@
-"""Take the screenshot and the animation of the README from the running page. Run: python docs/make_picture.py"""
+"""Record the animation of the README from the running page. Run: python docs/make_picture.py"""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Browser, expect, sync_playwright
+from playwright.sync_api import Browser, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
@@ -17,7 +17,6 @@ from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
 HERE = Path(__file__).parent
-STILL = "?case=III&plane=x_y&h=0.45&orbits=0.35,0.12;0.3,0.12;-0.1,0.4"
 SWEPT = "?case=III&plane=x_y&h=0.28&t_max=1000"
 FRAMES, FRAME_MS, WIDTH = 36, 250, 1000
 
@@ -30,18 +29,6 @@ def open_page(browser: Browser, link: str, height: int) -> ExplorerPage:
     explorer.page.goto(link)
     explorer.wait_until_complete()
     return explorer
-
-
-def take_picture(browser: Browser, address: str) -> None:
-    """Screenshot of case III at h = 0.45 with an orbit, its neighbour and a bounded orbit, after 40 animation frames."""
-    explorer = open_page(browser, address + STILL, 1500)
-    page = explorer.page
-    expect(explorer.text("upward crossings of y = 0")).to_be_visible()
-    for _ in range(40):
-        page.get_by_role("button", name="Next frame").click()
-    page.mouse.move(5, 1100)
-    page.wait_for_timeout(3000)
-    page.screenshot(path=str(HERE / "explorer.png"))
 
 
 def take_animation(browser: Browser, address: str) -> None:
@@ -69,14 +56,13 @@ def take_animation(browser: Browser, address: str) -> None:
 
 
 def main() -> None:
-    """Serve the app and take both."""
+    """Serve the app and record it."""
     with (
         tempfile.TemporaryDirectory() as folder,
         served_app(Path(folder) / "log") as address,
         sync_playwright() as playwright,
     ):
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        take_picture(browser, address)
         take_animation(browser, address)
         browser.close()
 

@@ -13,8 +13,3 @@ def sentence(error: Exception) -> str:
         return str(error)
     log.error("a job failed", exc_info=error)
     return "This could not be computed; the server's log says why."
-
-
-def as_markdown(text: str) -> str:
-    """Escape a text for Markdown: characters that Markdown or HTML may interpret become character references."""
-    return "".join(c if c.isalnum() or c in " .,:;=…" else f"&#{ord(c)};" for c in text)

@@ -64,10 +64,6 @@ class ProcessState:
         stats = self.jobs.stats()
         return self.load.is_high() or stats.calls_waiting > _MOST_WAITING * stats.threads
 
-    def is_busy(self) -> bool:
-        """Whether the event loop is delayed or any job is running."""
-        return self.load.is_high() or self.jobs.in_flight > 0
-
 
 _lock = threading.Lock()
 _started: ProcessState | None = None

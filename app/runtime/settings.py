@@ -23,18 +23,6 @@ class LogFormat(StrEnum):
     JSON = "json"
 
 
-class Tuning(StrEnum):
-    """Optional changes to Bokeh, Python and Tornado defaults (`app.server.tuning`); the server also works without them."""
-
-    BATCHED_PATCHES = "batched_patches"
-    INLINE_CALLBACKS = "inline_callbacks"
-    TCP_NODELAY = "tcp_nodelay"
-    NO_VALIDATION = "no_validation"
-    EAGER_TASKS = "eager_tasks"
-    SWITCH_INTERVAL = "switch_interval"
-    GC_POLICY = "gc_policy"
-
-
 @dataclass(frozen=True)
 class _Parser:
     """Converts the text of a variable; `legal` describes the legal values."""
@@ -65,15 +53,9 @@ def _parse_origins(text: str) -> tuple[str, ...]:
     return origins
 
 
-def _parse_tuning(text: str) -> frozenset[Tuning]:
-    named = {"all": frozenset(Tuning), "none": frozenset[Tuning]()}
-    return named[text] if text in named else frozenset(map(Tuning, text.split()))
-
-
 _YES_OR_NO = _Parser(lambda text: {"yes": True, "no": False}[text.lower()], "yes or no")
 _LOG_FORMAT = _Parser(LogFormat, "text or json")
 _ORIGINS = _Parser(_parse_origins, "origins separated by spaces")
-_TUNING = _Parser(_parse_tuning, f"all, none, or names separated by spaces: {', '.join(Tuning)}")
 
 
 def _setting(default: Any, parser: _Parser) -> Any:
@@ -113,8 +95,8 @@ class Settings:
         Interval between pings on an idle connection, in seconds; must be shorter than the timeout of any proxy.
     frame_ancestors
         Origins that may embed the page in a frame; empty for none.
-    tuning
-        Enabled performance changes; all by default.
+    bokeh_patches
+        Whether two functions of Bokeh are replaced by faster ones (`app.bokeh_patches`).
     """
 
     largest_resolution: int = _setting(1024, _integer(16, 4096))
@@ -130,7 +112,7 @@ class Settings:
     session_seconds: int = _setting(60, _integer(1, 86_400))
     keep_alive_seconds: int = _setting(20, _integer(1, 3600))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
-    tuning: frozenset[Tuning] = _setting(frozenset(Tuning), _TUNING)
+    bokeh_patches: bool = _setting(True, _YES_OR_NO)
 
 
 def variable_name(setting: str) -> str:

@@ -1,1 +1,1 @@
-"""Parts of a public server: endpoints, admission, logs, security headers, warm-up, shutdown and tuning."""
+"""Parts of a public server: endpoints, admission, logs, security headers, warm-up and shutdown."""

@@ -2,7 +2,7 @@
 
 The Content-Security-Policy allows scripts from this server, and inline scripts of the served page by a nonce, so that
 injected scripts do not run. Bokeh and Panel need three exceptions: ``unsafe-eval``, as both create functions from text;
-``blob:``, from which Panel imports components; and ``unsafe-inline`` for styles, which Bokeh and MUI insert at run time.
+``blob:``, from which Panel imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
 """
 
 from __future__ import annotations

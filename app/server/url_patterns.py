@@ -14,8 +14,6 @@ from typing import Any
 
 from panel.io.server import DocHandler, RootHandler, WSHandler
 
-from app.runtime.process_state import process_state
-from app.runtime.settings import Tuning
 from app.server.endpoints import ROUTES, NotFound
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
 
@@ -42,8 +40,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
-        if Tuning.TCP_NODELAY in process_state().settings.tuning:
-            self.set_nodelay(True)
+        self.set_nodelay(True)
         return super().open(*args, **kwargs)
 
 

@@ -11,7 +11,6 @@ import panel as pn
 from bokeh.document import Document
 from jinja2 import Template
 from panel.io.resources import parse_template
-from panel.template.base import BaseTemplate
 
 from app.rendering.mathml import equations
 from app.session.explorer import Explorer
@@ -32,13 +31,13 @@ def _frame() -> Template:
     return frame
 
 
-class ExplorerTemplate(BaseTemplate):
+class ExplorerTemplate(pn.Template):
     """The page of one session: a header and one column."""
 
     def __init__(self, header: pn.viewable.Viewable, main: pn.viewable.Viewable) -> None:
-        super().__init__(template=_frame(), design=ExplorerDesign, location=True)
-        self._render_items: dict[str, tuple[pn.viewable.Viewable, list[str]]] = {"header": (header, []), "main": (main, [])}
-        self._render_variables = {"theme_css": theme_css(), "theme_key": THEME_KEY}
+        super().__init__(_frame(), items={"header": header, "main": main}, design=ExplorerDesign, location=True)
+        self.add_variable("theme_css", theme_css())
+        self.add_variable("theme_key", THEME_KEY)
 
     def server_doc(self, doc: Document | None = None, title: str | None = TITLE, location: Any = True) -> Document:
         """Fill a document with the page."""

@@ -65,7 +65,9 @@ class MirrorPixels:
         return firsts
 
     def firsts_of(self, pixels: np.ndarray) -> np.ndarray:
-        """The first pixel of the pair of each of the pixels (n,), sorted, without duplicates."""
+        """The first pixel of the pair of each of the pixels (n,), which are sorted and distinct, as is the result."""
+        if not self.symmetric:
+            return pixels
         firsts: np.ndarray = np.unique(np.minimum(pixels, self.partner[pixels]))
         return firsts
 

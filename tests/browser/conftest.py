@@ -125,6 +125,6 @@ def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
 def for_orbits(shared: ExplorerPage) -> Iterator[ExplorerPage]:
     """The shared page without orbits; orbits that a test adds are removed after it."""
     yield shared
-    if shared.model_data("starts")["x"]:
+    if shared.model_data("starts").get("x"):
         shared.press("Clear all")
-    shared.wait_for_data("starts", "data.x.length == 0")
+        shared.wait_for_data("starts", "data.x.length == 0")

@@ -22,7 +22,7 @@ _COLUMN = """name => {
 
 _DATA = """name => {
     const plain = value => ArrayBuffer.isView(value) ? [...value] : Array.isArray(value) ? value.map(plain) : value
-    const {data} = Bokeh.documents[0].get_model_by_name(name)
+    const {data} = Bokeh.documents[0].get_model_by_name(name) ?? {data: {}}
     return Object.fromEntries(Object.entries(data).map(([key, value]) => [key, plain(value)]))
 }"""
 
@@ -49,7 +49,7 @@ class ExplorerPage:
         return np.array(value["values"]).reshape(value["shape"]) if isinstance(value, dict) else value
 
     def model_data(self, name: str) -> dict[str, list[Any]]:
-        """The columns of a source, as lists."""
+        """The columns of a source, as lists; none while the source is not on the page."""
         return self.page.evaluate(_DATA, name)
 
     def wait_for_data(self, name: str, condition: str) -> None:

@@ -23,6 +23,7 @@ SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=113&orbits=0.1,0.2;0.
 def small(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
     explorer = open_for_all(link=SMALL)
     explorer.wait_for_data("paths", "data.xs.length == 2")
+    explorer.press("Share")
     return explorer
 
 

@@ -59,6 +59,13 @@ def test_a_dark_system_gives_a_dark_page(open_explorer: Callable[..., ExplorerPa
     expect(explorer.page.get_by_role("button", name="Dark theme")).to_have_attribute("aria-pressed", "true")
 
 
+@pytest.fixture(scope="module")
+def everything_open(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    explorer = open_for_all(link="?t_max=1000&orbits=0.1,0.2")
+    explorer.press("Share")
+    return explorer
+
+
 @pytest.mark.parametrize(
     ("role", "name"),
     [
@@ -68,8 +75,8 @@ def test_a_dark_system_gives_a_dark_page(open_explorer: Callable[..., ExplorerPa
         ("button", "Previous frame"), ("group", "Time along the orbits"), ("button", "Copy link"),
     ],
 )  # fmt: skip
-def test_widgets_have_accessible_names(shared: ExplorerPage, role: Any, name: str) -> None:
-    expect(shared.page.get_by_role(role, name=name, exact=True)).to_have_count(1)
+def test_widgets_have_accessible_names(everything_open: ExplorerPage, role: Any, name: str) -> None:
+    expect(everything_open.page.get_by_role(role, name=name, exact=True)).to_have_count(1)
 
 
 def test_a_button_in_focus_can_be_pressed_with_the_keyboard(shared: ExplorerPage) -> None:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import pytest
 from playwright.sync_api import expect
 
 from app.views.components.numbers import percent
 from engine import CASES, MapSpec, Plane, compute_map, compute_statistics
 from tests.browser.explorer_page import ExplorerPage
+
+
+@pytest.fixture(scope="module")
+def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    return open_for_all(link="?statistics=yes")
 
 
 def drag(explorer: ExplorerPage, begin: tuple[float, float], end: tuple[float, float]) -> None:

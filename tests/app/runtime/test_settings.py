@@ -6,7 +6,7 @@ from dataclasses import fields
 
 import pytest
 
-from app.runtime.settings import LogFormat, Settings, Tuning, read_settings, variable_name
+from app.runtime.settings import LogFormat, Settings, read_settings, variable_name
 
 
 def test_missing_and_empty_variables_keep_defaults() -> None:
@@ -29,19 +29,6 @@ def test_variables_are_read() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("", frozenset(Tuning)),
-        ("all", frozenset(Tuning)),
-        ("none", frozenset()),
-        ("tcp_nodelay gc_policy", frozenset({Tuning.TCP_NODELAY, Tuning.GC_POLICY})),
-    ],
-)
-def test_tuning_is_all_none_or_names(text: str, expected: frozenset[Tuning]) -> None:
-    assert read_settings({"ESCAPE_EXPLORER_TUNING": text}).tuning == expected
-
-
-@pytest.mark.parametrize(
     ("name", "text"),
     [
         ("largest_resolution", "15"),
@@ -52,7 +39,7 @@ def test_tuning_is_all_none_or_names(text: str, expected: frozenset[Tuning]) -> 
         ("log", "xml"),
         ("only_idle", "1"),
         ("frame_ancestors", "https://a.example; script-src *"),
-        ("tuning", "all gc_policy"),
+        ("bokeh_patches", "maybe"),
     ],
 )
 def test_invalid_values_are_rejected_by_name(name: str, text: str) -> None:
