@@ -1,4 +1,4 @@
-"""The page in headless Chromium: latency of new pixels, previews per second, bytes of an update, and memory of the server.
+"""The page in headless Chromium: opening, latency of new pixels, previews per second, bytes of an update, server memory.
 
 Run: uv run python -m benchmarks.page
 """
@@ -73,6 +73,49 @@ def zoom_box(explorer: ExplorerPage, share: float) -> None:
     explorer.page.mouse.down()
     explorer.page.mouse.move(*explorer.point("basins", 0.0, 0.4 - side / 2), steps=3)
     explorer.page.mouse.up()
+
+
+OPENINGS = 11
+ELEMENTS = """() => {
+    let count = 0
+    const walk = root => {
+        for (const element of root.querySelectorAll("*")) {
+            count++
+            if (element.shadowRoot) walk(element.shadowRoot)
+        }
+    }
+    walk(document)
+    return count
+}"""
+# Until the document has come, and the second animation frame after the first pixels.
+PAINTED = """() => {
+    const source = window.Bokeh?.documents[0]?.get_model_by_name('maps')
+    return source?.data.fate?.[0]?.shape[0] > 1
+}"""
+TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+
+
+def report_opening(browser: Browser, address: str) -> None:
+    """Navigation to the first map, with an empty browser cache once and a full one then; the server's answer alone."""
+    context = browser.new_context(viewport={"width": 1600, "height": 1000})
+    context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
+    answers, maps = [], []
+    for _ in range(OPENINGS):
+        page = context.new_page()
+        begin = time.perf_counter()
+        page.goto(address, wait_until="commit")
+        answers.append(time.perf_counter() - begin)
+        page.wait_for_function(PAINTED, polling=20)
+        page.evaluate(TWO_FRAMES)
+        maps.append(time.perf_counter() - begin)
+        size = page.evaluate("() => Bokeh.documents[0]._all_models.size"), page.evaluate(ELEMENTS)
+        page.close()
+    warm = [statistics.median(seconds[1:]) for seconds in (answers, maps)]
+    print(
+        f"Opening the page, {OPENINGS - 1} times: first map after {warm[1]:.2f} s, of which the server's answer {warm[0]:.2f} s;"
+    )
+    print(f"with an empty browser cache {maps[0]:.2f} s. {size[0]} models, {size[1]} elements.\n", flush=True)
+    context.close()
 
 
 def open_page(browser: Browser, address: str, link: str = "") -> ExplorerPage:
@@ -197,7 +240,7 @@ def main() -> None:
         sync_playwright() as playwright,
     ):
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        for report in (report_typing, report_latency, report_previews, report_bytes, report_memory):
+        for report in (report_opening, report_typing, report_latency, report_previews, report_bytes, report_memory):
             report(browser, address)
         browser.close()
 

@@ -250,7 +250,7 @@ class SimulatedSession:
                 # The address changes when the server accepts the action; earlier pixels belong to an earlier map.
                 self._accepted |= self._parameters.items() <= dict(parse_qsl(event["new"].removeprefix("?"))).items()
             if event.get("attr") != "data":
-                # Sections and sliders are made anew while the page is open.
+                # Sections and sliders are rebuilt while the page is open.
                 self._models |= dict(_named_models(event))
             elif model in (self._models["maps"], self._models.get("paths")):
                 columns = dict(event.get("new", event.get("data"))["entries"])

@@ -62,7 +62,7 @@ def _of_case(case: str) -> Sequence[FigureEntry]:
     rows: tuple[tuple[str, str, Callable[[str, MapShelf], Figure]], ...] = (
         (
             "potential",
-            f"equipotentials with that of the escape energy in red, the Lyapunov orbits of the open channels at "
+            f"equipotentials with the escape energy in red, the Lyapunov orbits of the open channels at "
             f"h = {CHANNEL_ENERGIES[case]}, and an orbit through each",
             draw_potential,
         ),

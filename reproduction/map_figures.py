@@ -81,7 +81,7 @@ def draw_map_panel(
     shown
         Window of the panel.
     longest
-        Upper end of the scale of escape times; None for that of the map.
+        Upper end of the scale of escape times; None for the one of the map.
     analyses
         Regularity of bounded orbits, if the picture shows it.
     equal

@@ -27,10 +27,10 @@ from reproduction.sample_orbits import find_sample_starts
 
 # Equipotentials in units of the escape energy: dense inside the well, sparse outside.
 _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
-# Side of the panels in units of that of the interior.
+# Side of the panels in units of the side of the interior.
 _ENLARGED = 1.35
 _SAMPLES = 301
-# Distance of labels from the bottom of the well, in units of that of the saddle.
+# Distance of labels from the bottom of the well, in units of the distance of the saddle.
 _LABEL_PLACE = 1.22
 
 
@@ -50,7 +50,7 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
         axes.set_aspect("equal")
         style_axes(axes)
         label_axes(axes, "$x$", ORDINATES[Plane.X_Y] if axes is panels[0] else "")
-    escape = f"equipotentials, that of the escape energy ${potential.escape_energy:.4g}$ in red"
+    escape = f"equipotentials, the escape energy ${potential.escape_energy:.4g}$ in red"
     name_panels(
         panels, [escape, f"channels and Lyapunov orbits, $h = {energy}$", f"one orbit through each channel, $h = {energy}$"]
     )

@@ -15,7 +15,7 @@ from engine import EscapeMap, Fate, MapSpec, Window, compute_map
 from reproduction.map_shelf import MapShelf
 
 LARGEST_HALF_SIDE = 3.0
-"""Largest half side of the windows tried, about three times that of the interior."""
+"""Largest half side of the windows tried, about three times the half side of the interior."""
 
 STEP = 0.05
 """Step between the half sides of windows."""

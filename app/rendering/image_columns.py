@@ -18,7 +18,7 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
     """One image per column, in the smallest integer types, and the position of the images in the plane.
 
     Coarse frames have coarse images. The column of passages is a single pixel: it needs a follow-up analysis
-    (`passage_column`). So is that of characters unless `characters` is true.
+    (`passage_column`). The column of characters is one too, unless `characters` is true.
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]

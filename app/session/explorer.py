@@ -59,7 +59,7 @@ class Explorer:
         self.state = ViewState(**values)
         callbacks = SessionCallbacks(document)
         # Panel runs widget callbacks without the session's lock, which changes of bare Bokeh models need.
-        self._locked = callbacks.every
+        self._locked, self._latest = callbacks.every, callbacks.latest
         self._make_views()
         process = process_state()
         jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session)
@@ -67,7 +67,7 @@ class Explorer:
         self.potential = PotentialPresenter(self.state, jobs, self._locked)
         self.analyses = AnalysisPresenter(self.state, jobs, self.maps, self.downloads.show_analyses, self._locked)
         load_policy = LoadPolicy(process.is_overloaded, lambda call: document.add_timeout_callback(call, _RETRY_MS))
-        self.map_requests = MapRequests(self.state, jobs, self, callbacks.latest, self.analyses.follow_ups(), load_policy)
+        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), load_policy)
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.divergent_start = DivergentStartRequests(self.state, jobs, self.orbit_controls.say, self._locked)
         self.separation = SeparationRequests(self.state, jobs, self.separation_plot.show, self.orbit_controls.say, self._locked)
@@ -104,7 +104,8 @@ class Explorer:
         self.orbit_plots = OrbitPlots()
         self.separation_plot: SeparationPlot = SeparationPlot()
         self.orbit_layout = OrbitLayout(self.orbit_plots, self.separation_plot)
-        self.playback = Playback(locked(self.orbit_plots.set_time))
+        # A server under load skips times instead of falling behind the player.
+        self.playback = Playback(self._latest(self.orbit_plots.set_time))
         self.statistics = StatisticsView(locked(lambda: self._count_in(None)))
         self.accessible_table = AccessibleTable(state)
         self.keyboard = Keyboard(locked(self._press), locked(lambda: self.tour.start()), locked(self._copied))
@@ -128,12 +129,12 @@ class Explorer:
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda *events: self._count_in(None), [*SYSTEM, "plane", "window"])
         watch(lambda event: self._show_box(event.new), "box")
-        watch(lambda event: self.statistics.section.open(event.new), "statistics")
+        watch(lambda event: self.statistics.open(event.new), "statistics")
         watch(lambda *events: self._write_link(), list(LINKED))
         self.orbit_controls.follow_plane(state.plane)
         self._set_palette()
         self.zoom_buttons.follow(self.navigation.history)
-        self.statistics.section.open(state.statistics)
+        self.statistics.open(state.statistics)
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""

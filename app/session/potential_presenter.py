@@ -49,7 +49,7 @@ class PotentialPresenter:
             self._request.cancel()
             self.panel.say(str(error))
             return
-        # The event of the last letter may arrive after that of Enter.
+        # The event of the last letter may arrive after Enter.
         self._proposed = system, use or self._proposed == (system, True)
         if potential in self._reviews:
             self._show(self._reviews[potential])

@@ -85,7 +85,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     Returns
     -------
     The `WadaTest`. No single radius proves the Wada property: at finer resolution the radius of Wada basins stays at a few
-    pixels, while that of other basins grows in proportion.
+    pixels, while the radius of other basins grows in proportion.
 
     Raises
     ------

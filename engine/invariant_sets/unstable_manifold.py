@@ -89,7 +89,8 @@ class UnstableManifold:
     def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
         """The displacement that the orbit of phase 0 has after one period; nonlinear terms make it differ from the linear one.
 
-        left_eigenvector (4,): that of the multiplier; its product with a displacement is proportional to the unstable component.
+        The product of left_eigenvector (4,), which belongs to the multiplier, with a displacement is proportional to the
+        unstable component.
         """
         kernels = kernels_of(self.potential)
         (start,) = self.start_states(np.array([self.min_displacement]))

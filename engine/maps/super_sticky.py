@@ -114,7 +114,7 @@ def find_super_sticky_orbits(
     regularity
         The complete result of `compute_regularity` for the same map.
     t_max
-        Integration time from the start, dimensionless, at least that of the map and at most 1e8. The last orbit of Zotos (2014)
+        Integration time from the start, dimensionless, at least t_max of the map and at most 1e8. The last orbit of Zotos (2014)
         escapes at 3.5e6.
     executor
         Any `concurrent.futures.Executor`; None for the default pool of this process.

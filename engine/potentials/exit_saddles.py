@@ -18,7 +18,7 @@ Hessian = Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]
 # critical point nearest to the origin.
 _START_DISTANCE = 1e-3
 _END_DISTANCE = 1e-4
-# A descent has gone to infinity at this distance from the origin, in units of that of the outermost critical point.
+# A descent has gone to infinity at this distance from the origin, in units of the distance of the outermost critical point.
 _FAR = 10.0
 
 # Duration of a descent in units of its longest e-folding time, enough for every descent to end.

@@ -101,8 +101,8 @@ class DecayLaws:
     preferred
         The law that describes these escapes: not ruled out and significantly more likely than the other; otherwise None.
     ratio, ratio_low, ratio_high
-        Log-likelihood per escape of the exponential law minus that of the power law, and its 95 % bootstrap interval; NaN without
-        fits.
+        Log-likelihood per escape of the exponential law minus the one of the power law, and its 95 % bootstrap interval;
+        NaN without fits.
     """
 
     times: np.ndarray = field(repr=False)

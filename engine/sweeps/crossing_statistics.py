@@ -88,9 +88,9 @@ def tabulate_crossing_statistics(
 ) -> xr.Dataset:
     """Tabulate how many orbits escape after how many upward crossings of y = 0, from maps of ascending energy.
 
-    N0 is the number of starts, Ne that of escaping orbits, Nde that of direct escapes (without a crossing), dN_n that of escapes
-    after exactly n crossings, N_n that of orbits that have not escaped before the n-th crossing, and p_n = dN_n / N_n (Zotos
-    2014, section 5, after Contopoulos, Harsoula & Lukes-Gerakopoulos 2012). The start itself is not a crossing, and only
+    Numbers of orbits: N0 starts, Ne escapes, Nde direct escapes (without a crossing), dN_n escapes after exactly n crossings,
+    N_n orbits that have not escaped before the n-th crossing; the escape probability is p_n = dN_n / N_n (Zotos 2014, section 5,
+    after Contopoulos, Harsoula & Lukes-Gerakopoulos 2012). The start itself is not a crossing, and only
     crossings before the escape count.
 
     Parameters

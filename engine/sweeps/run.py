@@ -59,7 +59,7 @@ def run_sweep(
     cancel
         When set, the computation stops within about 0.2 s; the store can be resumed.
     executor
-        Any `concurrent.futures.Executor`, including that of a Dask client; None for the default pool of this process.
+        Any `concurrent.futures.Executor`, including the executor of a Dask client; None for the default pool of this process.
 
     Returns
     -------

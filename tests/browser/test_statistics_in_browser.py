@@ -47,7 +47,7 @@ def test_a_box_can_be_counted_and_removed(shared: ExplorerPage) -> None:
     expect(shared.text("Interior starts in the box drawn on the maps")).to_be_visible()
     box = shared.model_data("box")
     assert [box["left"][0], box["right"][0]] == [-0.1, 0.1] or abs(box["left"][0] + 0.1) < 0.01
-    expect(shared.page.get_by_label("statistics")).to_contain_text("100.00 %")
+    expect(shared.page.get_by_role("table", name="statistics")).to_contain_text("100.00 %")
     shared.press("Count the whole view")
     expect(shared.text("Interior starts in the whole view")).to_be_visible()
     assert shared.model_data("box")["left"] == []

@@ -20,6 +20,7 @@ import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
+from tests.app.other_loop import run_on_new_loop
 from tests.deploy.proxy import ROOT, Proxy, authorization, free_port, nginx, proxied
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(nginx() is None, reason="nginx is not installed")]
@@ -148,18 +149,18 @@ def test_page_and_scripts_are_served_with_the_password(proxy: Proxy) -> None:
 
 
 def test_websocket_works_through_tls(proxy: Proxy) -> None:
-    assert asyncio.run(first_message_header(proxy, proxy.origin, authorization()))["msgtype"] == "ACK"
+    assert run_on_new_loop(lambda: first_message_header(proxy, proxy.origin, authorization()))["msgtype"] == "ACK"
 
 
 def test_websocket_of_another_origin_is_refused(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
-        asyncio.run(first_message_header(proxy, "https://elsewhere.example.org", authorization()))
+        run_on_new_loop(lambda: first_message_header(proxy, "https://elsewhere.example.org", authorization()))
     assert refused.value.code == 403
 
 
 def test_websocket_requires_the_password(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
-        asyncio.run(first_message_header(proxy, proxy.origin, {}))
+        run_on_new_loop(lambda: first_message_header(proxy, proxy.origin, {}))
     assert refused.value.code == 401
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.main import WENT_WRONG
+from cli.main import FAILED
 
 ROOT = Path(__file__).parents[2]
 _PROGRAM = """
@@ -37,7 +37,7 @@ def is_one_sentence(text: str) -> bool:
 def test_failed_write_keeps_the_existing_file(tmp_path: Path) -> None:
     (tmp_path / "exits.csv").write_text("previous")
     completed = run(2000, tmp_path, "lyapunov", "I", "--energy", "0.19", "--output", "exits.csv")
-    assert completed.returncode == WENT_WRONG
+    assert completed.returncode == FAILED
     assert is_one_sentence(completed.stderr), completed.stderr
     assert os.strerror(errno.EFBIG) in completed.stderr
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"exits.csv": "previous"}
@@ -48,7 +48,7 @@ SWEEP = ("sweep", "I", "--energy", "0.19", "--energy", "0.2", "--resolution", "8
 
 def test_sweep_can_be_resumed_after_a_full_disk(tmp_path: Path) -> None:
     full = run(6000, tmp_path, *SWEEP)
-    assert full.returncode == WENT_WRONG, full.stderr
+    assert full.returncode == FAILED, full.stderr
     assert is_one_sentence(full.stderr), full.stderr
     resumed = run(10**9, tmp_path, *SWEEP)
     assert resumed.returncode == 0, resumed.stderr
@@ -80,6 +80,6 @@ def test_disk_that_fills_up_is_reported_in_one_sentence(small_disk: Path) -> Non
     completed = run(
         10**9, small_disk, "orbit", "I", "--energy", "0.19", "--start", "0.1", "0.1", "--t-max", "200", "--output", "orbit"
     )
-    assert completed.returncode == WENT_WRONG
+    assert completed.returncode == FAILED
     assert is_one_sentence(completed.stderr), completed.stderr
     assert not [path for path in small_disk.iterdir() if path.name.endswith(".part")]

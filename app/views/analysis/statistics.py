@@ -39,11 +39,15 @@ class StatisticsView:
         self.whole = button("Count the whole view", on_whole, disabled=True)
         self.section = CollapsibleSection("Statistics", self._build)
 
+    def open(self, visible: bool) -> None:
+        """Open or close the section."""
+        self.section.open(visible)
+        self._count()
+
     def show(self, frame: EscapeMap) -> None:
         """Show the statistics of a frame."""
         self._frame = frame
-        if self.section.is_open:
-            self._count()
+        self._count()
 
     def show_box(self, box: Window | None) -> None:
         """Count in a box; None is the whole view."""
@@ -51,25 +55,22 @@ class StatisticsView:
             return
         self._box = box
         self.whole.disabled = box is None
-        if self.section.is_open:
-            self._count()
+        self._count()
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the channels."""
         self._palette = palette
-        if self.section.is_open:
-            self._count()
+        self._count()
 
     def _build(self) -> list[pn.viewable.Viewable]:
         hv.extension("bokeh")
         self._times, self._probabilities = _plot(_draw_times()), _plot(_draw_probabilities())
-        self._count()
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
         left = pn.Column(self.whole, self.table, width=COLUMN, margin=(0, 6))
         return [left, with_help(histogram, "histogram"), with_help(probabilities, "probabilities")]
 
     def _count(self) -> None:
-        if self._frame is None:
+        if self._frame is None or not self.section.is_open:
             return
         statistics = compute_statistics(self._frame, self._box)
         self.table.object = self._table(statistics)

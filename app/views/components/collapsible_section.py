@@ -1,4 +1,4 @@
-"""A part of the page that exists only while it is open."""
+"""A part of the page that is built when it is first opened."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ Build = Callable[[], Sequence[pn.viewable.Viewable]]
 
 
 class CollapsibleSection:
-    """A title over a row that wraps; `build` makes the row each time the section is opened, and closing removes it."""
+    """A title over a row that wraps, made by `build` at the first opening; while it is closed it is not on the page."""
 
     def __init__(self, title: str, build: Build) -> None:
         self._title, self._build = title, build
+        self._content: list[pn.viewable.Viewable] = []
         self._column = pn.Column(sizing_mode="stretch_width", styles=FULL_HEIGHT, visible=False)
 
     def layout(self) -> pn.viewable.Viewable:
@@ -29,12 +30,11 @@ class CollapsibleSection:
         return bool(self._column.objects)
 
     def open(self, visible: bool) -> None:
-        """Build the content, or remove it."""
-        if visible == self.is_open:
-            return
-        head = pn.pane.HTML(f"<h2>{self._title}</h2>", margin=(16, 10, 4, 10))
-        content = [head, flex_row(*self._build(), justify="center")] if visible else []
-        self._column.param.update(objects=content, visible=visible)
+        """Put the content on the page, or take it off."""
+        if visible and not self._content:
+            head = pn.pane.HTML(f"<h2>{self._title}</h2>", margin=(16, 10, 4, 10))
+            self._content = [head, flex_row(*self._build(), justify="center")]
+        self._column.param.update(objects=self._content if visible else [], visible=visible)
 
     def toggle(self) -> None:
         """Open the section, or close it."""

@@ -126,7 +126,7 @@ class MapsView:
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
         inks = DARK if dark else LIGHT
-        # Unlike other text, that of a colour bar does not follow the stylesheet.
+        # The text of a colour bar does not follow the stylesheet.
         self._colour_bar.update(title_text_color=inks.quiet, major_label_text_color=inks.quiet)
         self.outlines.set_dark(dark)
         self.describe()

@@ -1,4 +1,4 @@
-"""The orbit plots on the page: made with the first orbit, or the second, and removed with the last."""
+"""The orbit plots on the page: built for the first orbit, or the second, and shown while there are as many."""
 
 from __future__ import annotations
 
@@ -27,14 +27,10 @@ class OrbitLayout:
 
     def follow(self, orbits: int) -> None:
         """Show the plots that a number of orbits needs."""
-        if not orbits:
-            self._single = []
-        elif not self._single:
+        if orbits >= 1 and not self._single:
             self._single = self._plots.build()
-        if orbits < 2:
-            self._pair = []
-        elif not self._pair:
+        if orbits >= 2 and not self._pair:
             self._pair = [self._separation.build()]
-        columns = [*self._single, *self._pair]
+        columns = [*(self._single if orbits >= 1 else []), *(self._pair if orbits >= 2 else [])]
         if columns != self._row.objects:
             self._row.param.update(objects=columns, visible=bool(columns))

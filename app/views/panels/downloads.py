@@ -96,7 +96,7 @@ class Downloads:
         return self._named(".py"), python_lines(self._map().spec, self._state.system, states).encode
 
     def _saving(self, file: Callable[[], File]) -> Callable[[], None]:
-        # The file is that of the moment of the click.
+        # `file()` captures the state at the click.
         return lambda: pn.state.execute(partial(self.save, file()))
 
     def _enable(self) -> None:
