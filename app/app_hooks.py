@@ -20,6 +20,7 @@ from app.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, load_monitor
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
+from app.runtime.state_collector import StateCollector
 from app.server.admission import admit
 from app.server.log_format import set_up_logs
 from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
@@ -33,6 +34,7 @@ def on_server_loaded(server_context: Any) -> None:
     """Start the process state and everything that runs in the background."""
     state, context = _start_state(), server_context.application_context
     state.sessions = lambda: context.sessions
+    state.metrics.registry.register(StateCollector(state))
     set_up_logs(state.settings.log, LogRecordCounter(state.metrics), [logging.getLogger(), logging.getLogger("panel")])
     # A test validates the page; at run time Bokeh would warn of every closed section.
     bokeh_settings.perform_document_validation = False

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import psutil
 
+from app.runtime.process_state import ProcessState
 from app.runtime.settings import variable_name
-
-if TYPE_CHECKING:
-    from app.runtime.process_state import ProcessState
 
 
 def resident_bytes() -> int:

@@ -45,7 +45,7 @@ class ProcessState:
     sessions: Callable[[], Iterable[Any]] = tuple
     jobs: Jobs = field(init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
-    metrics: ServerMetrics = field(init=False)
+    metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)
     kernels_ready: threading.Event = field(default_factory=threading.Event, init=False)
     kernels_failed: threading.Event = field(default_factory=threading.Event, init=False)
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
@@ -57,7 +57,6 @@ class ProcessState:
             threads=self.settings.threads,
             idle_priority=self.settings.only_idle,
         )
-        self.metrics = ServerMetrics(self)
 
     def is_overloaded(self) -> bool:
         """Whether the event loop is delayed or many calls wait for a thread."""

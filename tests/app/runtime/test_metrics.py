@@ -1,4 +1,4 @@
-"""Prometheus metrics."""
+"""Counters for Prometheus."""
 
 from __future__ import annotations
 
@@ -8,17 +8,7 @@ from prometheus_client import REGISTRY
 
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState
-from app.runtime.settings import Settings
 from app.server.endpoints import status_page
-
-
-def test_gauges_show_the_current_state() -> None:
-    state = ProcessState(Settings(cache_bytes=1234))
-    read = state.metrics.registry.get_sample_value
-    assert read("escape_explorer_cache_limit_bytes") == 1234
-    assert read("escape_explorer_kernels_ready") == 0
-    state.kernels_ready.set()
-    assert read("escape_explorer_kernels_ready") == read("escape_explorer_ready") == 1
 
 
 def test_log_records_are_counted_by_level_and_exception() -> None:

@@ -1,0 +1,17 @@
+"""Gauges of the process state."""
+
+from __future__ import annotations
+
+from app.runtime.process_state import ProcessState
+from app.runtime.settings import Settings
+from app.runtime.state_collector import StateCollector
+
+
+def test_gauges_show_the_current_state() -> None:
+    state = ProcessState(Settings(cache_bytes=1234))
+    state.metrics.registry.register(StateCollector(state))
+    read = state.metrics.registry.get_sample_value
+    assert read("escape_explorer_cache_limit_bytes") == 1234
+    assert read("escape_explorer_kernels_ready") == 0
+    state.kernels_ready.set()
+    assert read("escape_explorer_kernels_ready") == read("escape_explorer_ready") == 1
