@@ -48,12 +48,11 @@ class ProgressView:
     def show(self, frame: EscapeMap) -> None:
         """Show how far a frame is, and the shares of a complete map."""
         self._set(running=not frame.complete, label=STOP, text=_result(frame) if frame.complete else _stage(frame))
-        self.bar.value = 100 if frame.complete else min(int(100 * frame.progress), 99)
+        self.bar.value = int(100 * frame.progress)
 
     def show_preview(self) -> None:
         """A preview is shown; the text is the same for all of them, so that it is sent once."""
         self._set(running=False, label=STOP, text=f"Preview up to t = {PREVIEW_TIME:g}")
-        self.bar.value = 0
 
     def stop(self) -> None:
         """The map is stopped and can be continued."""
@@ -77,6 +76,8 @@ class ProgressView:
 
     def _set(self, *, running: bool, label: str, text: str) -> None:
         self._running = running
+        # Unlike `visible`, this does not move the maps below.
+        self.bar.styles = {"opacity": "1" if running else "0"}
         self.button.param.update(label=label, disabled=not running)
         self.text.object = text
 

@@ -16,8 +16,8 @@ from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, button
 from engine import IndicatorVerdict, Orbit, Plane
 
 HINT = "Click any map, or type a start, to see its orbit, SALI and R². Up to five orbits."
-_WIDTH = 370
-_BOX = 165
+_WIDTH = 350
+_BOX = 155
 
 
 @dataclass(frozen=True)

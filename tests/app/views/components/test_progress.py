@@ -24,7 +24,7 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(escape_map)
     assert view.text.object.startswith("Done, t = 1 000. Interior starts: channel 1 ")
-    assert (view.bar.value, view.button.disabled) == (100, True)
+    assert (view.bar.styles["opacity"], view.button.disabled) == ("0", True)
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
