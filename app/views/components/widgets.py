@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import panel as pn
 from bokeh.document import Document
 
-NUMBER_FORMAT = "0.[0000000000000000]"
-"""Of number boxes: as many decimals as a number has."""
+NUMBER_FORMAT = "0.[000000000000000]"
+"""Number boxes show up to 15 decimals; a 16th would show the rounding error of numbers such as 0.28."""
 
 
 class _NamedGroup:
