@@ -30,6 +30,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from engine.arrays import read_only
 from engine.taylor.source.cauchy_products import (
     Monomial,
     Polynomial,
@@ -109,9 +110,8 @@ class GeneratedCode:
     def tabulate(self, terms: Terms) -> np.ndarray:
         """(m,) the table of a potential, which every function takes as its first argument; read-only."""
         polynomial = _sorted(terms)
-        table = np.array([factor * (polynomial[term] * multiple) for term, multiple, factor in self.entries], dtype=float)
-        table.flags.writeable = False
-        return table
+        table = [factor * (polynomial[term] * multiple) for term, multiple, factor in self.entries]
+        return read_only(np.array(table, dtype=float))
 
 
 _Difference = tuple[Product, Product] | None
