@@ -17,10 +17,9 @@ from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
 from app.rendering.map_images import ON_DEMAND
 from app.rendering.palette import Palette
 from app.state.system import SYSTEM
-from app.state.view_state import ViewState
+from app.state.view_state import Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
-from app.views.components.analysis_toggles import AnalysisToggles
 from app.views.maps.map_plots import MapsView
 from engine import (
     BasinMeasuresRequest,
@@ -52,12 +51,12 @@ IMAGES = 3
 SWEPT_ENERGIES = 33
 """Energies of the curves against energy."""
 
-# Attribute of `MapAnalyses` that each toggle controls.
-_ANALYSIS_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
+# Attribute of `MapAnalyses` that each layer controls.
+_RESULT_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
 
 
 class AnalysisPresenter:
-    """Toggles and the analyses that they control; `on_analyses(analyses)` receives the results for the current map."""
+    """Analyses that the view state asks for; `on_analyses(analyses)` receives the results for the current map."""
 
     def __init__(
         self, state: ViewState, jobs: JobSubmitter, maps: MapsView, on_analyses: Callable[[MapAnalyses], None], locked: Locked
@@ -66,8 +65,7 @@ class AnalysisPresenter:
         self._spec: MapSpec | None = None
         self._analyses = NO_ANALYSES
         self._notes: dict[str, str] = {}
-        self.switches = AnalysisToggles(state)
-        self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10))
+        self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure))
         self.curves = EnergyCurvesView(locked(self._sweep), self._open_energy)
         self._exponent = LatestRequest(jobs, self._show_exponent, self.measures.say, locked)
@@ -77,19 +75,12 @@ class AnalysisPresenter:
     def follow_ups(self) -> list[FollowUp]:
         """Analyses of each complete map."""
         return [
-            self._follow_up("judge", lambda frame: RegularityRequest(frame.spec), self._show_regularity),
-            self._follow_up("trust", lambda frame: TrustRequest(frame.spec), self._show_trust),
-            self._follow_up("origins", lambda frame: OriginFateRequest(frame.spec), self._show_origins),
-            self._follow_up("manifolds", _manifolds_request, self._show_manifolds),
-            self._follow_up(
-                "measures", lambda frame: BasinMeasuresRequest(frame.spec), lambda _, result: self.measures.show_basins(result)
-            ),
-            self._follow_up(
-                "measures",
-                lambda frame: DecayLawsRequest(frame.spec, self._state.box),
-                lambda _, result: self.measures.show_laws(result),
-                "box",
-            ),
+            self._layer("judge", lambda frame: RegularityRequest(frame.spec), self._show_regularity),
+            self._layer("trust", lambda frame: TrustRequest(frame.spec), self._show_trust),
+            self._layer("origins", lambda frame: OriginFateRequest(frame.spec), self._show_origins),
+            self._layer("manifolds", _manifolds_request, self._show_manifolds),
+            self._measure_of_basins(lambda frame: BasinMeasuresRequest(frame.spec), self.measures.show_basins),
+            self._measure_of_basins(lambda frame: DecayLawsRequest(frame.spec, self._state.box), self.measures.show_laws, "box"),
         ]
 
     def begin(self, spec: MapSpec) -> None:
@@ -99,11 +90,10 @@ class AnalysisPresenter:
         self._spec = spec
         self._exponent.cancel()
         self._maps.overlays.begin(spec)
-        if self._state.measures:
-            self.measures.begin()
+        self.measures.begin()
         if self._analyses != NO_ANALYSES:
-            self._update(**dict.fromkeys(_ANALYSIS_OF.values()))
-        self._note(**dict.fromkeys(_ANALYSIS_OF, ""))
+            self._update(**dict.fromkeys(_RESULT_OF.values()))
+        self._note(**dict.fromkeys(_RESULT_OF, ""))
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -118,33 +108,32 @@ class AnalysisPresenter:
     def _connect(self) -> None:
         watch, state = self._state.param.watch, self._state
         watch(lambda *events: self._show_pictures(), list(ON_DEMAND.values()))
-        watch(lambda *events: self._open_sections(), ["measures", "energies"])
-        watch(self._remove_switched_off, list(_ANALYSIS_OF))
+        watch(self._remove_switched_off, list(_RESULT_OF))
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
         watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
         watch(lambda *events: self.curves.show(None), list(SYSTEM))
         self._show_pictures()
-        self._open_sections()
         self.curves.follow_energy(state.energy)
 
-    def _follow_up(
-        self,
-        toggle: str,
-        request: Callable[[EscapeMap], JobRequest[Any] | None],
-        show: Callable[[EscapeMap, Any], None],
-        *watched: str,
+    def _layer(
+        self, name: str, request: Callable[[EscapeMap], JobRequest[Any] | None], show: Callable[[EscapeMap, Any], None]
     ) -> FollowUp:
-        return FollowUp(lambda frame: request(frame) if getattr(self._state, toggle) else None, show, (toggle, *watched))
+        return FollowUp(lambda frame: request(frame) if getattr(self._state, name) else None, show, (name,))
 
-    # Toggles.
+    def _measure_of_basins(
+        self, request: Callable[[EscapeMap], JobRequest[Any]], show: Callable[[Any], None], *watched: str
+    ) -> FollowUp:
+        return FollowUp(
+            lambda frame: request(frame) if self._state.analysis is Analysis.MEASURES else None,
+            lambda _, result: show(result),
+            ("analysis", *watched),
+        )
+
+    # Layers.
 
     def _show_pictures(self) -> None:
         shown = [picture for picture, toggle in ON_DEMAND.items() if getattr(self._state, toggle)]
         self._maps.show_pictures(frozenset(shown))
-
-    def _open_sections(self) -> None:
-        self.measures.section.open(self._state.measures)
-        self.curves.section.open(self._state.energies)
 
     def _remove_switched_off(self, *events: Any) -> None:
         for event in events:
@@ -157,7 +146,7 @@ class AnalysisPresenter:
             self._maps.overlays.show_trust(None)
         if name == "manifolds":
             self._maps.overlays.show_manifolds(None)
-        self._update(**{_ANALYSIS_OF[name]: None})
+        self._update(**{_RESULT_OF[name]: None})
         self._note(**{name: ""})
 
     # Results of follow-up analyses.
@@ -170,7 +159,7 @@ class AnalysisPresenter:
     def _note(self, **sentences: str) -> None:
         self._notes |= sentences
         body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
-        self.notes.object = f"<span style='font-size:14px'>{body}</span>" if body else ""
+        self.notes.object = body
 
     def _show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         self._maps.show_regularity(frame, regularity)

@@ -25,23 +25,27 @@ from app.state.navigation import Navigation
 from app.state.permalink import LINKED, read_link, write_link
 from app.state.presets import Preset
 from app.state.system import SYSTEM, System
-from app.state.view_state import ViewState
+from app.state.view_state import Analysis, ViewState
 from app.views.analysis.statistics import StatisticsView
+from app.views.components.analysis_choice import AnalysisTabs
+from app.views.components.collapsible_section import Drawers, Stack
 from app.views.components.notice import Notice
 from app.views.components.progress import ProgressView
+from app.views.components.widgets import button
 from app.views.maps.map_plots import MapsView
+from app.views.maps.map_toolbar import MapToolbar
 from app.views.maps.markers import NO_POINTS
-from app.views.maps.zoom_buttons import ZoomButtons
+from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
-from app.views.orbits.orbit_layout import OrbitLayout
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 from app.views.panels.accessible_table import AccessibleTable
+from app.views.panels.browser_events import BrowserActions, BrowserEvents, key_legend
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
+from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
-from app.views.panels.keyboard import Keyboard
 from app.views.panels.tour import Tour
 from engine import EscapeMap, JobClient, Plane, Window
 
@@ -74,6 +78,15 @@ class Explorer:
         self.indicators = IndicatorsRequests(
             self.state, jobs, self.orbit_controls.show_indicators, self.orbit_controls.say, self._locked
         )
+        self.analysis = Stack(
+            {
+                Analysis.STATISTICS: self.statistics.build,
+                Analysis.MEASURES: self.analyses.measures.build,
+                Analysis.ENERGIES: self.analyses.curves.build,
+            },
+            "analysis",
+            head=[AnalysisTabs(self.state).tabs],
+        )
         self.progress = ProgressView(self._locked(self.map_requests.stop_map), self._locked(self.map_requests.request_map))
         self.animation = EnergyAnimation(
             document, lambda: self.map_requests.previews.under_way, self._show_animated, self._end_animation
@@ -88,8 +101,11 @@ class Explorer:
         state, locked = self.state, self._locked
         self.navigation = Navigation(state)
         self.maps = MapsView(self._add_start, self.navigation.visit, self._count_in)
-        self.zoom_buttons = ZoomButtons(
-            locked(self.navigation.back), locked(self.navigation.forward), locked(lambda: self.navigation.visit(None))
+        self.toolbar = MapToolbar(
+            locked(self.navigation.back),
+            locked(self.navigation.forward),
+            locked(lambda: self.navigation.visit(None)),
+            locked(self.maps.set_drag),
         )
         self.orbit_controls: OrbitControls = OrbitControls(
             OrbitActions(
@@ -103,13 +119,21 @@ class Explorer:
         )
         self.orbit_plots = OrbitPlots()
         self.separation_plot: SeparationPlot = SeparationPlot()
-        self.orbit_layout = OrbitLayout(self.orbit_plots, self.separation_plot)
         # A server under load skips times instead of falling behind the player.
         self.playback = Playback(self._latest(self.orbit_plots.set_time))
+        self.inspector = Inspector(self.orbit_controls, self.playback, self.orbit_plots, self.separation_plot)
         self.statistics = StatisticsView(locked(lambda: self._count_in(None)))
         self.accessible_table = AccessibleTable(state)
-        self.keyboard = Keyboard(locked(self._press), locked(lambda: self.tour.start()), locked(self._copied))
-        self.downloads: Downloads = Downloads(state, self.keyboard.copy_link)
+        self.browser = BrowserEvents(
+            BrowserActions(
+                key=locked(self._press),
+                dark=locked(self.set_dark),
+                touch=locked(self._begin_touch),
+                first_visit=locked(lambda: self.tour.start()),
+                copied=locked(self._copied),
+            )
+        )
+        self.downloads: Downloads = Downloads(state, self.browser.copy_link)
         self.notice = Notice()
         self.gallery = Gallery(locked(self._show_preset))
         self.tour: Tour = Tour()
@@ -120,21 +144,28 @@ class Explorer:
             choose_potential=locked(lambda: self.potential.toggle()),
         )
         self.controls = Controls(state, actions)
+        self.drawers = Drawers(
+            {
+                "gallery": ("Gallery", "Gallery", self.gallery.build),
+                "share": ("Share", "Share and download", self.downloads.build),
+                "help": ("Help", "Help", self._build_help),
+            }
+        )
 
     def _connect(self) -> None:
         watch, state = self.state.param.watch, self.state
-        watch(lambda *events: self.zoom_buttons.follow(self.navigation.history), ["window", *SYSTEM, "plane"])
+        watch(lambda *events: self.toolbar.follow(self.navigation.history), ["window", *SYSTEM, "plane"])
         watch(lambda event: self.orbit_controls.follow_plane(event.new), "plane")
         watch(lambda event: self._show_orbits(self._orbits_shown), "chosen")
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda *events: self._count_in(None), [*SYSTEM, "plane", "window"])
         watch(lambda event: self._show_box(event.new), "box")
-        watch(lambda event: self.statistics.open(event.new), "statistics")
+        watch(lambda event: self._show_analysis(), "analysis")
         watch(lambda *events: self._write_link(), list(LINKED))
         self.orbit_controls.follow_plane(state.plane)
         self._set_palette()
-        self.zoom_buttons.follow(self.navigation.history)
-        self.statistics.open(state.statistics)
+        self.toolbar.follow(self.navigation.history)
+        self._show_analysis()
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
@@ -161,7 +192,7 @@ class Explorer:
         self.map_requests.request_map()
         self.orbits.follow()
         if self._problems:
-            self.progress.warn(" ".join(self._problems))
+            self.notice.warn(" ".join(self._problems))
 
     def _write_link(self) -> None:
         if pn.state.location is not None:
@@ -174,6 +205,24 @@ class Explorer:
                 view.set_palette(palette)
             self._show_orbits(self._orbits_shown)
 
+    def _begin_touch(self) -> None:
+        self.toolbar.begin_touch()
+        self.maps.begin_touch()
+        self.controls.begin_touch()
+
+    def _build_help(self) -> list[pn.viewable.Viewable]:
+        return [
+            button("Take the tour", self.tour.start),
+            pn.pane.HTML(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
+            equations_pane(self.state),
+            *self.accessible_table.fold.parts(),
+        ]
+
+    def _show_analysis(self) -> None:
+        analysis = self.state.analysis
+        self.analysis.show(None if analysis is Analysis.NONE else analysis)
+        self.statistics.activate(analysis is Analysis.STATISTICS)
+
     # Callbacks of the views.
 
     def _add_start(self, x: float, ordinate: float) -> None:
@@ -181,7 +230,7 @@ class Explorer:
 
     def _count_in(self, box: Window | None) -> None:
         """Count in a box, and show the statistics; None removes the box."""
-        self.state.param.update(box=box, statistics=self.state.statistics or box is not None)
+        self.state.param.update(box=box, analysis=self.state.analysis if box is None else Analysis.STATISTICS)
 
     def _show_box(self, box: Window | None) -> None:
         self.maps.marks.show_box(box)
@@ -207,11 +256,13 @@ class Explorer:
         try:
             moves[key]()
         except ValueError as error:
-            self.progress.warn(str(error))
+            self.notice.warn(str(error))
 
     def _escape(self) -> None:
-        """Stop the animation, or without one the map."""
-        if self.animation.playing:
+        """Close the open drawer, or stop the animation, or else the map."""
+        if self.drawers.shown is not None:
+            self.drawers.show(None)
+        elif self.animation.playing:
             self.animation.stop()
         else:
             self.map_requests.stop_map()
@@ -238,6 +289,7 @@ class Explorer:
         """A map is requested."""
         self._requested_at = time.monotonic()
         self.progress.start(compiling=compiling)
+        self.notice.clear()
 
     def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a preview."""
@@ -269,7 +321,8 @@ class Explorer:
 
     def map_failed(self, sentence: str) -> None:
         """Show why there is no map; the last picture stays."""
-        self.progress.fail(sentence)
+        self.progress.fail()
+        self.notice.warn(sentence)
 
     def _show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show the orbits that are known."""
@@ -286,7 +339,7 @@ class Explorer:
             drawing = drawings[chosen] if orbits else None
             self.playback.follow(float(drawing.orbit.t[-1]) if drawing is not None else None)
             # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
-            self.orbit_layout.follow(sum(not one.problem for one in orbits))
+            self.inspector.follow(sum(not one.problem for one in orbits))
             self.separation.follow(orbits)
             self.indicators.follow(orbits)
             self.downloads.show_orbits(orbits)

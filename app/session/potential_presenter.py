@@ -26,7 +26,7 @@ class PotentialPresenter:
 
     def toggle(self) -> None:
         """Open the section with the properties of the current system, or close it."""
-        self.panel.section.toggle()
+        self.panel.section.open(not self.panel.section.is_open)
         if self.panel.section.is_open:
             self._preview(self._state.system)
 

@@ -61,7 +61,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "escaping orbit it ends at its value at the exit. A sticky orbit looks bounded for a long time; then its range "
             "widens and it escapes."
         ),
-        "distance": (
+        "separation": (
             "The distance of two orbits in position and momentum, on a logarithmic scale. In a chaotic region neighbours "
             "separate exponentially, a rising straight line here, until their distance reaches the size of the well. Regular "
             "neighbours separate about in proportion to time, a curve that flattens."
@@ -110,11 +110,8 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
 )
 """Help texts by the names of the pictures and plots."""
 
-# Inherit the text colour of the light or dark theme.
-_SMALL = "font-size:13px;line-height:1.45;color:inherit"
 
-
-def help_details(name: str) -> str:
-    """HTML disclosure widget with the help text of a picture or plot."""
-    summary = '<summary style="cursor:pointer;width:max-content">What is this?</summary>'
-    return f'<details style="{_SMALL}">{summary}<p style="margin:4px 0">{escape(HELP_TEXTS[name])}</p></details>'
+def title_with_help(title: str, name: str) -> str:
+    """HTML of the title of a picture or plot, with a button that opens its help text."""
+    button = f"<button type='button' class='help' popovertarget='help-{name}' aria-label='About: {escape(title)}'>?</button>"
+    return f"<h3>{escape(title)} {button}</h3><p id='help-{name}' class='help-text' popover>{escape(HELP_TEXTS[name])}</p>"

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.system import SYSTEM, TYPED, System, refusal
-from app.state.view_state import SWITCHES, Start, ViewState, allowed_resolutions, allowed_t_max
+from app.state.view_state import LAYERS, Analysis, Start, ViewState, allowed_resolutions, allowed_t_max
 from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window, review_potential
 
 LONGEST_VALUE = LONGEST_TEXT
@@ -33,7 +33,9 @@ def write_link(state: ViewState) -> str:
     }
     if state.window is not None:
         chosen["window"] = _joined(astuple(state.window))
-    chosen |= {name: "yes" for name in SWITCHES if getattr(state, name)}
+    chosen |= {name: "yes" for name in LAYERS if getattr(state, name)}
+    if state.analysis is not Analysis.NONE:
+        chosen["analysis"] = state.analysis.value
     if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette
     starts: tuple[Start, ...] = state.starts
@@ -143,6 +145,7 @@ def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
 _PLANES = {plane.name.lower(): plane for plane in Plane}
 _SWITCH = {"yes": True, "no": False}
+_ANALYSES = {analysis.value: analysis for analysis in Analysis}
 _PALETTES = {name: name for name in PALETTES}
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 
@@ -156,7 +159,8 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "plane": ("plane", _one_of(_PLANES), f"one of {', '.join(_PLANES)}"),
     "h": ("energy", _read_number, "a finite number"),
     "window": ("window", lambda text: Window(*_read_numbers(text, 4)), "x_low,x_high,ordinate_low,ordinate_high"),
-    **{name: (name, _one_of(_SWITCH), "yes or no") for name in SWITCHES},
+    **{name: (name, _one_of(_SWITCH), "yes or no") for name in LAYERS},
+    "analysis": ("analysis", _one_of(_ANALYSES), f"one of {', '.join(Analysis)}"),
     "palette": ("palette", _one_of(_PALETTES), f"one of {', '.join(_PALETTES)}"),
     "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons"),
     "look": ("chosen", _one_of(_PLACES), f"one of {', '.join(_PLACES)}"),

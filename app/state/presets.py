@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+from app.state.view_state import Analysis
 from engine import Plane, Window
 
 GROUPS = ("The paper", "Places", "Explanations")
@@ -27,7 +28,7 @@ class Preset:
         One of `GROUPS`.
     picture
         Picture of its thumbnail, one of `app.rendering.map_images.TITLES`.
-    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, origins, statistics, measures
+    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, origins, analysis
         As in `ViewState`.
     """
 
@@ -47,8 +48,7 @@ class Preset:
     trust: bool = False
     manifolds: bool = False
     origins: bool = False
-    statistics: bool = False
-    measures: bool = False
+    analysis: Analysis = Analysis.NONE
 
     def values(self) -> dict[str, Any]:
         """Values of the attributes of the view state."""
@@ -251,7 +251,7 @@ PRESETS: tuple[Preset, ...] = (
         "picture and its shares are not affected.",
     ),
     Preset(
-        key="measures", title="How fractal?", group=_EXPLANATIONS, picture="basins", measures=True,
+        key="measures", title="How fractal?", group=_EXPLANATIONS, picture="basins", analysis=Analysis.MEASURES,
         case="II", plane=Plane.X_PX, energy=0.25, t_max=1e4, starts=((0.35, 0.05), (-0.3, 0.1)),
         caption="Hénon and Heiles' potential with three exits. The measures below state how mixed the colours are, whether all "
         "three basins share one boundary, and how slowly a more accurate start reduces the uncertainty: press the "

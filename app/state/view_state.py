@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -46,8 +47,18 @@ def allowed_resolutions() -> dict[str, int]:
     return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
 
 
-SWITCHES = ("judge", "trust", "manifolds", "origins", "statistics", "measures", "energies")
-"""Attributes of the view state that turn analyses on."""
+LAYERS = ("judge", "trust", "manifolds", "origins")
+"""Attributes of the view state that turn follow-up analyses of the map on."""
+
+
+class Analysis(StrEnum):
+    """What is shown below the maps; the values stand in links."""
+
+    NONE = "none"
+    STATISTICS = "statistics"
+    MEASURES = "measures"
+    ENERGIES = "energies"
+
 
 Start = tuple[float, float]
 """x and ordinate of a start in the plane."""
@@ -88,9 +99,7 @@ class ViewState(param.Parameterized):
     trust = param.Boolean(default=False, doc="whether pixels that depend on rounding are marked")
     manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
     origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
-    statistics = param.Boolean(default=False, doc="whether the statistics of the map are shown")
-    measures = param.Boolean(default=False, doc="whether measures of the basins are shown")
-    energies = param.Boolean(default=False, doc="whether curves against energy are shown")
+    analysis = param.Selector(default=Analysis.NONE, objects=list(Analysis), doc="statistics, measures or curves below the maps")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
     starts = _Starts(default=(), doc="starts of up to MOST_ORBITS orbits")
     chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="index of the chosen start")

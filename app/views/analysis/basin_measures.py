@@ -12,9 +12,8 @@ from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
 from bokeh.plotting import figure
 
 from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
-from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.legends import legend
-from app.views.components.plots import COLUMN, TEXT, set_decades, set_range, square_figure, with_help
+from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
 from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
 
@@ -27,15 +26,17 @@ class BasinMeasuresView:
 
     def __init__(self, on_exponent: Callable[[], None]) -> None:
         self.button = button("Measure the uncertainty exponent", on_exponent)
-        self.text = pn.pane.HTML("", name="measures", width=TEXT)
+        self.text = pn.pane.HTML("", name="measures", sizing_mode="stretch_width")
         self._sentences: dict[str, str] = {}
         self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
         self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
         self.pairs = ColumnDataSource({"separation": [], "share": [], "colour": []}, name="pairs")
         self._line = ColumnDataSource({"separation": [], "share": []}, name="exponent_line")
         self.steps = ColumnDataSource({"t": [], "share": []}, name="survival_steps")
+        # Shown when there is something to draw.
+        self._survival = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
+        self._uncertainty = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
         self._laws = {law: ColumnDataSource({"t": [], "share": []}, name=f"{law}_law") for law in LAW_COLOURS}
-        self.section = CollapsibleSection("Basin measures", self._build)
 
     def begin(self) -> None:
         """Remove the measures of the previous map."""
@@ -53,6 +54,7 @@ class BasinMeasuresView:
         """Show S(t) with the fitted laws."""
         self._sentences["Escape law"] = laws.describe()
         self.steps.data = {"t": laws.times, "share": laws.survival}
+        self._survival.visible = laws.times.size > 0
         for fit, source in zip((laws.exponential, laws.power_law), self._laws.values(), strict=True):
             source.data = _law_line(fit)
         seen = laws.survival > 0.0
@@ -72,6 +74,7 @@ class BasinMeasuresView:
         """Show the shares and the fit; None removes them."""
         self.button.disabled = False
         self._sentences.pop("Uncertainty exponent", None)
+        self._uncertainty.visible = found is not None
         if found is None:
             self.pairs.data, self._line.data = {"separation": [], "share": [], "colour": []}, {"separation": [], "share": []}
             return
@@ -96,12 +99,11 @@ class BasinMeasuresView:
         self._sentences["Uncertainty exponent"] = sentence
         self._write()
 
-    def _build(self) -> list[pn.viewable.Viewable]:
-        return [
-            pn.Column(self.button, self.text, width=COLUMN, margin=(0, 6)),
-            with_help(pn.pane.Bokeh(self._draw_uncertainty(), margin=0), "uncertainty"),
-            with_help(pn.pane.Bokeh(self._draw_survival(), margin=0), "survival", self._law_legend()),
-        ]
+    def build(self) -> list[pn.viewable.Viewable]:
+        """Make the content of the section."""
+        self._survival.objects = [pn.pane.Bokeh(self._draw_survival(), margin=0), self._law_legend()]
+        self._uncertainty.objects = [pn.pane.Bokeh(self._draw_uncertainty(), margin=0)]
+        return [pn.Column(self.text, self.button, margin=0), self._survival, self._uncertainty]
 
     def _draw_uncertainty(self) -> figure:
         plot = square_figure(
@@ -125,7 +127,7 @@ class BasinMeasuresView:
 
     def _law_legend(self) -> pn.viewable.Viewable:
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
-        return pn.pane.HTML(legend(entries), width=TEXT, margin=(0, 5))
+        return pn.pane.HTML(legend(entries), margin=(0, 10))
 
     def _write(self) -> None:
         self.text.object = "".join(f"<p><b>{name}.</b> {escape(text)}</p>" for name, text in self._sentences.items())

@@ -12,9 +12,9 @@ from bokeh.models import ColumnDataSource, HoverTool, Line, MultiLine, Range1d, 
 from bokeh.plotting import figure
 
 from app.rendering.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
-from app.views.components.collapsible_section import CollapsibleSection
+from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.legends import legend
-from app.views.components.plots import TEXT, set_range, square_figure, with_help
+from app.views.components.plots import set_range, square_figure
 from app.views.components.widgets import button
 from engine import EnergyCurves
 
@@ -53,8 +53,8 @@ class EnergyCurvesView:
         self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="energy_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
-        self._legend = pn.pane.HTML(width=TEXT, margin=(0, 5))
-        self.section = CollapsibleSection("Against energy", self._build)
+        self._legend = pn.pane.HTML(margin=(0, 10))
+        self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
 
     def follow_energy(self, energy: float) -> None:
         """Mark the energy in view."""
@@ -68,6 +68,9 @@ class EnergyCurvesView:
     def show(self, curves: EnergyCurves | None) -> None:
         """Draw the curves; None removes them."""
         self.shown = curves
+        if curves is not None and not self._plots.objects:
+            self._plots.objects = self._build_plots()
+        self._plots.visible = curves is not None
         if curves is None:
             self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, _NO_SHARES
             self.text.object = ""
@@ -108,15 +111,21 @@ class EnergyCurvesView:
     def _entries(self, channels: int) -> list[Entry]:
         return [Entry("bounded", self._palette.bounded), *self._palette.channel_entries(channels)]
 
-    def _build(self) -> list[pn.viewable.Viewable]:
+    def build(self) -> list[pn.viewable.Viewable]:
+        """Make the button and the place of the plots, which are made with the first curves."""
+        return [pn.Row(self.button, self.text, sizing_mode="stretch_width", css_classes=["whole-row"]), self._plots]
+
+    def _build_plots(self) -> list[pn.viewable.Viewable]:
         below = {
             "shares": [self._legend],
             "entropies": [_key({"S_b": MEASURED, "S_bb": _SECOND, "ln 2": THRESHOLD})],
             "exponents": [_key({"α with its 95 % interval": MEASURED})],
             "escapes": [_key({"mean": MEASURED, "median": _SECOND})],
         }
-        columns = [with_help(pn.pane.Bokeh(plot, margin=0), name, *below[name]) for name, plot in self._draw().items()]
-        return [pn.Row(self.button, self.text, sizing_mode="stretch_width"), *columns]
+        return [
+            pn.Column(pn.pane.Bokeh(plot, margin=0), *below[name], margin=0, sizing_mode="stretch_width")
+            for name, plot in self._draw().items()
+        ]
 
     def _draw(self) -> dict[str, figure]:
         logarithmic = {"escapes": {"y_axis_type": "log"}}
@@ -156,7 +165,7 @@ def _is_dashed(code: int) -> bool:
 
 
 def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
-    return pn.pane.HTML(legend(Entry(label, colour) for label, colour in entries.items()), width=TEXT, margin=(0, 5))
+    return pn.pane.HTML(legend(Entry(label, colour) for label, colour in entries.items()), margin=(0, 10))
 
 
 def _progress(curves: EnergyCurves) -> str:

@@ -22,7 +22,6 @@ _SLIDER = (max(FREQUENCIES[0], 0.2), 2.0)
 _STEP = 0.01
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = "Numbers, x, y, r² and + − * / ^ ( ), for example 0.5(x^2+y^2) - x^2 y. Enter applies it."
-_WIDTH = 520
 
 
 class PotentialPanel:
@@ -40,23 +39,28 @@ class PotentialPanel:
         self._review, self._apply = review, apply
         self._system = System("I")
         known = {f"{entry.title}: {entry.description}": name for name, entry in POTENTIALS.items()}
-        self.known = pn.widgets.Select(label="Potential", options={**known, "Typed": TYPED}, value="I", width=_WIDTH)
-        self.formula = pn.widgets.TextInput(label="V(x, y) =", placeholder=_PLACEHOLDER, width=_WIDTH, max_length=LONGEST_TEXT)
+        self.known = pn.widgets.Select(
+            label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width"
+        )
+        self.formula = pn.widgets.TextInput(
+            label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", max_length=LONGEST_TEXT
+        )
         self.sliders = {
-            name: Slider(label=label, start=_SLIDER[0], end=_SLIDER[1], step=_STEP, value=1.0, format="0.00", width=240)
+            name: Slider(
+                label=label, start=_SLIDER[0], end=_SLIDER[1], step=_STEP, value=1.0, format="0.00", sizing_mode="stretch_width"
+            )
             for name, label in PARAMETERS.items()
         }
         self.reset = button("Reset to 1", lambda: self._apply(System(self._system.case, self._system.formula)))
-        self.message = pn.pane.HTML("", name="potential-message", width=_WIDTH)
-        self.facts = pn.pane.HTML("", name="potential-facts", min_width=320, max_width=700, sizing_mode="stretch_width")
-        self.section = CollapsibleSection("Potential: V = ½(ω1² x² + ω2² y²) + ε V1", self._build)
+        self.message = pn.pane.HTML("", name="potential-message", sizing_mode="stretch_width")
+        self.facts = pn.pane.HTML("", name="potential-facts", sizing_mode="stretch_width")
+        self.section = CollapsibleSection(self._build, "potential")
         self._connect()
 
     def _build(self) -> list[pn.viewable.Viewable]:
-        hint = pn.pane.HTML(f"<span class='quiet'>{_HINT}</span>", margin=(0, 10), width=_WIDTH)
-        choice = pn.Column(self.known, self.formula, hint, self.message, max_width=_WIDTH + 20)
-        parameters = pn.Column(*self.sliders.values(), self.reset, width=270, margin=(0, 20))
-        return [choice, parameters, self.facts]
+        hint = pn.pane.HTML(f"<span class='quiet'>{_HINT}</span>", margin=(0, 10), sizing_mode="stretch_width")
+        parameters = pn.pane.HTML("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 10, 0, 10), sizing_mode="stretch_width")
+        return [self.known, self.formula, hint, self.message, parameters, *self.sliders.values(), self.reset, self.facts]
 
     def follow(self, system: System) -> None:
         """Show the system of the view state."""

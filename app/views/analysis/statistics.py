@@ -8,12 +8,12 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import panel as pn
+from bokeh.models.dom import HTML
 
 from app.rendering.palette import PAPER, Palette
-from app.views.components.collapsible_section import CollapsibleSection
+from app.state.help_texts import title_with_help
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent
-from app.views.components.plots import COLUMN, FRAME, TEXT, with_help
 from app.views.components.widgets import button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
 
@@ -35,13 +35,13 @@ class StatisticsView:
         self._palette = PAPER
         self._frame: EscapeMap | None = None
         self._box: Window | None = None
-        self.table = pn.pane.HTML("", name="statistics", width=TEXT)
-        self.whole = button("Count the whole view", on_whole, disabled=True)
-        self.section = CollapsibleSection("Statistics", self._build)
+        self._active = False
+        self.table = pn.pane.HTML("", name="statistics", sizing_mode="stretch_width")
+        self.whole = button("Count the whole view", on_whole, visible=False)
 
-    def open(self, visible: bool) -> None:
-        """Open or close the section."""
-        self.section.open(visible)
+    def activate(self, active: bool) -> None:
+        """Count while the section is on the page."""
+        self._active = active
         self._count()
 
     def show(self, frame: EscapeMap) -> None:
@@ -54,7 +54,7 @@ class StatisticsView:
         if box == self._box:
             return
         self._box = box
-        self.whole.disabled = box is None
+        self.whole.visible = box is not None
         self._count()
 
     def set_palette(self, palette: Palette) -> None:
@@ -62,15 +62,17 @@ class StatisticsView:
         self._palette = palette
         self._count()
 
-    def _build(self) -> list[pn.viewable.Viewable]:
+    def build(self) -> list[pn.viewable.Viewable]:
+        """Make the content of the section."""
         hv.extension("bokeh")
-        self._times, self._probabilities = _plot(_draw_times()), _plot(_draw_probabilities())
+        self._times = _plot(_draw_times(), "histogram", "Escape times")
+        self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escape probability after n crossings")
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
-        left = pn.Column(self.whole, self.table, width=COLUMN, margin=(0, 6))
-        return [left, with_help(histogram, "histogram"), with_help(probabilities, "probabilities")]
+        left = pn.Column(self.whole, self.table, margin=0, css_classes=["plot"])
+        return [left, histogram, probabilities]
 
     def _count(self) -> None:
-        if self._frame is None or not self.section.is_open:
+        if self._frame is None or not self._active:
             return
         statistics = compute_statistics(self._frame, self._box)
         self.table.object = self._table(statistics)
@@ -109,32 +111,32 @@ class StatisticsView:
 
 def _draw_times() -> hv.Histogram:
     style = {"color": _BAR, "line_color": None, "logx": True, "xlabel": "escape time", "ylabel": "starts"}
-    return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(title="Escape times", **style, **_frame())
+    return hv.Histogram((np.array([1.0, 10.0]), np.zeros(1))).opts(**style, **_frame())
 
 
 def _draw_probabilities() -> hv.Bars:
     bars = hv.Bars([(number, 0.0) for number in _NUMBERS], (CROSSINGS, "upward crossings n"), (PROBABILITY, "p"))
     style = {"color": _BAR, "line_color": None, "ylabel": "p", "ylim": (0.0, 1.0)}
-    return bars.opts(title="Escape probability after n crossings", **style, **_frame())
+    return bars.opts(**style, **_frame())
 
 
 def _frame() -> dict[str, Any]:
-    fonts = {"title": "14px", "labels": "12px", "ticks": "11px"}
-    return {
-        "width": FRAME + 60, "height": FRAME + 20, "fontsize": fonts, "toolbar": None,
-        "hooks": [_simplify],
-    }  # fmt: skip
+    fonts = {"labels": "12px", "ticks": "11px"}
+    return {"responsive": True, "aspect": 1.1, "title": "", "fontsize": fonts, "toolbar": None, "hooks": [_simplify]}
 
 
 def _simplify(plot: Any, _element: Any) -> None:
     """Remove background and ticks, as in `square_figure`."""
+    plot.state.min_border_top = 28
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
     plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
 
 
-def _plot(element: hv.Element) -> Any:
-    """The plot of an element; to change its data is 20 times faster than to draw it again."""
-    return hv.renderer("bokeh").get_plot(element)
+def _plot(element: hv.Element, name: str, title: str) -> Any:
+    """The plot of an element, with its help text; to change its data is 20 times faster than to draw it again."""
+    plot = hv.renderer("bokeh").get_plot(element)
+    plot.state.elements = [HTML(html=title_with_help(title, name))]
+    return plot
 
 
 def _number(value: float) -> str:

@@ -1,41 +1,121 @@
-"""A part of the page that is built when it is first opened."""
+"""Parts of the page that are built when they are first shown."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import panel as pn
 
-from app.views.components.flex_row import FULL_HEIGHT, flex_row
+from app.views.components.flex_row import FULL_HEIGHT
+from app.views.components.widgets import button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
 """Makes the content of a section."""
 
 
-class CollapsibleSection:
-    """A title over a row that wraps, made by `build` at the first opening; while it is closed it is not on the page."""
+class Stack:
+    """A column that shows one of several contents, or none; a content that is not shown is not on the page.
 
-    def __init__(self, title: str, build: Build) -> None:
-        self._title, self._build = title, build
-        self._content: list[pn.viewable.Viewable] = []
-        self._column = pn.Column(sizing_mode="stretch_width", styles=FULL_HEIGHT, visible=False)
+    Parameters
+    ----------
+    builds
+        Makers of the contents by name, each called when its content is first shown.
+    css_class
+        Class of the column in the stylesheet, which arranges the content.
+    head
+        Parts that stay above the content.
+    """
+
+    def __init__(self, builds: Mapping[str, Build], css_class: str, head: Sequence[pn.viewable.Viewable] = ()) -> None:
+        self._builds, self._head = builds, head
+        self._contents: dict[str, list[pn.viewable.Viewable]] = {}
+        self._column = pn.Column(
+            *head, sizing_mode="stretch_width", styles=FULL_HEIGHT, visible=bool(head), margin=0, css_classes=[css_class]
+        )
+        self.shown: str | None = None
 
     def layout(self) -> pn.viewable.Viewable:
-        """The section as a part of the page."""
+        """The column as a part of the page."""
         return self._column
+
+    def show(self, name: str | None) -> None:
+        """Put a content on the page in place of the present one; None for no content."""
+        self.shown = name
+        if name is not None and name not in self._contents:
+            self._contents[name] = [*self._builds[name]()]
+        parts = [*self._head, *(self._contents[name] if name is not None else [])]
+        self._column.param.update(objects=parts, visible=bool(parts))
+
+    def toggle(self, name: str) -> None:
+        """Show a content, or take it off the page."""
+        self.show(None if self.shown == name else name)
+
+
+class CollapsibleSection(Stack):
+    """A column with one content that opens and closes."""
+
+    def __init__(self, build: Build, css_class: str) -> None:
+        super().__init__({"content": build}, css_class)
 
     @property
     def is_open(self) -> bool:
         """Whether the content is on the page."""
-        return bool(self._column.objects)
+        return self.shown is not None
 
     def open(self, visible: bool) -> None:
         """Put the content on the page, or take it off."""
-        if visible and not self._content:
-            head = pn.pane.HTML(f"<h2>{self._title}</h2>", margin=(16, 10, 4, 10))
-            self._content = [head, flex_row(*self._build(), justify="center")]
-        self._column.param.update(objects=self._content if visible else [], visible=visible)
+        self.show("content" if visible else None)
 
-    def toggle(self) -> None:
-        """Open the section, or close it."""
-        self.open(not self.is_open)
+
+class Fold(CollapsibleSection):
+    """A section under a button with its title."""
+
+    def __init__(self, title: str, build: Build, *, is_open: bool = False) -> None:
+        super().__init__(build, "fold")
+        self._title = title
+        self.button = button("", lambda: self.toggle("content"), kind="light", margin=0, css_classes=["fold-title"])
+        self.open(is_open)
+
+    def parts(self) -> list[pn.viewable.Viewable]:
+        """The button and the section."""
+        return [self.button, self.layout()]
+
+    def show(self, name: str | None) -> None:
+        """Put the content on the page, or take it off."""
+        super().show(name)
+        self.button.label = f"{'▾' if self.is_open else '▸'} {self._title}"
+
+
+class Drawers(Stack):
+    """Titled sections over the controls, of which at most one is open, and the buttons that open them.
+
+    Parameters
+    ----------
+    drawers
+        Label of the button, title and maker of each drawer, by name.
+    """
+
+    def __init__(self, drawers: Mapping[str, tuple[str, str, Build]]) -> None:
+        super().__init__({name: self._with_head(title, build) for name, (_, title, build) in drawers.items()}, "drawer")
+        options = {label: name for name, (label, _, _) in drawers.items()}
+        self.buttons = pn.widgets.CheckButtonGroup(options=options, color="light", margin=0)
+        self.buttons.param.watch(self._press, "value")
+
+    def show(self, name: str | None) -> None:
+        """Open a drawer and close the others; None closes all."""
+        super().show(name)
+        self.buttons.value = [] if name is None else [name]
+
+    def _press(self, event: Any) -> None:
+        pressed = [name for name in event.new if name != self.shown]
+        if event.new != ([] if self.shown is None else [self.shown]):
+            self.show(pressed[-1] if pressed else None)
+
+    def _with_head(self, title: str, build: Build) -> Build:
+        def build_all() -> list[pn.viewable.Viewable]:
+            head = pn.pane.HTML(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=(5, 0))
+            close = button("Close", lambda: self.show(None), kind="light", margin=0)
+            return [pn.Row(head, close, sizing_mode="stretch_width", margin=0), *build()]
+
+        return build_all

@@ -25,6 +25,8 @@ class CurveLayers:
         self._critical = ColumnDataSource({"xs": [], "ys": []}, name="critical_equipotential")
         self._exits = ColumnDataSource({"xs": [], "ys": [], "colour": []}, name="lyapunov_orbits")
         self._labels = ColumnDataSource({"x": [], "y": [], "text": [], "colour": []}, name="channel_numbers")
+        # Figures that the Lyapunov orbits are still to be added to, and whether with numbers: when there are some.
+        self._without_exits: list[tuple[figure, bool]] = []
         self._palette: Palette = PAPER
         self._inks: Inks = LIGHT
         # Glyphs whose colour depends on the theme, by the name of the colour in `Inks`.
@@ -36,12 +38,17 @@ class CurveLayers:
             self._draw_inked(plot, self._levels, "equipotential", 1.0)
             self._draw_inked(plot, self._critical, "critical_equipotential", 1.5)
         self._draw_inked(plot, self._limit, "limiting_curve", 2.0 if full else 1.0)
-        plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
-        plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
-        if full:
-            number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
-            number.text_font_style = "bold"
-            plot.add_glyph(self._labels, number)
+        self._without_exits.append((plot, full))
+
+    def _draw_exits(self) -> None:
+        plots, self._without_exits = self._without_exits, []
+        for plot, numbered in plots:
+            plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
+            plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
+            if numbered:
+                number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
+                number.text_font_style = "bold"
+                plot.add_glyph(self._labels, number)
 
     def _draw_inked(self, plot: figure, source: ColumnDataSource, ink: str, width: float) -> None:
         line = MultiLine(line_color=getattr(self._inks, ink), line_width=width)
@@ -72,6 +79,8 @@ class CurveLayers:
             self._levels.data = _lines([line for lines in others for line in lines])
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
+        if orbits:
+            self._draw_exits()
         colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]

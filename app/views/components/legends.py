@@ -12,10 +12,14 @@ def patch(colour: str) -> str:
     return f"<span class='patch' style='background:{colour}'></span>"
 
 
+def legend_items(entries: Iterable[Entry]) -> str:
+    """HTML of the entries of a legend."""
+    return "".join(f"<span>{patch(entry.colour)}{entry.label}</span>" for entry in entries)
+
+
 def legend(entries: Iterable[Entry]) -> str:
     """HTML of a legend that wraps."""
-    items = "".join(f"<span>{patch(entry.colour)}{entry.label}</span>" for entry in entries)
-    return f"<div class='legend'>{items}</div>"
+    return f"<div class='legend'>{legend_items(entries)}</div>"
 
 
 def passage_legend(palette: Palette, channels: int) -> str:

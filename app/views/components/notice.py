@@ -1,4 +1,4 @@
-"""Short messages in the corner of the page: passing ones, and lasting ones about the connection to the server."""
+"""Short messages in the corner of the page: passing ones, warnings, and lasting ones about the connection to the server."""
 
 from __future__ import annotations
 
@@ -43,6 +43,15 @@ class Notice:
         # The number makes the same message twice two changes.
         self._pane.object = _html(sentence, f"class='notice passing' data-number='{next(self._numbers)}'")
 
+    def warn(self, sentence: str) -> None:
+        """Show a warning until `clear`."""
+        self._pane.object = _html(sentence, "class='notice alert'", role="alert")
+
+    def clear(self) -> None:
+        """Remove a warning."""
+        if self._pane.object:
+            self._pane.object = ""
+
 
 def show_lasting_notice(document: Document, sentence: str) -> None:
     """Show a message on the page of a document until the page is reloaded; needs the document's lock."""
@@ -58,5 +67,5 @@ def watch_connection(document: Document) -> None:
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
 
 
-def _html(sentence: str, attributes: str = "class='notice'") -> str:
-    return f"<div role='status' {attributes}>{escape(sentence)}</div>"
+def _html(sentence: str, attributes: str = "class='notice'", role: str = "status") -> str:
+    return f"<div role='{role}' {attributes}>{escape(sentence)}</div>"

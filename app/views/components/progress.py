@@ -1,9 +1,8 @@
-"""Progress of the map: a bar, a line of text, the button that stops or continues it, and error messages."""
+"""Progress of the map: a bar, a line of text, and the button that stops or continues it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 
 import numpy as np
 import panel as pn
@@ -28,22 +27,17 @@ class ProgressView:
     def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None]) -> None:
         self._on_cancel, self._on_resume = on_cancel, on_resume
         self._running = False
-        self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=6, margin=(4, 10, 2, 10))
-        self.text = pn.pane.HTML("", name="progress", margin=(6, 10, 0, 10), sizing_mode="stretch_width")
-        self.button = button(STOP, self._press, width=96, disabled=True)
-        self.problem = pn.pane.HTML("", name="problem", visible=False, sizing_mode="stretch_width", margin=(4, 10))
+        self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
+        self.text = pn.pane.HTML("", name="progress", margin=0, css_classes=["status"])
+        self.button = button(STOP, self._press, margin=0, visible=False)
 
-    def layout(self) -> pn.viewable.Viewable:
-        """The button beside the bar and its text, and the error message below."""
-        stage = pn.Column(self.text, self.bar, sizing_mode="stretch_width", margin=0)
-        return pn.Column(
-            pn.Row(self.button, stage, sizing_mode="stretch_width"), self.problem, sizing_mode="stretch_width", max_width=900
-        )
+    def layout(self) -> list[pn.viewable.Viewable]:
+        """The text and the button that stand in one line."""
+        return [self.text, self.button]
 
     def start(self, *, compiling: bool = False) -> None:
         """A new map is requested; `compiling` says that its kernels are compiled first."""
         self._set(running=True, label=STOP, text=_COMPILING if compiling else "Starting …")
-        self.problem.visible = False
 
     def show(self, frame: EscapeMap) -> None:
         """Show how far a frame is, and the shares of a complete map."""
@@ -57,16 +51,11 @@ class ProgressView:
     def stop(self) -> None:
         """The map is stopped and can be continued."""
         self._set(running=False, label=CONTINUE, text=f"Stopped: {self.text.object}")
-        self.button.disabled = False
+        self.button.visible = True
 
-    def warn(self, sentence: str) -> None:
-        """Show a message; the map is not affected."""
-        self.problem.param.update(object=f"<div class='alert' role='alert'>{escape(sentence)}</div>", visible=True)
-
-    def fail(self, sentence: str) -> None:
-        """There is no map: show why; the last picture stays."""
+    def fail(self) -> None:
+        """There is no map; the last picture stays."""
         self._set(running=False, label=STOP, text="")
-        self.warn(sentence)
 
     def _press(self) -> None:
         if self._running:
@@ -78,7 +67,7 @@ class ProgressView:
         self._running = running
         # Unlike `visible`, this does not move the maps below.
         self.bar.styles = {"opacity": "1" if running else "0"}
-        self.button.param.update(label=label, disabled=not running)
+        self.button.param.update(label=label, visible=running)
         self.text.object = text
 
 

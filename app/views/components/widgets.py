@@ -28,7 +28,7 @@ class SegmentedControl(_NamedGroup, pn.widgets.RadioBoxGroup):
     _role = "radiogroup"
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(inline=True, css_classes=["segmented"], **options)
+        super().__init__(inline=True, **({"css_classes": ["segmented"]} | options))
 
 
 class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):

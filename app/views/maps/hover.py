@@ -31,7 +31,7 @@ _TEXT = (
 
 
 def pixel_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
-    """A tool that shows the fate of the orbit under the mouse; the caller sets its renderers.
+    """A tool that shows the fate of the orbit under the mouse; the caller adds to its renderers.
 
     One formatter reads all columns, as Bokeh does not call formatters for NaN, the escape time of bounded orbits.
     """
@@ -48,4 +48,4 @@ def pixel_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> Hove
         "$x": CustomJSHover(args={"range": x}, code=_PLACE),
         "$y": CustomJSHover(args={"range": ordinate}, code=_PLACE),
     }
-    return HoverTool(tooltips=_TEXT, formatters=formatters, attachment="vertical", visible=False)
+    return HoverTool(tooltips=_TEXT, formatters=formatters, attachment="vertical", renderers=[])

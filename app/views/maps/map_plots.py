@@ -4,26 +4,53 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import astuple
+from functools import partial
 from typing import Any
 
 import numpy as np
 import panel as pn
 from bokeh.events import DoubleTap, RangesUpdate, SelectionGeometry, Tap
-from bokeh.models import ColorBar, ColumnDataSource, Image, LinearColorMapper, LogColorMapper, Range1d, Span
+from bokeh.models import (
+    BoxSelectTool,
+    BoxZoomTool,
+    ColumnDataSource,
+    CrosshairTool,
+    HoverTool,
+    Image,
+    LinearColorMapper,
+    LogColorMapper,
+    PanTool,
+    Range1d,
+    Span,
+    Toolbar,
+    WheelZoomTool,
+)  # fmt: skip
 from bokeh.plotting import figure
 
 from app.rendering.image_columns import character_column, longest_typical_time, passage_column
 from app.rendering.map_images import DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
-from app.rendering.palette import DARK, LIGHT, PAPER, Palette
+from app.rendering.palette import PAPER, Palette
 from app.views.components.curve_layers import CurveLayers
-from app.views.components.flex_row import flex_row
-from app.views.components.legends import legend, passage_legend
+from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.numbers import percent
-from app.views.components.plots import TEXT, map_figure, with_help
+from app.views.components.plots import square_figure
+from app.views.components.widgets import SegmentedControl
 from app.views.maps.hover import pixel_hover
+from app.views.maps.map_legend import MapLegend
+from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
+
+SHORT_TITLES = {
+    "curves": "Exits",
+    "basins": "Basins",
+    "times": "Times",
+    "crossings": "Crossings",
+    "characters": "Chaos",
+    "origins": "Origins",
+}
+"""Titles of the pictures where there is little room."""
 
 REST_MS = 90
 """A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
@@ -52,7 +79,6 @@ class MapsView:
         self.outlines, self.overlays, self.marks = CurveLayers(), Overlays(), Markers()
         self._palette = PAPER
         self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
-        self._colour_bar = ColorBar(color_mapper=self._time_mapper, height=8, padding=4, title="t", background_fill_alpha=0.0)
         self._mappers = {name: LinearColorMapper() for name in TITLES}
         self._spec: MapSpec | None = None
         self._regularity_text = ""
@@ -61,22 +87,25 @@ class MapsView:
         self._following = False
         self._on_zoom = on_zoom
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
-        self._spans = Span(dimension="width", line_alpha=0.35), Span(dimension="height", line_alpha=0.35)
         self._hover = pixel_hover(self.source, *self._ranges)
+        self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
+        self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover)
         self._on_tap, self._on_box = on_tap, on_box
         self.figures: dict[str, figure] = {}
-        self._legends: dict[str, pn.pane.HTML] = {}
-        self._columns: dict[str, pn.viewable.Viewable] = {}
+        self._panes: dict[str, pn.pane.Bokeh] = {}
         for edges in self._ranges:
             edges.on_change("start", self._moved)
             edges.on_change("end", self._moved)
-        self._row = flex_row(justify="center")
+        self.legend = MapLegend()
+        self.picker = SegmentedControl(label="Map", value="basins", css_classes=["segmented", "map-picker"], visible=False)
+        self.picker.param.watch(lambda event: self._pick(), "value")
+        self._grid = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["maps"])
         self.show_pictures(frozenset())
         self.set_palette(PAPER)
 
-    def layout(self) -> pn.viewable.Viewable:
-        """The pictures in a row that wraps."""
-        return self._row
+    def layout(self) -> list[pn.viewable.Viewable]:
+        """The pictures and their legend."""
+        return [self._grid, self.legend.pane]
 
     def show_pictures(self, on_demand: frozenset[str]) -> None:
         """Show some of the pictures `ON_DEMAND` beside the others."""
@@ -85,8 +114,23 @@ class MapsView:
             if name not in self.figures:
                 self._build(name)
         # Hidden pictures would still be painted with every frame.
-        self._row.objects = [self._columns[name] for name in shown]
+        self._grid.objects = [*self._picker(), *(self._panes[name] for name in shown)]
+        picked = self.picker.value if self.picker.value in shown else "basins"
+        self.picker.param.update(options={SHORT_TITLES[name]: name for name in shown}, value=picked)
+        self._pick()
         self.describe()
+
+    def begin_touch(self) -> None:
+        """The page is used by touch: on a narrow screen one picture is shown, chosen with the picker."""
+        self.picker.visible = True
+        self._grid.objects = [*self._picker(), *self._grid.objects]
+
+    def set_drag(self, drag: Drag) -> None:
+        """Choose what dragging over a picture does."""
+        if drag in _BOX_TOOLS and drag not in self._drags:
+            self._drags[drag] = _BOX_TOOLS[drag]()
+            self._toolbar.tools = [*self._toolbar.tools, self._drags[drag]]
+        self._toolbar.active_drag = self._drags.get(drag)
 
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, preview: bool = False) -> None:
         """Paint a frame; the ranges follow a new window. A preview changes as little as possible."""
@@ -99,6 +143,7 @@ class MapsView:
                 self.describe()
         if frame.stride == 1 and not preview:
             self._time_mapper.high = longest_typical_time(frame)
+            self._show_legend()
         self.source.data = columns
 
     def show_origins(self, origins: OriginFateMap) -> None:
@@ -109,8 +154,7 @@ class MapsView:
         """Paint which bounded orbits are regular and which are chaotic, as far as known."""
         self.source.data = {**self.source.data, **character_column(frame, regularity)}
         self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
-        if "characters" in self._legends:
-            self._legends["characters"].object = self._character_legend()
+        self._show_legend()
 
     def set_palette(self, palette: Palette) -> None:
         """Set all colours."""
@@ -125,9 +169,6 @@ class MapsView:
 
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
-        inks = DARK if dark else LIGHT
-        # The text of a colour bar does not follow the stylesheet.
-        self._colour_bar.update(title_text_color=inks.quiet, major_label_text_color=inks.quiet)
         self.outlines.set_dark(dark)
         self.describe()
 
@@ -145,9 +186,6 @@ class MapsView:
             return x, ordinate
         columns, rows = self._spec.pixel_centres()
         return float(columns[pixel[1]]), float(rows[pixel[0]])
-
-    def _character_legend(self) -> str:
-        return legend(self._palette.character_entries) + f"<div class='legend'>{self._regularity_text}</div>"
 
     def _follow(self, spec: MapSpec) -> None:
         """Go to the window of a new map, unless the ranges are being moved."""
@@ -193,28 +231,44 @@ class MapsView:
         self._following = False
 
     def describe(self) -> None:
-        """Update axis names, outlines and legends."""
-        spec, palette = self._spec, self._palette
+        """Update axis names, outlines and the legend."""
+        spec = self._spec
         if spec is None:
             return
         for plot in self.figures.values():
             plot.yaxis.axis_label = spec.plane.ordinate
         self.outlines.show(spec)
-        outcomes = [entry for fate, entry in palette.outcomes.items() if fate is not Fate.FAILED]
-        texts = {
-            "curves": legend([*self.outlines.entries(spec), *outcomes[1:3]]),
-            "basins": legend([*palette.channel_entries(spec.potential.channels), *reversed(outcomes), *self.overlays.entries()]),
-            "times": legend(list(reversed(outcomes))),
-            "crossings": legend([*palette.crossing_entries, *reversed(outcomes)]),
-            "characters": self._character_legend(),
-            "origins": passage_legend(palette, spec.potential.channels),
-        }
-        for name, pane in self._legends.items():
-            pane.object = texts[name]
+        self._show_legend()
+
+    def _show_legend(self) -> None:
+        spec = self._spec
+        if spec is None:
+            return
+        shown = [name for name, pane in self._panes.items() if pane in self._grid.objects]
+        self.legend.show(
+            spec,
+            self._palette,
+            self._time_mapper.high,
+            [*self.outlines.entries(spec), *self.overlays.entries()],
+            regularity=self._regularity_text if "characters" in shown else None,
+            origins="origins" in shown,
+        )
+
+    def _picker(self) -> list[pn.viewable.Viewable]:
+        return [self.picker] if self.picker.visible else []
+
+    def _pick(self) -> None:
+        """Mark the picture that narrow screens show."""
+        for name, pane in self._panes.items():
+            pane.css_classes = ["map", "picked"] if name == self.picker.value else ["map"]
 
     def _build(self, name: str) -> None:
-        """Make a picture with its legend and help text."""
-        plot = self.figures[name] = map_figure(name, TITLES[name], self._ranges, self._spans)
+        """Make a picture with its title and help text."""
+        x, y = self._ranges
+        plot = self.figures[name] = square_figure(
+            name, TITLES[name], x_range=x, y_range=y, x_axis_label="x", tools="", toolbar_location=None
+        )
+        plot.toolbar = self._toolbar
         self._paint(name)
         # Two quick clicks, even at two places, are one tap and one double tap.
         for tap in (Tap, DoubleTap):
@@ -223,8 +277,7 @@ class MapsView:
         if name == "curves":
             # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
             plot.on_event(RangesUpdate, lambda event: self._rested())
-        self._legends[name] = pn.pane.HTML(width=TEXT, margin=(0, 5))
-        self._columns[name] = with_help(pn.pane.Bokeh(plot, margin=0), name, self._legends[name])
+        self._panes[name] = pn.pane.Bokeh(plot, margin=0)
 
     def _paint(self, name: str) -> None:
         """Add the images and lines of a picture, from back to front."""
@@ -232,12 +285,22 @@ class MapsView:
         image = plot.add_glyph(self.source, Image(image=column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if name == "times":
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
-            plot.add_layout(self._colour_bar, "below")
-        plot.add_tools(self._hover.clone(renderers=[image]))
+        self._hover.renderers = [*self._hover.renderers, image]
         self.outlines.draw(plot, full=name == "curves")
         if name == "curves" or name in DOUBTED:
             self.overlays.draw(plot, doubts=name in DOUBTED, coloured=name == "curves")
         self.marks.draw(plot, sections=name in ("curves", "basins"))
+
+
+# The box selects pixels to count; without renderers the image keeps its look.
+_BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: partial(BoxSelectTool, renderers=[])}
+
+
+def _toolbar(pan: PanTool, hover: HoverTool) -> Toolbar:
+    """The tools of all pictures."""
+    wheel = WheelZoomTool()
+    spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
+    return Toolbar(tools=[pan, wheel, CrosshairTool(overlay=spans), hover], active_drag=pan, active_scroll=wheel)
 
 
 def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:

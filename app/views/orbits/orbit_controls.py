@@ -11,13 +11,13 @@ import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.rendering.palette import PAPER, PATCH_EDGE, Palette
-from app.views.components.flex_row import flex_row
+from app.views.components.collapsible_section import Fold
+from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, button
 from engine import IndicatorVerdict, Orbit, Plane
 
-HINT = "Click any map, or type a start, to see its orbit, SALI and R². Up to five orbits."
-_WIDTH = 350
-_BOX = 155
+HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
+_BOX = 130
 
 
 @dataclass(frozen=True)
@@ -41,27 +41,30 @@ class OrbitControls:
         self._shown: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
         self.x = pn.widgets.FloatInput(label="x", value=0.0, step=0.01, format=NUMBER_FORMAT, width=_BOX)
         self.ordinate = pn.widgets.FloatInput(label="px", value=0.0, step=0.01, format=NUMBER_FORMAT, width=_BOX)
-        self.button = button("Integrate", self._submit, kind="primary", width=2 * _BOX + 20)
+        self.button = button("Integrate", self._submit, kind="primary", align="end")
         self.choice = SegmentedControl(label="Orbit", options=[], visible=False)
         self.divergent_start = button("Find its twin", actions.find_divergent_start, margin=0)
         self.remove = button("Remove", actions.remove, margin=0)
         self.clear = button("Clear all", actions.clear, margin=0)
         self.open_plane = button("Open (x, px) at this h", actions.open_plane, margin=0)
-        self.note = pn.pane.HTML("", name="note", sizing_mode="stretch_width")
-        self.text = pn.pane.HTML(HINT, name="verdict", sizing_mode="stretch_width")
-        self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width")
+        self.note = pn.pane.HTML(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
+        self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10))
+        self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
         self.choice.param.watch(lambda event: self._choose(event.new), "value")
         self._enable()
 
-    def layout(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """A column as wide as a picture, with the player of the orbits."""
-        title = pn.pane.HTML("<h2>Orbits</h2>")
-        starts = pn.Row(self.x, self.ordinate, margin=0)
+    def entry(self) -> list[pn.viewable.Viewable]:
+        """The hint or message, and the boxes to type a start."""
+        boxes = Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")])
+        return [self.note, *boxes.parts()]
+
+    def values(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
+        """The list of orbits, buttons, the player, and the values and verdicts of the chosen one."""
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
         buttons.margin = (5, 10)
         return pn.Column(
-            title, starts, self.button, self.choice, buttons, self.note, playback, self.text, self.indicators,
-            width=_WIDTH, margin=(0, 6),
+            self.choice, buttons, self.text, playback, self.indicators,
+            sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["orbit-values"],
         )  # fmt: skip
 
     def follow_plane(self, plane: Plane) -> None:
@@ -91,13 +94,12 @@ class OrbitControls:
         """Show the list of orbits, and the values and verdict of the chosen one."""
         starts = [one.start for one in orbits], chosen
         if starts != ([one.start for one in self._shown[0]], self._shown[1]):
-            self.note.object = ""
+            self.note.object = "" if orbits else HINT
         self._shown = (tuple(orbits), chosen)
         numbers = [str(place + 1) for place in range(len(orbits))]
         self.choice.param.update(options=numbers, value=numbers[chosen] if orbits else None, visible=len(orbits) > 1)
         self._enable()
         if not orbits:
-            self.note.object, self.text.object = "", HINT
             return
         one = orbits[chosen]
         self.x.value, self.ordinate.value = one.start

@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
 from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 from app.views.components.curve_layers import CurveLayers
-from app.views.components.plots import set_decades, set_range, square_figure, with_help
+from app.views.components.plots import set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
 
 TITLES = {
@@ -48,9 +48,8 @@ class OrbitPlots:
         self.set_palette(PAPER)
 
     def build(self) -> list[pn.viewable.Viewable]:
-        """Make the figures: path, SALI, R² and Lyapunov exponent, each with its help text."""
-        plots = (self._draw_path(), *self._draw_histories())
-        return [with_help(pn.pane.Bokeh(plot, margin=0), plot.name) for plot in plots]
+        """Make the figures: path, SALI, R² and Lyapunov exponent."""
+        return [pn.pane.Bokeh(plot, margin=0) for plot in (self._draw_path(), *self._draw_histories())]
 
     def show(self, potential: Potential, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
         """Draw orbits, highlighting the chosen one; None for orbits that are not known yet."""

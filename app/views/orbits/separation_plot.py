@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, Line, Range1d, Title
+from bokeh.models import ColumnDataSource, Line, Range1d
 
 from app.rendering.palette import PAPER, Palette
-from app.views.components.plots import set_range, square_figure, with_help
+from app.views.components.plots import set_range, square_figure
 from engine import Separation
 
 TITLE = "Distance of two orbits"
@@ -19,31 +19,30 @@ class SeparationPlot:
 
     def __init__(self) -> None:
         self._times, self._distances = Range1d(0.0, 10.0), Range1d(LEAST, 10.0)
-        self._title = Title(text=TITLE, text_font_size="14px")
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
+        self._pair = pn.pane.HTML("", name="pair", margin=(0, 10), css_classes=["quiet"])
         self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
 
     def build(self) -> pn.viewable.Viewable:
-        """Make the figure with its help text."""
+        """Make the figure, and the line that names the orbits."""
         plot = square_figure(
             "separation", TITLE, y_axis_type="log", x_axis_label="t", y_axis_label="distance",
             x_range=self._times, y_range=self._distances,
         )  # fmt: skip
-        plot.title = self._title
         plot.add_glyph(self._source, self._line)
-        return with_help(pn.pane.Bokeh(plot, margin=0), "distance")
+        return pn.Column(pn.pane.Bokeh(plot, margin=0), self._pair, margin=0, sizing_mode="stretch_width")
 
     def show(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         """Draw the distance of two orbits, given by their places in the list; None removes it."""
         if pair is None or separation is None:
             self._source.data = {"t": [], "distance": []}
-            self._title.text = TITLE
+            self._pair.object = ""
             return
         distance = np.maximum(separation.distance, LEAST)
         self._source.data = {"t": separation.t, "distance": distance}
         set_range(self._times, 0.0, float(separation.t[-1]))
         set_range(self._distances, 0.5 * float(distance.min()), 10.0)
-        self._title.text = f"Distance of orbits {pair[0] + 1} and {pair[1] + 1}"
+        self._pair.object = f"Orbits {pair[0] + 1} and {pair[1] + 1}"
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colour of the line."""

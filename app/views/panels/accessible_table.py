@@ -9,26 +9,24 @@ import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
+from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import percent
-from engine import EscapeMap, EscapeStatistics, Fate, compute_statistics
+from engine import EscapeMap, Fate, compute_statistics
 
 
 class AccessibleTable:
-    """A collapsed table of what the page shows."""
+    """A table of what the page shows, written while it is open."""
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
-        self._statistics: EscapeStatistics | None = None
+        self._frame: EscapeMap | None = None
         self._orbits: Sequence[ChosenOrbit] = ()
-        self.text = pn.pane.HTML("", name="accessible-table", sizing_mode="stretch_width", margin=(4, 10))
-
-    def layout(self) -> pn.viewable.Viewable:
-        """The table under its summary."""
-        return self.text
+        self.text = pn.pane.HTML("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
+        self.fold = Fold("This page as a table", self._build)
 
     def show_map(self, frame: EscapeMap) -> None:
         """Set the map."""
-        self._statistics = compute_statistics(frame)
+        self._frame = frame
         self._write()
 
     def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
@@ -36,12 +34,19 @@ class AccessibleTable:
         self._orbits = orbits
         self._write()
 
+    def _build(self) -> list[pn.viewable.Viewable]:
+        self._fill()
+        return [self.text]
+
     def _write(self) -> None:
+        if self.fold.is_open:
+            self._fill()
+
+    def _fill(self) -> None:
         cells = (*self._view(), *self._map(), *self._chosen())
         rows = "".join(f"<tr><th scope=row>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in cells)
         head = "<tr><th scope=col>quantity</th><th scope=col>value</th></tr>"
-        table = f"<table><caption>What is shown</caption>{head}{rows}</table>"
-        self.text.object = f"<details><summary>This page as a table</summary>{table}</details>"
+        self.text.object = f"<table><caption>What is shown</caption>{head}{rows}</table>"
 
     def _view(self) -> list[tuple[str, str]]:
         state, system = self._state, self._state.system
@@ -54,9 +59,9 @@ class AccessibleTable:
         return [*rows, ("energy h", f"{state.energy!r}")]
 
     def _map(self) -> list[tuple[str, str]]:
-        statistics = self._statistics
-        if statistics is None:
+        if self._frame is None:
             return []
+        statistics = compute_statistics(self._frame)
         shares = statistics.shares
         rows = [(f"escape through channel {k}", percent(shares[k], 2)) for k in range(1, len(statistics.channel_counts) + 1)]
         rows += [("bounded", percent(shares[Fate.BOUNDED], 2)), ("direct escapes", percent(statistics.direct_share, 2))]

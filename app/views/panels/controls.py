@@ -1,4 +1,4 @@
-"""The controls of the map: system, plane and energy; t_max, resolution and colours."""
+"""The controls of the map: system, plane and energy; t_max, resolution and colours; layers."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from app.rendering.palette import PALETTES
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import EnergyRange
 from app.state.system import SYSTEM, System
-from app.state.view_state import RESOLUTION_CHOICES, T_MAX_CHOICES, ViewState
-from app.views.components.flex_row import flex_row
+from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
+from app.views.components.analysis_choice import LayerSwitches
+from app.views.components.collapsible_section import Fold
 from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, button
 from engine import CASES, Plane
 
@@ -65,42 +66,70 @@ class Controls:
         self._actions = actions
         self._previewed = False
         self._animating = False
-        self.case = SegmentedControl(label="Case", options=list(CASES), value=self._case(), margin=(5, 0, 5, 10))
-        self.other = button("Other …", actions.choose_potential, kind="light", margin=(5, 10, 5, 4))
-        self.plane = SegmentedControl(label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane)
-        self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
-        self.play = button(PLAY, actions.play, width=84)
-        self.exact_energy = pn.widgets.FloatInput(label="Exact h", value=state.energy, format=NUMBER_FORMAT, width=140)
-        self.t_max = pn.widgets.Select(label="t_max", options=T_MAX_CHOICES, value=state.t_max, width=120)
-        self.resolution = pn.widgets.Select(label="Resolution", options=RESOLUTION_CHOICES, value=state.resolution, width=130)
-        self.palette = pn.widgets.Select(
-            label="Colours", options={palette.name: key for key, palette in PALETTES.items()}, value=state.palette, width=170
+        self.case = SegmentedControl(
+            label="Case", options=list(CASES), value=self._case(), css_classes=["segmented", "half"], margin=(0, 0, 0, 10)
         )
-        self.facts = pn.pane.HTML(margin=(0, 10))
-        self._energy_column = pn.Column(min_width=300, max_width=620, sizing_mode="stretch_width", styles={"flex": "1 1 300px"})
+        self.other = button("Other …", actions.choose_potential, kind="light", css_classes=["half"], margin=(0, 10, 0, 4))
+        self.plane = SegmentedControl(
+            label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, margin=(8, 10)
+        )
+        self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
+        self.play = button(PLAY, actions.play, width=84, css_classes=["half"], margin=(0, 10), align="end")
+        self.exact_energy = pn.widgets.FloatInput(
+            label="Exact h",
+            value=state.energy,
+            format=NUMBER_FORMAT,
+            sizing_mode="stretch_width",
+            css_classes=["half"],
+            margin=(0, 0, 0, 10),
+        )
+        self.facts = pn.pane.HTML(margin=(6, 10), sizing_mode="stretch_width")
+        self.layers = LayerSwitches(state)
+        self._folds = [
+            Fold("Quality and colours", self._build_quality),
+            Fold("Layers", lambda: [self.layers.switches], is_open=True),
+        ]
+        self._energy_column = pn.Column(sizing_mode="stretch_width", margin=0)
         self._follow_system()
         self._connect()
 
-    def layout(self) -> pn.viewable.Viewable:
-        """Two rows that wrap on narrow screens: what is shown, and how it is computed."""
-        what = (pn.Row(self.case, self.other, margin=0), self.plane, self._energy_column, self.play, self.exact_energy)
-        how = (self.t_max, self.resolution, self.palette, self.facts)
-        return pn.Column(
-            flex_row(*what, align="center", gap="6px"), flex_row(*how, align="center", gap="6px"), sizing_mode="stretch_width"
+    def layout(self, potential: pn.viewable.Viewable) -> list[pn.viewable.Viewable]:
+        """Parts of a column: the system with the choice of other potentials, plane, energy, quality and layers."""
+        system = [self.case, self.other, self.facts, potential, self.plane]
+        energy = [self._energy_column, self.exact_energy, self.play]
+        return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
+
+    def begin_touch(self) -> None:
+        """The page is used by touch: leave more room for the maps."""
+        for fold in self._folds:
+            fold.open(False)
+
+    def _build_quality(self) -> list[pn.viewable.Viewable]:
+        """Make the lists of what costs time, and of the colours."""
+        return [
+            self._make_list("t_max", "t_max", allowed_t_max()),
+            self._make_list("resolution", "Resolution", allowed_resolutions()),
+            self._make_list("palette", "Colours", {palette.name: key for key, palette in PALETTES.items()}),
+        ]
+
+    def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:
+        """A drop-down list that writes to an attribute of the view state and follows it."""
+        state = self.state
+        box = pn.widgets.Select(
+            label=label, options=options, value=getattr(state, name), sizing_mode="stretch_width", margin=(0, 10, 8, 10)
         )
+        box.param.watch(lambda event: state.param.update(**{name: event.new}), "value")
+        state.param.watch(lambda event: box.param.update(value=event.new), name)
+        return box
 
     def _connect(self) -> None:
         state = self.state
         self.case.param.watch(lambda event: self._take_case(event.new), "value")
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
-        self.palette.param.watch(lambda event: state.param.update(palette=event.new), "value")
         self.exact_energy.param.watch(self._take_exact_energy, "value")
-        self.t_max.param.watch(lambda event: state.param.update(t_max=event.new), "value")
-        self.resolution.param.watch(lambda event: state.param.update(resolution=event.new), "value")
         state.param.watch(lambda *events: self._follow_system(), list(SYSTEM))
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
-        for name in ("plane", "t_max", "resolution", "palette"):
-            state.param.watch(lambda event: getattr(self, event.name).param.update(value=event.new), name)
+        state.param.watch(lambda event: self.plane.param.update(value=event.new), "plane")
 
     def show_playing(self, playing: bool) -> None:
         """Label the button with what it does next."""
@@ -172,11 +201,10 @@ class Controls:
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self._energy_column.objects = [self.energy, self.ticks]
         self.exact_energy.step = 10.0**-energies.decimals
-        marked = " · ticks: the energies of Zotos (2014)" if energies.marked else ""
         self.facts.object = (
-            f"<div><b>{escape_text(system.title)}</b>: H = ½(px² + py²) + V, V = {escape_text(system.formula_shown)} · "
-            f"{state.potential.channels} exit channels above the escape energy h = {state.potential.escape_energy:.6g}"
-            f"{marked}</div>"
+            f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(system.title)}</b>: V = {escape_text(system.formula_shown)}"
+            f"<br><span class='quiet'>{state.potential.channels} exit channels above h = {state.potential.escape_energy:.6g}"
+            "</span></div>"
         )
         self._follow_energy()
 

@@ -13,9 +13,7 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.rendering.map_analyses import MapAnalyses
 from app.rendering.map_images import ON_DEMAND, TITLES
 from app.state.view_state import ViewState
-from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.file_saver import FileSaver
-from app.views.components.flex_row import flex_row
 from app.views.components.widgets import button
 from engine import EscapeMap
 
@@ -43,12 +41,11 @@ class Downloads:
         self.maps = button("Maps (NetCDF)", self._saving(self.netcdf_file))
         self.orbits = button("Orbits (CSV)", self._saving(self.csv_file))
         self.script = button("Python script", self._saving(self.python_file))
-        self.section = CollapsibleSection("Share and download", self._build)
         self._enable()
 
-    def _build(self) -> list[pn.viewable.Viewable]:
-        buttons = (self.link, self.side, self.picture, self.maps, self.orbits, self.script)
-        return [flex_row(*buttons, align="end", gap="0px"), self.saver]
+    def build(self) -> list[pn.viewable.Viewable]:
+        """The buttons, in a column."""
+        return [self.link, self.side, self.picture, self.maps, self.orbits, self.script, self.saver]
 
     def show_map(self, frame: EscapeMap) -> None:
         """Set the map to download; files are made of complete maps only."""

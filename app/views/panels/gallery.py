@@ -11,7 +11,6 @@ from panel.custom import JSComponent
 
 from app.rendering.map_images import TITLES
 from app.state.presets import GROUPS, PRESETS, Preset
-from app.views.components.collapsible_section import CollapsibleSection
 
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."
 
@@ -85,23 +84,22 @@ export function render({model, el}) {
 
 _STYLE = """
 :host { min-width: 0 }
-.gallery { container-type: inline-size; font-family: inherit; font-size: 14px; line-height: 1.4; color: inherit }
-h3 { margin: 4px 4px 0; font-size: 13px; font-weight: 600; color: var(--ui-quiet) }
-[role=toolbar] {
-  display: flex; gap: 6px; padding: 4px; overflow-x: auto; overscroll-behavior-x: contain; scroll-padding: 4px;
-  scrollbar-width: thin;
-}
+.gallery { font-family: inherit; font-size: 14px; line-height: 1.4; color: inherit }
+h3 { margin: 8px 0 4px; font-size: 13px; font-weight: 600; color: var(--ui-quiet) }
+[role=toolbar] { display: grid; grid-template-columns: repeat(auto-fill, minmax(112px, 1fr)); gap: 6px }
 button {
-  display: flex; flex: none; flex-direction: column; align-items: center; gap: 4px; box-sizing: border-box; width: 128px;
+  display: flex; flex-direction: column; align-items: center; gap: 4px; box-sizing: border-box;
   padding: 7px; font: inherit; font-size: 12.5px; line-height: 1.25; color: inherit; background: var(--ui-surface);
   cursor: pointer; border: 1px solid var(--ui-edge); border-radius: var(--ui-radius-l);
 }
 button:hover { border-color: var(--ui-edge-strong) }
 button:focus-visible { outline: none; box-shadow: var(--ui-focus) }
 button[aria-current] { border-color: var(--ui-accent); background: var(--ui-accent-soft) }
-img { order: -1; display: block; width: 112px; height: 112px; border-radius: var(--ui-radius) }
-p { margin: 4px 4px 0; max-width: 110ch; min-height: 4.3em }
-@container (max-width: 700px) { p { min-height: 9.9em } }
+img { order: -1; display: block; width: 100%; height: auto; border-radius: var(--ui-radius) }
+p {
+  position: sticky; bottom: -32px; z-index: 1; margin: 12px 0 -32px; padding: 10px 0 16px; min-height: 5em;
+  border-top: 1px solid var(--ui-edge); background: var(--ui-surface);
+}
 """
 
 
@@ -122,11 +120,11 @@ class Gallery:
     def __init__(self, on_preset: Callable[[Preset], None]) -> None:
         self._on_preset = on_preset
         self._presets = {preset.key: preset for preset in PRESETS}
-        self.section = CollapsibleSection("Gallery", self._build)
 
-    def _build(self) -> list[pn.viewable.Viewable]:
+    def build(self) -> list[pn.viewable.Viewable]:
+        """The cards."""
         cards = GalleryCards(
-            cards=[_card(preset) for preset in PRESETS], sizing_mode="stretch_width", margin=(0, 5), stylesheets=[_STYLE]
+            cards=[_card(preset) for preset in PRESETS], sizing_mode="stretch_width", margin=0, stylesheets=[_STYLE]
         )
         cards.on_msg(lambda event: self._receive(event.data))
         return [cards]

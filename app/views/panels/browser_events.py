@@ -1,8 +1,9 @@
-"""Keyboard shortcuts for the whole page; and two things only the browser knows: a first visit, and the clipboard."""
+"""What only the browser knows: keys pressed anywhere on the page, the theme, touch, a first visit, and the clipboard."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
@@ -92,40 +93,60 @@ export function render({model, el}) {
   }
   el.setAttribute("aria-hidden", "true")
   document.addEventListener("keydown", listen)
-  model.on("lifecycle:remove", () => document.removeEventListener("keydown", listen))
+  const tell_theme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
+  document.addEventListener("themechange", tell_theme)
+  model.on("lifecycle:remove", () => {
+    document.removeEventListener("keydown", listen)
+    document.removeEventListener("themechange", tell_theme)
+  })
+  if (document.documentElement.dataset.theme === "dark") tell_theme()
   model.on("msg:custom", async () => model.send_msg({copied: await copy(window.location.href)}))
+  if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
   if (is_first_visit()) model.send_msg({first_visit: true})
 }
 """
 
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
-class KeyListener(JSComponent):
-    """The browser side: it sends {key}, {first_visit} or {copied}; any message to it copies the address."""
+class BrowserListener(JSComponent):
+    """The browser side: it sends {key}, {dark}, {touch}, {first_visit} or {copied}; any message to it copies the address."""
 
     keys = param.List(default=list(KEYS))
 
     _esm = _LISTENER
 
 
-class Keyboard:
-    """Listens on the page, except for keys that a field, slider or menu uses. The callbacks run without the session's lock.
+@dataclass(frozen=True)
+class BrowserActions:
+    """Callbacks, which run without the session's lock.
 
-    Parameters
+    Attributes
     ----------
-    on_key
-        Called with each key of `KEYS`.
-    on_first_visit
+    key
+        Called with each key of `KEYS`, except for keys that a field, slider or menu uses.
+    dark
+        Called with whether the theme is dark, when it changes or is not light at the beginning.
+    touch
+        Called if the page is used by touch.
+    first_visit
         Called if this browser opens the page for the first time.
-    on_copied
+    copied
         Called with the success of `copy_link`.
     """
 
-    def __init__(
-        self, on_key: Callable[[str], None], on_first_visit: Callable[[], None], on_copied: Callable[[bool], None]
-    ) -> None:
-        self._on_key, self._on_first_visit, self._on_copied = on_key, on_first_visit, on_copied
-        self._listener = KeyListener(width=0, height=0, margin=0, styles={"position": "absolute"})
+    key: Callable[[str], None]
+    dark: Callable[[bool], None]
+    touch: Callable[[], None]
+    first_visit: Callable[[], None]
+    copied: Callable[[bool], None]
+
+
+class BrowserEvents:
+    """Passes events of the browser to callbacks."""
+
+    def __init__(self, actions: BrowserActions) -> None:
+        self._actions = actions
+        self._listener = BrowserListener(width=0, height=0, margin=0, styles={"position": "absolute"})
         self._listener.on_msg(lambda event: self._receive(event.data))
 
     def layout(self) -> pn.viewable.Viewable:
@@ -140,11 +161,15 @@ class Keyboard:
         # Messages come from a browser: ignore what is not expected.
         match message:
             case {"key": str(key)} if key in KEYS:
-                self._on_key(key)
+                self._actions.key(key)
+            case {"dark": bool(dark)}:
+                self._actions.dark(dark)
+            case {"touch": True}:
+                self._actions.touch()
             case {"first_visit": True}:
-                self._on_first_visit()
+                self._actions.first_visit()
             case {"copied": bool(success)}:
-                self._on_copied(success)
+                self._actions.copied(success)
 
 
 def key_legend() -> str:

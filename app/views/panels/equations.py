@@ -1,0 +1,22 @@
+"""The equations of motion of the system in view."""
+
+from __future__ import annotations
+
+from html import escape
+
+import panel as pn
+
+from app.rendering.mathml import equations
+from app.state.system import SYSTEM
+from app.state.view_state import ViewState
+
+
+def equations_pane(state: ViewState) -> pn.viewable.Viewable:
+    """A pane that follows the system of a view state."""
+
+    def html() -> str:
+        return f"<h3>Equations: {escape(state.system.title)}</h3>{equations(state.potential)}"
+
+    pane = pn.pane.HTML(html(), margin=(0, 10), sizing_mode="stretch_width")
+    state.param.watch(lambda *events: pane.param.update(object=html()), list(SYSTEM))
+    return pane
