@@ -12,7 +12,7 @@ from cli.options import PlaneName
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from engine import IndicatorVerdict, Orbit
+    from engine import IndicatorVerdict, Orbit, OrbitVerdict
 
 EXAMPLES = """Examples:
 
@@ -51,7 +51,7 @@ def follow_orbit(
     from cli.orbit_pictures import orbit_png
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit
+    from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, judge_orbit
 
     potential, colours = find_potential(case), find_palette(palette)
     whole = find_start(case, plane, energy, start, state)
@@ -62,25 +62,29 @@ def follow_orbit(
         orbit = integrate_orbit(potential, whole, t_max, cancel=run.cancel)
         bounded = orbit.fate == Fate.BOUNDED
         digits = compute_birkhoff_digits(potential, whole, t_max, cancel=run.cancel) if bounded else None
-    files: list[str] = []
+    verdict, files = judge_orbit(orbit, digits), []
     if output is not None:
-        drawn, table = orbit_png(potential, orbit, colours), orbits_csv([orbit], most_rows)
+        drawn = orbit_png(potential, orbit, colours, verdict.describe())
+        table = orbits_csv([orbit], most_rows, [verdict])
         files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
-    _print_result(orbit, evaluate_indicators(orbit, digits), files, as_json)
+    _print_result(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
 
 
-def _print_result(orbit: Orbit, verdicts: Sequence[IndicatorVerdict], files: list[str], as_json: bool) -> None:
+def _print_result(
+    orbit: Orbit, verdict: OrbitVerdict, indicators: Sequence[IndicatorVerdict], files: list[str], as_json: bool
+) -> None:
     from cli.output import outcome_name, print_json, print_sentences
 
     if not as_json:
-        indicators = [f"{verdict.name} {verdict.value:.3g}: {verdict.sentence}" for verdict in verdicts]
-        print_sentences(orbit.describe(), *indicators, *([f"Written: {', '.join(files)}"] if files else []))
+        lines = [f"{one.name} {one.value:.3g}: {one.sentence}" for one in indicators]
+        print_sentences(verdict.describe(), *lines, *([f"Written: {', '.join(files)}"] if files else []))
         return
     names = ("energy", "escape_time", "crossings", "energy_error")
-    answer: dict[str, Any] = {"verdict": orbit.describe(), "outcome": outcome_name(orbit.fate), "fate": orbit.fate}
+    answer: dict[str, Any] = {"verdict": verdict.describe(), "outcome": outcome_name(orbit.fate), "fate": orbit.fate}
+    answer |= {"character": verdict.character, "bounded_for_ever": verdict.is_bounded_for_ever}
     answer |= {name: getattr(orbit, name) for name in names}
     answer["start"] = [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")]
     answer["indicators"] = [
-        {"name": one.name, "value": one.value, "conclusion": one.conclusion, "sentence": one.sentence} for one in verdicts
+        {"name": one.name, "value": one.value, "conclusion": one.conclusion, "sentence": one.sentence} for one in indicators
     ]
     print_json(answer | {"files": files})

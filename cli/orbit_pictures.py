@@ -17,17 +17,17 @@ _LARGEST_SALI, _EARLIEST_TIME = 10.0**0.5, 0.01
 _LINE_LENGTH = 160
 
 
-def orbit_png(potential: Potential, orbit: Orbit, palette: Palette) -> bytes:
-    """PNG file of an orbit: path on the left, SALI and R² on the right; its verdict below and in the metadata."""
+def orbit_png(potential: Potential, orbit: Orbit, palette: Palette, verdict: str) -> bytes:
+    """PNG file of an orbit: path on the left, SALI and R² on the right; `verdict` below and in the metadata."""
     curves, colour = compute_orbit_curves(potential, orbit), palette.orbits[0]
     figure = new_figure(11.5, 5.9, f"Orbit at h = {orbit.energy:.6g}")
     panels = figure.subplot_mosaic([["path", "sali"], ["path", "r2"]])
     _draw_path(panels["path"], potential, curves, palette)
     _draw_sali(panels["sali"], curves, colour)
     _draw_r2(panels["r2"], curves, colour)
-    figure.supxlabel(textwrap.fill(orbit.describe(), _LINE_LENGTH), fontsize=SMALL, color=LIGHT.text)
+    figure.supxlabel(textwrap.fill(verdict, _LINE_LENGTH), fontsize=SMALL, color=LIGHT.text)
     start = ", ".join(map(repr, initial_state(orbit)))
-    about = {"potential": potential.name, "energy": repr(orbit.energy), "start": start, "verdict": orbit.describe()}
+    about = {"potential": potential.name, "energy": repr(orbit.energy), "start": start, "verdict": verdict}
     return save_figure(figure, "png", {"Software": software(), **about})
 
 

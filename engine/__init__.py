@@ -3,7 +3,7 @@
 These are the public names of the library; it does not depend on the page in `app`.
 
 - systems: `Potential`, `CASES`, `parse_formula`, `review_potential`
-- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `evaluate_indicators`
+- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `evaluate_indicators`, `judge_orbit`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_preview`, `compute_regularity`, `compute_trust`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`
 - energies: `compute_energy_curves`, `compute_crossing_statistics`, `run_sweep`
@@ -83,13 +83,14 @@ from engine.trajectories.chaos_indicators import (
     evaluate_indicators,
 )
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
+from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
 from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
 from engine.trajectories.section_crossings import find_section_crossings
 from engine.trajectories.separation import LONGEST_SEPARATION, Separation, compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
 from engine.validation import LONGEST_TIME
 from engine.warmup import is_ready_for_maps, prepare_kernels
-from engine.wording import format_number
+from engine.wording import format_number, format_time, format_whole
 
 __all__ = [
     "CASES",
@@ -144,6 +145,7 @@ __all__ = [
     "MapSpec",
     "Orbit",
     "OrbitRequest",
+    "OrbitVerdict",
     "OriginFateMap",
     "OriginFateRequest",
     "Outcomes",
@@ -214,9 +216,12 @@ __all__ = [
     "fit_escape_shares",
     "fit_uncertainty",
     "format_number",
+    "format_time",
+    "format_whole",
     "integrate_orbit",
     "is_ready_for_maps",
     "join_origin_fates",
+    "judge_orbit",
     "judge_regularity",
     "measure_deviation",
     "parse_formula",

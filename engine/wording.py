@@ -5,7 +5,19 @@ from __future__ import annotations
 
 def format_count(count: int, singular: str, plural: str = "") -> str:
     """A count and its noun, such as "1 box" or "3 boxes"; without `plural`, the noun takes an "s"."""
-    return f"{count} {singular if count == 1 else plural or f'{singular}s'}"
+    return f"{format_whole(count)} {singular if count == 1 else plural or f'{singular}s'}"
+
+
+def format_whole(value: float) -> str:
+    """A number rounded to a whole one, with spaces between groups of three digits, such as "100 000"."""
+    return f"{round(value):,}".replace(",", " ")
+
+
+def format_time(t: float, digits: int = 6) -> str:
+    """A time to `digits` significant digits, or all digits of its whole part, with spaces between groups of three of these."""
+    if t == round(t) or abs(t) >= 10.0**digits:
+        return format_whole(t)
+    return f"{t:,.{digits}g}".replace(",", " ")
 
 
 def format_number(value: float, digits: int = 4) -> str:

@@ -34,6 +34,7 @@ from engine import (
     find_lyapunov_orbits,
     fit_escape_shares,
     integrate_orbit,
+    judge_orbit,
     measure_deviation,
     start_states,
 )
@@ -102,7 +103,7 @@ orbits = {}
 for name, (row, column) in pixels.items():
     start = start_states(CASE, Plane.X_PX, ENERGY, escape_map.x[[column]], escape_map.ordinate[[row]])[0]
     orbits[name] = integrate_orbit(CASE, start, T_MAX)
-    print(f"{name} orbit: SALI {orbits[name].sali[-1]:.2e}. {orbits[name].describe()}")
+    print(f"{name} orbit: SALI {orbits[name].sali[-1]:.2e}. {judge_orbit(orbits[name]).describe()}")
 
 figure, (path, index) = plt.subplots(1, 2, figsize=(10, 4.5), layout="constrained")
 for (name, orbit), colour in zip(orbits.items(), ("teal", "firebrick"), strict=True):

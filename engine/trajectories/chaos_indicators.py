@@ -18,15 +18,13 @@ import numpy as np
 
 from engine.arrays import read_only
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
+from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regularity, describe_fate, judge_regularity
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
 from engine.trajectories.trajectory import Orbit
 from engine.validation import checked_state, checked_t_max
-
-MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit that can be called regular: weak chaos takes this long to appear."""
+from engine.wording import format_time
 
 MIN_GROWTH_TIME = 100.0
 """Shortest orbit judged by the growth of a deviation vector: on tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30."""
@@ -190,7 +188,8 @@ def _final_values(orbit: Orbit, digits: BirkhoffDigits | None) -> list[tuple[str
 def _describe_unbounded(orbit: Orbit) -> str:
     if orbit.fate < 1:
         return describe_fate(orbit.fate)
-    return f"Transient: the orbit escapes at t = {orbit.escape_time:.6g}; this value describes its way out and gives no verdict."
+    time = format_time(orbit.escape_time)
+    return f"The orbit escapes at t = {time}, so this is not a verdict."
 
 
 def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
@@ -230,7 +229,7 @@ def _judge_growth(log_growth: float, power: float, t_end: float) -> tuple[Verdic
 
 
 def _undecided_too_short(t_end: float) -> tuple[Verdict, str]:
-    return Verdict.UNDECIDED, f"but t = {t_end:g} is too short to tell"
+    return Verdict.UNDECIDED, f"but t = {format_time(t_end)} is too short to tell"
 
 
 def _fit_growth_power(orbit: Orbit) -> float:
@@ -253,4 +252,4 @@ def _judge_digits(digits: BirkhoffDigits) -> tuple[Verdict, str]:
         verdict, reason = Verdict.CHAOTIC, f"below {chaotic:g}: fewer than on any known torus"
     else:
         verdict, reason = Verdict.UNDECIDED, f"neither below {chaotic:g}, as in chaos, nor {CERTIFIED_DIGITS:g}, as on a torus"
-    return verdict, f"Averages over two windows of T = {window:g} agree to {value:.1f} digits, {reason}."
+    return verdict, f"Averages over two windows of T = {format_time(window)} agree to {value:.1f} digits, {reason}."

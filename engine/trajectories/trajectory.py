@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
+from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.compiled import kernels_of, step_tolerance
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
-from engine.dynamics.fates import Fate, Regularity, describe_fate, judge_regularity
+from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import sample_deviations, sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max
-from engine.wording import format_count
 
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, whose samples then take 3 GB."""
@@ -52,6 +52,8 @@ class Orbit:
         |H − h| / |h| at the end of the orbit.
     energy
         h of the initial state.
+    certificate
+        ``CLOSED`` if its energy is below every saddle, ``INTEGRATED`` if it is bounded until t_max, ``NONE`` if not bounded.
     """
 
     t: np.ndarray
@@ -67,27 +69,13 @@ class Orbit:
     crossings: int
     energy_error: float
     energy: float
+    certificate: Certificate
 
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
         state = (self.x, self.y, self.px, self.py)
         return sum(array.nbytes for array in (self.t, *state, self.sali, self.lyapunov_exponent, self.r2))
-
-    @property
-    def regularity(self) -> Regularity | None:
-        """Regular or chaotic by the SALI at t_max; None unless the orbit is bounded."""
-        return judge_regularity(float(self.sali[-1])) if self.fate == Fate.BOUNDED else None
-
-    def describe(self) -> str:
-        """Fate of the orbit in one sentence."""
-        crossings = format_count(self.crossings, "upward crossing")
-        if self.fate >= 1:
-            kind = f"after {crossings} of y = 0" if self.crossings else "directly, without crossing y = 0 upward"
-            return f"Escaped through channel {self.fate} at t = {self.escape_time:.6g}, {kind}."
-        if self.regularity is not None:
-            return f"Bounded until t = {self.t[-1]:g} and {self.regularity}, with {crossings} of y = 0."
-        return describe_fate(self.fate)
 
 
 def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, cancel: threading.Event | None = None) -> Orbit:
@@ -130,8 +118,15 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     for array in arrays:
         read_only(array)
     return Orbit(
-        *arrays, fate, float(outcome.escape_time[0]), int(outcome.crossings[0]), float(outcome.energy_error[0]), energy
+        *arrays, fate, float(outcome.escape_time[0]), int(outcome.crossings[0]), float(outcome.energy_error[0]), energy,
+        _certificate(potential, energy, fate),
     )  # fmt: skip
+
+
+def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
+    if fate != Fate.BOUNDED:
+        return Certificate.NONE
+    return Certificate.CLOSED if energy <= potential.escape_energy else Certificate.INTEGRATED
 
 
 def _sample_orbit(

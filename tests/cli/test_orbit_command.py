@@ -12,7 +12,7 @@ from PIL import Image
 
 from app.exports import orbits_csv
 from app.rendering.palette import COLOUR_BLIND_SAFE
-from engine import CASES, Plane, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, start_states
+from engine import CASES, Plane, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, judge_orbit, start_states
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -40,9 +40,10 @@ def test_bounded_orbit_has_verdicts_of_all_indicators(run: Run) -> None:
     state = (0.1, 0.0, 0.0, 0.4)
     code, out, _ = run("orbit", "III", "--state", *state, "--t-max", 2500)
     orbit = integrate_orbit(CASES["III"], state, 2500.0)
-    verdicts = evaluate_indicators(orbit, compute_birkhoff_digits(CASES["III"], state, 2500.0))
+    digits = compute_birkhoff_digits(CASES["III"], state, 2500.0)
+    verdicts = evaluate_indicators(orbit, digits)
     assert code == 0
-    assert orbit.describe() in out
+    assert judge_orbit(orbit, digits).describe() in out
     assert [verdict.name for verdict in verdicts if verdict.sentence in out] == ["SALI", "Lyapunov exponent", "Birkhoff digits"]
 
 

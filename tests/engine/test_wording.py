@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.wording import format_count, format_decimals, format_number
+from engine.wording import format_count, format_decimals, format_number, format_time, format_whole
 
 
 @pytest.mark.parametrize(("count", "text"), [(0, "0 boxes"), (1, "1 box"), (2, "2 boxes")])
@@ -12,6 +12,20 @@ def test_the_noun_agrees_with_the_count(count: int, text: str) -> None:
 
 def test_the_default_plural_ends_in_s() -> None:
     assert format_count(3, "upward crossing") == "3 upward crossings"
+
+
+@pytest.mark.parametrize(("value", "text"), [(999.0, "999"), (1e3, "1 000"), (123456.7, "123 457"), (1e6, "1 000 000")])
+def test_whole_numbers_are_grouped(value: float, text: str) -> None:
+    assert format_whole(value) == text
+    assert format_count(round(value), "box", "boxes").startswith(text)
+
+
+@pytest.mark.parametrize(
+    ("t", "text"),
+    [(0.01, "0.01"), (12.34567, "12.3457"), (100.0, "100"), (12345.678, "12 345.7"), (1e5, "100 000"), (1e7, "10 000 000")],
+)
+def test_times_are_grouped_and_never_in_exponent_notation(t: float, text: str) -> None:
+    assert format_time(t) == text
 
 
 @pytest.mark.parametrize(

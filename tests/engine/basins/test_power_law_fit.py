@@ -125,7 +125,7 @@ def test_strongly_scattered_shares_have_no_exponent() -> None:
 @pytest.mark.parametrize(
     ("pairs", "uncertain", "sentence"),
     [
-        (np.full(17, 100), np.zeros(17, int), "both orbits have the same fate in all 1700 pairs"),
+        (np.full(17, 100), np.zeros(17, int), "both orbits have the same fate in all 1 700 pairs"),
         (np.zeros(17, int), np.zeros(17, int), "no pair of starts lies inside"),
         (np.full(17, 100), np.arange(17)[::-1] // 5, "are too few, or cover too short a range of separations"),
         (np.full(17, 100), np.full(17, 100), "are too few, or cover too short a range of separations"),

@@ -17,6 +17,7 @@ from engine import (
     compute_map,
     compute_regularity,
     integrate_orbit,
+    judge_regularity,
     start_states,
 )
 
@@ -32,7 +33,8 @@ def test_characters_agree_with_the_sali_of_single_orbits(name: str, energy: floa
     whole, regularity = map_and_regularity(name, energy)
     rows, columns = np.nonzero(whole.fate == Fate.BOUNDED)
     states = start_states(CASES[name], Plane.X_PX, energy, whole.x[columns], whole.ordinate[rows])
-    chaotic = np.array([integrate_orbit(CASES[name], state, 1e4).regularity is Regularity.CHAOTIC for state in states])
+    sali = [float(integrate_orbit(CASES[name], state, 1e4).sali[-1]) for state in states]
+    chaotic = np.array([judge_regularity(value) is Regularity.CHAOTIC for value in sali])
     found = regularity.character[rows, columns] == Regularity.CHAOTIC
     # The SALI of an orbit may reach the threshold just before or just after t_max.
     assert np.sum(found != chaotic) <= 2
@@ -61,6 +63,7 @@ def test_chaotic_share_is_nan_without_bounded_orbits() -> None:
 
 def test_short_maps_are_judged_by_sali_at_t_max() -> None:
     _, regularity = map_and_regularity("II", 0.16, t_max=400.0)
+    assert regularity.is_too_short
     assert set(np.unique(regularity.character)) == {Regularity.NOT_APPLICABLE, Regularity.REGULAR, Regularity.CHAOTIC}
 
 

@@ -126,6 +126,21 @@ def test_written_formula_parses_to_the_same_terms(table: dict[tuple[int, int], f
     assert sorted(parse_formula(write_formula(potential)).terms) == sorted(potential.terms)
 
 
+@given(tables, st.integers(3, 15))
+def test_a_formula_of_few_digits_has_small_relative_errors(table: dict[tuple[int, int], float], digits: int) -> None:
+    potential = potential_of(table)
+    again = parse_formula(write_formula(potential, digits))
+    assert {(i, j) for i, j, _ in again.terms} == {(i, j) for i, j, _ in potential.terms}
+    for powers, c in again.coefficients.items():
+        assert c == pytest.approx(potential.coefficients[powers], rel=5.001 * 10.0**-digits)
+
+
+def test_the_rounding_error_of_a_product_is_not_written() -> None:
+    potential = CASES["II"].with_parameters(omega_1=1.46, epsilon=0.9)
+    assert "1.0657999999999999" in write_formula(potential)
+    assert write_formula(potential, 12) == "1.0658x² + y²/2 − 3x³/10 + 9xy²/10"
+
+
 @pytest.mark.parametrize(("name", "text"), [("I", "x²/2 + y²/2 − xy²"), ("II", "x²/2 + y²/2 − x³/3 + xy²")])
 def test_cases_as_text(name: str, text: str) -> None:
     assert write_formula(CASES[name]) == text

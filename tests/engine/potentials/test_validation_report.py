@@ -43,6 +43,28 @@ def test_refusal_gives_a_well_elsewhere_and_the_shifted_formula() -> None:
     assert "x²/2 + y²/2 − xy²" in refusal
 
 
+@pytest.mark.parametrize(
+    ("formula", "moved"),
+    [
+        ("((x−1)² + y²)/2 − (x−1)y²", "x²/2 + y²/2 − xy²"),
+        ("x + r²", "x² + y²"),
+        # The nearer of two minima, at x = −1 and x = 2.
+        ("y²/2 + x⁴/4 − x³/3 − x²", "3x²/2 + y²/2 − 4x³/3 + x⁴/4"),
+        ("½r² − xy²", None),
+        ("r²/2", None),
+        ("xy", None),
+        ("x²y²", None),
+    ],
+)
+def test_the_nearest_well_elsewhere_is_offered_at_the_origin(formula: str, moved: str | None) -> None:
+    assert review_potential(parse_formula(formula)).moved_formula == moved
+
+
+def test_the_refusal_names_the_nearest_of_several_wells() -> None:
+    refusal = str(review_potential(parse_formula("y²/2 + x⁴/4 − x³/3 − x²")).refusal)
+    assert "The nearest of 2 minima is at (-1, 0); with the origin moved there, V is 3x²/2" in refusal
+
+
 def test_degenerate_point_outside_the_well_is_refused() -> None:
     # V_x = x (1 − x)² touches 0 at x = 1.
     refusal = review_potential(parse_formula("y²/2 + x²/2 − 2x³/3 + x⁴/4")).refusal

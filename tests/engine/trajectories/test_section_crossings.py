@@ -5,7 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, Plane, Regularity, classify_orbits, find_section_crossings, integrate_orbit, start_states
+from engine import (
+    CASES,
+    Fate,
+    Plane,
+    Verdict,
+    classify_orbits,
+    find_section_crossings,
+    integrate_orbit,
+    judge_orbit,
+    start_states,
+)
 from engine.dynamics.section_points import find_section_points
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
@@ -35,7 +45,7 @@ def test_an_orbit_has_as_many_points_as_crossings(name: str, energy: float, esca
 def test_points_of_a_regular_orbit_agree_with_the_event_finder(name: str, energy: float) -> None:
     start = start_states(CASES[name], Plane.X_PX, energy, np.array([0.3]), np.zeros(1))
     orbit = integrate_orbit(CASES[name], start[0], 1000.0)
-    assert orbit.regularity is Regularity.REGULAR
+    assert judge_orbit(orbit).character is Verdict.REGULAR
     expected = find_section_points(CASES[name], start, orbit.crossings, 1000.0)[0]
     np.testing.assert_allclose(find_section_crossings(CASES[name], orbit), expected, atol=1e-6)
 

@@ -1,13 +1,12 @@
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, Fate, Orbit, Plane, Regularity, classify_orbits, integrate_orbit, start_states
+from engine import CASES, Certificate, Fate, Orbit, Plane, Verdict, classify_orbits, integrate_orbit, judge_orbit, start_states
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
@@ -124,22 +123,6 @@ def test_an_escaped_orbit_ends_on_its_exit_and_is_inside_before(escaping: tuple[
     assert np.all(beyond[:-1] < 0)
 
 
-def test_an_escaped_orbit_is_neither_regular_nor_chaotic(escaping: tuple[str, np.ndarray, Orbit]) -> None:
-    assert escaping[2].regularity is None
-
-
-def test_the_description_names_the_channel(escaping: tuple[str, np.ndarray, Orbit]) -> None:
-    orbit = escaping[2]
-    assert f"channel {orbit.fate} " in orbit.describe()
-    assert f"{orbit.escape_time:.6g}" in orbit.describe()
-
-
-def test_the_description_has_the_singular_for_one_crossing(bounded: tuple[str, np.ndarray, Orbit]) -> None:
-    orbit = replace(bounded[2], crossings=1)
-    assert orbit.describe().endswith("with 1 upward crossing of y = 0.")
-    assert "after 1 upward crossing of y = 0." in replace(orbit, fate=2, escape_time=3.0).describe()
-
-
 @pytest.mark.parametrize(("factor", "escapes"), [(1 - 1e-9, False), (1 + 1e-9, True), (1.001, True), (0.999, False)])
 def test_t_max_around_the_escape_time_decides(escaping: tuple[str, np.ndarray, Orbit], factor: float, escapes: bool) -> None:
     name, start, orbit = escaping
@@ -156,8 +139,7 @@ def test_t_max_exactly_at_the_escape_time_is_an_escape(escaping: tuple[str, np.n
 def test_an_outside_start_stays_where_it_is() -> None:
     orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_Y, 0.3, np.array([1.3]), np.zeros(1))[0], 10.0)
     assert (orbit.fate, orbit.t.tolist(), orbit.x.tolist()) == (Fate.OUTSIDE, [0.0], [1.3])
-    assert orbit.regularity is None
-    assert orbit.describe().startswith("Outside")
+    assert orbit.certificate is Certificate.NONE
 
 
 def test_an_orbit_at_rest_at_the_minimum_stays_there() -> None:
@@ -201,17 +183,16 @@ def test_sali_starts_at_its_largest_value() -> None:
 
 
 # Hénon & Heiles (1964): at half the escape energy nearly every orbit lies on a torus, just below the escape energy few do.
-@pytest.mark.parametrize(("energy", "expected"), [(1 / 12, Regularity.REGULAR), (0.1666, Regularity.CHAOTIC)])
-def test_henon_heiles_changes_from_regular_to_chaotic(energy: float, expected: Regularity) -> None:
-    verdicts = [
-        integrate_orbit(CASES["II"], start, 3000.0).regularity for start in interior_starts("II", energy, 24, reach=0.25)[:16]
-    ]
+@pytest.mark.parametrize(("energy", "expected"), [(1 / 12, Verdict.REGULAR), (0.1666, Verdict.CHAOTIC)])
+def test_henon_heiles_changes_from_regular_to_chaotic(energy: float, expected: Verdict) -> None:
+    starts = interior_starts("II", energy, 24, reach=0.25)[:16]
+    verdicts = [judge_orbit(integrate_orbit(CASES["II"], start, 3000.0)).character for start in starts]
     assert verdicts.count(expected) >= 12
 
 
 def test_case_1_below_its_escape_energy_has_both_kinds() -> None:
-    verdicts = {integrate_orbit(CASES["I"], start, 3000.0).regularity for start in interior_starts("I", 0.12, 12)}
-    assert verdicts == {Regularity.REGULAR, Regularity.CHAOTIC}
+    verdicts = {judge_orbit(integrate_orbit(CASES["I"], start, 3000.0)).character for start in interior_starts("I", 0.12, 12)}
+    assert {Verdict.REGULAR, Verdict.CHAOTIC} <= verdicts
 
 
 def test_sali_of_a_chaotic_orbit_decreases_as_nearby_orbits_separate() -> None:
