@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.rendering.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
-from engine import Certificate, EscapeMap, Fate, OriginFateMap, Regularity, RegularityMap
+from engine import Certificate, EscapeMap, Fate, OriginFateMap, Regularity, RegularityMap, Trust, TrustMap
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 _FIRST_CLASS = len(OUTCOMES)
@@ -52,6 +52,13 @@ def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
     # If the origin or the fate is not a channel, the pixel shows that outcome.
     outcome = np.minimum(origins.origin, origins.fate)
     return {"passage": [_codes(outcome, passage, bounded_too=True)]}
+
+
+def doubt_tones(trust: TrustMap) -> np.ndarray:
+    """(rows, columns) uint8: 1 and 2 alternately on doubtful pixels, as on a chessboard, for the colours `DOUBT`; 0 elsewhere."""
+    rows, columns = np.indices(trust.trust.shape)
+    tones: np.ndarray = np.where(trust.trust == Trust.DOUBTFUL, 1 + (rows + columns) % 2, 0).astype(np.uint8)
+    return tones
 
 
 def _certified_characters(images: dict[str, np.ndarray]) -> np.ndarray:

@@ -13,12 +13,15 @@ from typing import Any
 
 import numpy as np
 import shapely
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
 from app.rendering.figure_axes import (
@@ -36,9 +39,18 @@ from app.rendering.figure_axes import (
     style_axes,
 )
 from app.rendering.image_columns import longest_typical_time
+from app.rendering.manifold_strokes import Stroke, manifold_strokes
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_images import DOUBTED, LARGEST_PICTURE, SHORTEST_TIME, SMALLEST_PICTURE, TITLES, picture_pixels
-from app.rendering.palette import DOUBT, LIGHT, MANIFOLD, MARK_EDGE, Entry, Palette
+from app.rendering.map_images import (
+    CROSSED_BY_MANIFOLDS,
+    DOUBTED,
+    LARGEST_PICTURE,
+    SHORTEST_TIME,
+    SMALLEST_PICTURE,
+    TITLES,
+    picture_pixels,
+)
+from app.rendering.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
 from engine import (
     CASES,
     EscapeMap,
@@ -61,6 +73,9 @@ _PANEL_GAP = 0.25
 _BELOW_AXIS, _BELOW_BAR, _BAR_HEIGHT = 44.0, 76.0, 9.0
 _PROVENANCE_LETTER = 9.0
 _EXIT_DASHES = (0, (2.0, 1.5))
+# Of the widths of manifolds on the page, in a file.
+_LINE_SCALE = 0.6
+_HALO_ORDER = 1.5
 # Curves are cut this far outside the window, in shares of it.
 _RIM = 0.02
 # Of a line of provenance, the share that is filled: lines of equally many letters differ in width.
@@ -77,6 +92,7 @@ def draw_map_figure(
     *,
     analyses: MapAnalyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
+    longest: float | None = None,
 ) -> Figure:
     """Draw pictures of a map side by side, each with title, axes, curves, legend and provenance; save with ``crop=True``.
 
@@ -94,6 +110,8 @@ def draw_map_figure(
         Results of follow-up analyses: regularity, origins, doubtful pixels and stable manifolds.
     starts
         (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
+    longest
+        Upper end of the scale of escape times; None for `longest_typical_time`.
 
     Raises
     ------
@@ -105,40 +123,42 @@ def draw_map_figure(
     if not pictures:
         raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
     dpi = max(_LEAST_DPI, side / _MAP_INCHES)
+    longest = longest or longest_typical_time(frame)
     # In a figure of one square inch, positions in shares of the figure are inches.
     figure = Figure(figsize=(1.0, 1.0), dpi=dpi)
     left = 0.0
     for picture in pictures:
         axes = figure.add_axes((left, 0.0, side / dpi, side / dpi))
-        _draw_picture(axes, frame, picture, palette, analyses)
+        _draw_picture(axes, frame, picture, palette, analyses, longest)
         mark_starts(axes, starts, palette, frame.spec.window)
-        _explain_picture(axes, frame, picture, palette, analyses)
+        _explain_picture(axes, frame, picture, palette, analyses, longest)
         width = max(side / dpi, _LEGEND_INCHES) + _width_of_labels(axes) + _PANEL_GAP
         left += round(width * dpi) / dpi
     return figure
 
 
-def _draw_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> None:
+def _draw_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses, longest: float) -> None:
     """Title, pixels, curves and axes."""
     spec = frame.spec
-    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses), spec.window, spec.window)
+    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, longest), spec.window, spec.window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
-    if picture == "basins" and analyses.manifolds is not None:
-        _draw_manifolds(axes, analyses.manifolds, spec.window)
+    if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
+        _draw_manifolds(axes, analyses.manifolds, spec.window, palette)
     show_window(axes, spec.window, "x", spec.plane.ordinate)
     name_panel(axes, TITLES[picture])
 
 
-def _explain_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> None:
+def _explain_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses, longest: float) -> None:
     """Colour bar, legend and provenance below a map."""
     figure, offset = figure_of(axes), _BELOW_AXIS
     map_width, map_height = size_in_points(axes)
     if picture == "times":
         bar = axes.inset_axes((0.0, -(offset + _BAR_HEIGHT) / map_height, 1.0, _BAR_HEIGHT / map_height))
-        add_time_bar(figure, longest_typical_time(frame), palette, cax=bar, orientation="horizontal")
+        add_time_bar(figure, longest, palette, cax=bar, orientation="horizontal")
         offset = _BELOW_BAR
     width = max(map_width, _LEGEND_INCHES * POINTS_PER_INCH)
-    handles = [*patches(_entries(frame, picture, palette, analyses)), *axes.collections]
+    handles = [*patches(_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
+    handles += [*(curve for curve in axes.collections if curve.get_label()), *_manifold_handles(picture, palette, analyses)]
     legend = add_legend_below(axes, handles, offset, width)
     below = axes.annotate(
         provenance_line(frame), (0.0, 0.0), (0.0, -8.0), xycoords=legend, textcoords="offset points", va="top",
@@ -188,9 +208,36 @@ def draw_limits(
         draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.channel}", halo=True, **style)
 
 
-def _draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window) -> None:
-    arcs = [np.column_stack([arc.x, arc.px]) for arc in manifolds.arcs]
-    draw_curve(axes, arcs, shown, "stable manifolds", halo=True, colors=MANIFOLD, linewidths=0.5)
+def _draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
+    """Draw the manifolds in the colours of their channels."""
+    strokes = manifold_strokes(manifolds)
+    for stroke in strokes:
+        if stroke.halo_width:
+            halo: dict[str, Any] = {"colors": LIGHT.halo, "linewidths": _LINE_SCALE * stroke.halo_width}
+            draw_curve(axes, _points(stroke), shown, zorder=_HALO_ORDER, **halo)
+    for stroke in strokes:
+        line: dict[str, Any] = {"colors": palette.channels[stroke.channel - 1], "linewidths": _LINE_SCALE * stroke.width}
+        draw_curve(axes, _points(stroke), shown, alpha=stroke.alpha, **line)
+
+
+def _points(stroke: Stroke) -> list[np.ndarray]:
+    return [np.column_stack([arc.x, arc.px]) for arc in stroke.arcs]
+
+
+def _manifold_handles(picture: str, palette: Palette, analyses: MapAnalyses) -> list[Artist]:
+    """The legend of the stable manifolds."""
+    if picture not in CROSSED_BY_MANIFOLDS or analyses.manifolds is None:
+        return []
+    entries = palette.manifold_entries(analyses.manifolds)
+    return [Line2D([], [], color=entry.colour, linewidth=1.2, label=entry.label) for entry in entries]
+
+
+def _doubt_handle(picture: str, analyses: MapAnalyses) -> list[Artist]:
+    """The legend of doubtful pixels."""
+    if picture not in DOUBTED or analyses.trust is None:
+        return []
+    dark, light = DOUBT
+    return [Patch(facecolor=light, edgecolor=dark, hatch="xxxxx", linewidth=0.5, label="doubtful")]
 
 
 def draw_curve(
@@ -221,7 +268,7 @@ def draw_curve(
     if halo:
         style["path_effects"] = [withStroke(linewidth=1.8 * style["linewidths"], foreground=LIGHT.halo)]
     axes.add_collection(
-        LineCollection([shapely.get_coordinates(part) for part in visible], label=label, zorder=2, **style), autolim=False
+        LineCollection([shapely.get_coordinates(part) for part in visible], label=label, **({"zorder": 2} | style)), autolim=False
     )
 
 
@@ -261,7 +308,8 @@ def add_time_bar(figure: Figure, longest: float, palette: Palette, **place: Any)
     bar = figure.colorbar(scale, **place)
     powers = [10.0**k for k in range(math.floor(math.log10(longest)) + 1)]
     times = list(dict.fromkeys([*powers, longest]))
-    bar.set_ticks(times, labels=[f"{time:.0f}" for time in times])
+    # The last colour stands for all longer times.
+    bar.set_ticks(times, labels=[f"{'≥ ' if time == longest else ''}{time:.0f}" for time in times])
     bar.ax.tick_params(labelsize=SMALL)
     return bar
 
@@ -290,8 +338,7 @@ def _entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnal
     if picture == "origins":
         return [*palette.passage_entries(channels), *outcomes]
     classes = {"basins": palette.channel_entries(channels), "crossings": palette.crossing_entries}
-    doubt = [Entry("doubtful", DOUBT)] if picture in DOUBTED and analyses.trust is not None else []
-    return [*classes.get(picture, []), *outcomes, *doubt]
+    return [*classes.get(picture, []), *outcomes]
 
 
 def provenance_line(frame: EscapeMap) -> str:

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from app.rendering.image_columns import character_column, longest_typical_time, map_columns, passage_column
+from app.rendering.image_columns import character_column, doubt_tones, longest_typical_time, map_columns, passage_column
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
 from app.rendering.palette import DOUBT, Palette, rgba
-from engine import EscapeMap, Trust
+from engine import EscapeMap
 
 TITLES = {
     "curves": "Zero-velocity curve and exits",
@@ -36,6 +36,9 @@ ON_DEMAND = {"characters": "judge", "origins": "origins"}
 
 DOUBTED = ("basins", "crossings")
 """Pictures in which doubtful pixels are marked."""
+
+CROSSED_BY_MANIFOLDS = ("curves", "basins", "crossings")
+"""Pictures in which stable manifolds are drawn."""
 
 SHORTEST_TIME = 1.0
 """Lower end of the logarithmic scale of escape times."""
@@ -86,7 +89,8 @@ def picture_pixels(
         escaped = np.isfinite(times)
         pixels[escaped] = time_colours(times[escaped], longest or longest_typical_time(frame), palette)
     if analyses.trust is not None and picture in DOUBTED:
-        pixels[analyses.trust.trust == Trust.DOUBTFUL] = rgba([DOUBT])
+        tones = doubt_tones(analyses.trust)
+        pixels[tones > 0] = rgba(DOUBT)[tones[tones > 0] - 1]
     rows, wide = frame.fate.shape
     whole: np.ndarray = pixels.repeat(frame.stride, axis=0).repeat(frame.stride, axis=1)[:rows, :wide]
     return np.ascontiguousarray(whole[::-1])

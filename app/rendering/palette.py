@@ -1,4 +1,7 @@
-"""Colours of the page and their meaning: the palette of the paper and a colour-blind safe one."""
+"""Colours of the page and their meaning: the palette of the paper and a colour-blind safe one.
+
+A colour has one meaning: channels, crossing classes, escape times, characters, orbits and curves have no colour in common.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from bokeh.palettes import Cividis256, interp_palette
 
-from engine import Certificate, Fate, Regularity
+from engine import Certificate, Fate, Regularity, StableManifolds
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Palette:
     bounded
         Of bounded orbits.
     classes
-        Of each of `CROSSING_CLASSES`.
+        Of each of `CROSSING_CLASSES`, from light to dark.
     escape_time
         256 colours, from fast to slow escapes.
     characters
@@ -116,6 +119,11 @@ class Palette:
     def channel_entries(self, channels: int) -> list[Entry]:
         """Legend of a potential's channels."""
         return [Entry(f"channel {k + 1}", self.channels[k]) for k in range(channels)]
+
+    def manifold_entries(self, manifolds: StableManifolds) -> list[Entry]:
+        """Legend of stable manifolds."""
+        channels = sorted({arc.channel for arc in manifolds.arcs})
+        return [Entry(f"stable manifold of Lyapunov orbit {channel}", self.channels[channel - 1]) for channel in channels]
 
     def passage_entries(self, channels: int) -> list[Entry]:
         """Legend of origin and exit, as a list."""
@@ -175,23 +183,23 @@ PAPER = Palette(
     name="as in the paper",
     channels=("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf"),
     bounded="#8f8f8f",
-    classes=("#e3342f", "#1f4fd8", "#e83ec9", "#ff9d1c", "#2ca02c"),
+    classes=("#e2e3fe", "#7db3f4", "#0787b6", "#005769", "#002a2d"),
     escape_time=tuple(interp_palette(["#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"], 256)),
-    characters=("#f4ead2", "#1fb6d1", "#d81fa4"),
-    orbits=("#0b84f3", "#e6007e", "#00a88f", "#f2a900", "#7b4fe0"),
+    characters=("#f4ead2", "#40e8e6", "#d81fa4"),
+    orbits=("#c30066", "#6987e7", "#43bea5", "#fa8f63", "#4b6d00"),
 )
-"""Channels 1 to 4 green, red, blue, orange; fast escapes light red, slow escapes dark; regular cyan, chaotic magenta."""
+"""Channels 1 to 4 green, red, blue, orange; crossings light to dark blue; fast escapes light red, slow ones dark."""
 
 COLOUR_BLIND_SAFE = Palette(
     name="colour-blind safe",
     channels=("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
     bounded="#a6a6a6",
-    classes=("#fde725", "#5dc863", "#21908c", "#3b528b", "#440154"),
+    classes=("#f8e1ff", "#dc9af4", "#93759c", "#703783", "#381543"),
     escape_time=tuple(reversed(Cividis256)),
-    characters=("#f3efe2", "#0072b2", "#e69f00"),
-    orbits=("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9"),
+    characters=("#f3efe2", "#87e9f1", "#ff234a"),
+    orbits=("#af2593", "#00c700", "#8e5700", "#99a7f0", "#2b6e60"),
 )
-"""Channels after Okabe and Ito, classes from viridis, times from cividis."""
+"""Channels after Okabe and Ito, crossings light to dark violet, times from cividis."""
 
 PALETTES = {"paper": PAPER, "safe": COLOUR_BLIND_SAFE}
 """Palettes by their names in links."""
@@ -210,26 +218,23 @@ class Inks:
 
 
 LIGHT = Inks(
-    limiting_curve="#1b1b1b", equipotential="#b9c3cf", critical_equipotential="#d62728", halo="#ffffff", quiet="#555555",
+    limiting_curve="#1b1b1b", equipotential="#b9c3cf", critical_equipotential="#7e001d", halo="#ffffff", quiet="#555555",
     text="#1b1b1b",
 )  # fmt: skip
 DARK = Inks(
-    limiting_curve="#e6e6e6", equipotential="#566170", critical_equipotential="#ff6b6b", halo="#ffffff", quiet="#b0b0b0",
+    limiting_curve="#e6e6e6", equipotential="#566170", critical_equipotential="#ffb3b0", halo="#ffffff", quiet="#b0b0b0",
     text="#f0f0f0",
 )  # fmt: skip
 
-DOUBT = "#000000c0"
-"""Of doubtful pixels."""
-
-MANIFOLD = "#101010"
-"""Of stable manifolds; they have a halo."""
+DOUBT = ("#000000", "#ffffff")
+"""Of doubtful pixels, alternately as on a chessboard: one of the two is visible on any colour."""
 
 MEASURED, SET_ASIDE = "#4c8dc4", "#b9c3cf"
 """Of measured points, and of those that a fit leaves out."""
 
-LAW_COLOURS = {"exponential": "#d1495b", "power law": "#edae49"}
+LAW_COLOURS = {"exponential": "#d1495b", "power law": "#b58900"}
 """Of fitted decay laws."""
 
 PATCH_EDGE = "#999999"
 MARK_EDGE = "#111111"
-THRESHOLD = "#d62728"
+THRESHOLD = "#6f7f95"

@@ -8,34 +8,34 @@ import numpy as np
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine
 from bokeh.plotting import figure
 
-from app.rendering.palette import DOUBT, LIGHT, MANIFOLD, PAPER, Entry, Palette
-from engine import MapSpec, StableManifolds, Trust, TrustMap
+from app.rendering.image_columns import doubt_tones
+from app.rendering.manifold_strokes import manifold_strokes
+from app.rendering.palette import DOUBT, LIGHT, PAPER, Entry, Palette
+from engine import MapSpec, StableManifolds, TrustMap
 
 _CLEAR = "#00000000"
-# Of the first, the second and all later images of the manifolds, which lie ever closer together.
-_WIDTHS, _ALPHAS = (1.6, 0.8, 0.5), (1.0, 0.55, 0.3)
-_HALO_WIDTH = 3.2
+# The tones as a CSS background.
+_CHESSBOARD = f"repeating-conic-gradient({DOUBT[0]} 0 25%, {DOUBT[1]} 0 50%) 0 0/6px 6px"
 
 
 class Overlays:
     """Sources of the overlays of one map; each is added to the figures when it is first shown."""
 
     def __init__(self) -> None:
-        # Figures that an overlay is still to be added to; those of the manifolds with `coloured`.
+        # Figures that an overlay is still to be added to.
         self._without_doubts: list[figure] = []
-        self._without_manifolds: list[tuple[figure, bool]] = []
+        self._without_manifolds: list[figure] = []
         self.doubts = ColumnDataSource(_no_doubts(), name="doubts")
         self.manifolds = ColumnDataSource(_no_curves(), name="manifolds")
-        self._mapper = LinearColorMapper(palette=[_CLEAR, DOUBT], low=-0.5, high=1.5)
+        self._mapper = LinearColorMapper(palette=[_CLEAR, *DOUBT], low=-0.5, high=2.5)
         self._palette = PAPER
         self._manifolds_shown: StableManifolds | None = None
         self._spec: MapSpec | None = None
 
-    def draw(self, plot: figure, *, doubts: bool, coloured: bool) -> None:
-        """Draw into a figure; `coloured` manifolds have the colour of their channel, others are dark with a halo."""
-        if doubts:
-            self._without_doubts.append(plot)
-        self._without_manifolds.append((plot, coloured))
+    def draw(self, plot: figure, *, doubts: bool, manifolds: bool) -> None:
+        """Draw some of the overlays into a figure."""
+        self._without_doubts += [plot] if doubts else []
+        self._without_manifolds += [plot] if manifolds else []
 
     def _draw_doubts(self) -> None:
         plots, self._without_doubts = self._without_doubts, []
@@ -44,11 +44,9 @@ class Overlays:
 
     def _draw_manifolds(self) -> None:
         plots, self._without_manifolds = self._without_manifolds, []
-        style: dict[str, Any] = {"line_width": "width", "line_alpha": "alpha"}
-        for plot, coloured in plots:
-            if not coloured:
-                plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width", line_alpha="alpha"))
-            plot.add_glyph(self.manifolds, MultiLine(line_color="colour" if coloured else MANIFOLD, **style))
+        for plot in plots:
+            plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width"))
+            plot.add_glyph(self.manifolds, MultiLine(line_color="colour", line_width="width", line_alpha="alpha"))
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the overlays if the map is another one."""
@@ -64,7 +62,7 @@ class Overlays:
             self._draw_doubts()
             window = trust.spec.window
             self.doubts.data = {
-                "doubt": [(trust.trust == Trust.DOUBTFUL).astype(np.uint8)],
+                "doubt": [doubt_tones(trust)], "trust": [trust.trust.astype(np.uint8)],
                 "x": [window.x_low], "y": [window.ordinate_low],
                 "dw": [window.x_high - window.x_low], "dh": [window.ordinate_high - window.ordinate_low],
             }  # fmt: skip
@@ -72,19 +70,18 @@ class Overlays:
             self.doubts.data = _no_doubts()
 
     def show_manifolds(self, manifolds: StableManifolds | None) -> None:
-        """Draw the manifolds; None removes them."""
+        """Draw the manifolds in the colours of their channels; None removes them."""
         self._manifolds_shown = manifolds
         if manifolds is not None:
             self._draw_manifolds()
-            # The first image is drawn last, over the others.
-            arcs = sorted(manifolds.arcs, key=lambda arc: -arc.image)
+            strokes = [(arc, stroke) for stroke in manifold_strokes(manifolds) for arc in stroke.arcs]
             self.manifolds.data = {
-                "xs": [arc.x for arc in arcs],
-                "ys": [arc.px for arc in arcs],
-                "colour": [self._palette.channels[arc.channel - 1] for arc in arcs],
-                "width": [_WIDTHS[min(arc.image, len(_WIDTHS)) - 1] for arc in arcs],
-                "alpha": [_ALPHAS[min(arc.image, len(_ALPHAS)) - 1] for arc in arcs],
-                "halo_width": [_HALO_WIDTH if arc.image == 1 else 0.0 for arc in arcs],
+                "xs": [arc.x for arc, _ in strokes],
+                "ys": [arc.px for arc, _ in strokes],
+                "colour": [self._palette.channels[arc.channel - 1] for arc, _ in strokes],
+                "width": [stroke.width for _, stroke in strokes],
+                "alpha": [stroke.alpha for _, stroke in strokes],
+                "halo_width": [stroke.halo_width for _, stroke in strokes],
             }
         elif self.manifolds.data["xs"]:
             self.manifolds.data = _no_curves()
@@ -96,12 +93,12 @@ class Overlays:
 
     def entries(self) -> list[Entry]:
         """Legend entries of the overlays in view."""
-        entries = [Entry("doubtful", DOUBT)] if self.doubts.data["x"] else []
-        return entries + ([Entry("stable manifolds", MANIFOLD)] if self._manifolds_shown is not None else [])
+        doubtful = [Entry("doubtful pixels", _CHESSBOARD)] if self.doubts.data["x"] else []
+        return doubtful + (self._palette.manifold_entries(self._manifolds_shown) if self._manifolds_shown is not None else [])
 
 
 def _no_doubts() -> dict[str, list[Any]]:
-    return {name: [] for name in ("doubt", "x", "y", "dw", "dh")}
+    return {name: [] for name in ("doubt", "trust", "x", "y", "dw", "dh")}
 
 
 def _no_curves() -> dict[str, list[Any]]:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib import ft2font
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_hex
 from matplotlib.font_manager import FontProperties, findfont
 from PIL import Image, ImageColor
 
@@ -243,14 +245,45 @@ def test_doubtful_pixels_are_marked() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     trust = compute_trust(whole)
     pixels = picture_pixels(whole, "basins", PAPER, MapAnalyses(trust=trust))[::-1]
-    marked = np.all(pixels == ImageColor.getcolor(DOUBT, "RGBA"), axis=-1)
-    np.testing.assert_array_equal(marked, trust.trust == Trust.DOUBTFUL)
-    assert marked.any()
+    marked = [np.all(pixels == rgba(tone), axis=-1) for tone in DOUBT]
+    np.testing.assert_array_equal(marked[0] | marked[1], trust.trust == Trust.DOUBTFUL)
+    assert all(tone.any() for tone in marked)
 
 
-@pytest.mark.parametrize(("picture", "drawn_over"), [("basins", True), ("times", False)])
-def test_manifolds_are_drawn_over_the_basins_only(picture: str, drawn_over: bool) -> None:
+@pytest.mark.parametrize(("picture", "drawn_over"), [("basins", True), ("crossings", True), ("times", False)])
+def test_manifolds_are_drawn_over_exits_basins_and_crossings(picture: str, drawn_over: bool) -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
     found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, 1))
     plain, printed = (draw(whole, picture, PAPER, SIDE, analyses=analyses) for analyses in (MapAnalyses(), found))
     assert (plain.tobytes() != printed.tobytes()) is drawn_over
+
+
+def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
+    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, 1))
+    figure = draw_map_figure(whole, ["crossings"], PAPER, SIDE, analyses=found)
+    colours = [to_hex(curve.get_edgecolor()[0]) for curve in figure.axes[0].collections if isinstance(curve, LineCollection)]
+    assert set(PAPER.channels[:3]) <= set(colours)
+    legend = figure.axes[0].get_legend()
+    assert legend is not None
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert [label for label in labels if "manifold" in label] == [f"stable manifold of Lyapunov orbit {k}" for k in (1, 2, 3)]
+    assert "" not in labels
+
+
+def test_doubtful_pixels_have_an_entry() -> None:
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
+    legend = (
+        draw_map_figure(whole, ["basins"], PAPER, SIDE, analyses=MapAnalyses(trust=compute_trust(whole))).axes[0].get_legend()
+    )
+    assert legend is not None
+    assert "doubtful" in [text.get_text() for text in legend.get_texts()]
+
+
+def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: EscapeMap) -> None:
+    figure = draw_map_figure(escape_map, ["times"], PAPER, SIDE, longest=5000.0)
+    np.testing.assert_array_equal(
+        figure.axes[0].images[0].get_array(), picture_pixels(escape_map, "times", PAPER, longest=5000.0)
+    )
+    bar = figure.axes[0].child_axes[0]
+    assert [tick.get_text() for tick in bar.get_xticklabels()][-1] == "≥ 5000"
