@@ -10,7 +10,7 @@ from importlib import metadata
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
 from app.rendering.palette import Palette
 from app.state.system import TYPED, System
-from engine import CASES, EscapeMap, MapSpec, Orbit
+from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, judge_orbit
 
 MOST_ROWS = 100_000
 """Default number of rows that a table of orbits has at most."""
@@ -26,6 +26,7 @@ def png_bytes(
     *,
     analyses: MapAnalyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
+    longest: float | None = None,
 ) -> bytes:
     """PNG file of some pictures side by side, with the map's provenance in its text fields.
 
@@ -37,7 +38,7 @@ def png_bytes(
 
     about = {"Software": software()} | {name: str(value) for name, value in frame.provenance().items()}
     with RENDER_LOCK:
-        figure = draw_map_figure(frame, pictures, palette, side, analyses=analyses, starts=starts)
+        figure = draw_map_figure(frame, pictures, palette, side, analyses=analyses, starts=starts, longest=longest)
         return save_figure(figure, "png", about, crop=True)
 
 
@@ -49,7 +50,7 @@ def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes
     return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
-def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS) -> str:
+def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS, verdicts: Sequence[OrbitVerdict] = ()) -> str:
     """CSV table of orbits, numbered from 1: orbit, t, x, y, px, py, sali, lyapunov_exponent, r2, at full precision.
 
     Comment lines (#) at the top hold the start, energy and verdict of each orbit, and which of its samples follow.
@@ -60,6 +61,8 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS) -> str:
         The orbits; none for an empty table.
     most_rows
         Rows at most, at least 1 per orbit; longer orbits are thinned to every k-th sample.
+    verdicts
+        One per orbit; by default those of `engine.judge_orbit` without Birkhoff digits.
 
     Raises
     ------
@@ -70,21 +73,21 @@ def orbits_csv(orbits: Sequence[Orbit], most_rows: int = MOST_ROWS) -> str:
         raise ValueError(f"most_rows={most_rows}: must be at least 1, and one for each of {len(orbits)} orbits")
     strides = [math.ceil(orbit.t.size / (most_rows // len(orbits))) for orbit in orbits]
     lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
-    for number, (orbit, stride) in enumerate(zip(orbits, strides, strict=True), 1):
-        lines += _header(number, orbit, stride)
+    for number, (orbit, stride, verdict) in enumerate(zip(orbits, strides, verdicts or map(judge_orbit, orbits), strict=True), 1):
+        lines += _header(number, orbit, stride, verdict)
     lines.append(",".join(("orbit", *_COLUMNS)))
     for number, (orbit, stride) in enumerate(zip(orbits, strides, strict=True), 1):
         lines += _rows(number, orbit, stride)
     return "\n".join(lines) + "\n"
 
 
-def _header(number: int, orbit: Orbit, stride: int) -> list[str]:
+def _header(number: int, orbit: Orbit, stride: int, verdict: OrbitVerdict) -> list[str]:
     start = ", ".join(f"{name} = {float(getattr(orbit, name)[0])!r}" for name in ("x", "y", "px", "py"))
     samples = f"one in {stride} of {orbit.t.size} samples" if stride > 1 else f"all {orbit.t.size} samples"
     return [
         f"# orbit {number}: start {start}",
         f"# orbit {number}: energy {orbit.energy!r}",
-        f"# orbit {number}: {orbit.describe()}",
+        f"# orbit {number}: {verdict.describe()}",
         f"# orbit {number}: {samples}",
     ]
 

@@ -14,6 +14,7 @@ from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from app.rendering.manifold_strokes import manifold_strokes
 from app.rendering.map_analyses import MapAnalyses
 from app.rendering.map_figure import draw_curve, draw_pixels
 from app.rendering.map_images import picture_pixels
@@ -83,9 +84,9 @@ def _analyse(frame: EscapeMap, preset: Preset) -> MapAnalyses:
 
 
 def _draw_manifolds(axes: Axes, frame: EscapeMap, manifolds: StableManifolds) -> None:
-    for arc in manifolds.arcs:
-        points, colour = np.column_stack([arc.x, arc.px]), PAPER.channels[arc.channel - 1]
-        draw_curve(axes, [points], frame.spec.window, colors=colour, linewidths=0.4)
+    for stroke in manifold_strokes(manifolds):
+        points, colour = [np.column_stack([arc.x, arc.px]) for arc in stroke.arcs], PAPER.channels[stroke.channel - 1]
+        draw_curve(axes, points, frame.spec.window, colors=colour, linewidths=0.4 * stroke.width)
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, preset: Preset) -> None:

@@ -40,5 +40,6 @@ class DivergentStartRequests:
         if twin is None:
             self._notify("No start near this one escapes elsewhere.")
         else:
-            self._state.add_start((twin.x, twin.ordinate))
-            self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate)}")
+            added = self._state.add_start((twin.x, twin.ordinate))
+            full = "" if added else f" Remove an orbit to add it at {twin.x!r}, {twin.ordinate!r}."
+            self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate)}{full}")

@@ -1,49 +1,95 @@
-"""Chaos indicators of the chosen orbit; Birkhoff digits, which need more than its history, are requested."""
+"""Chaos indicators of the orbits; Birkhoff digits, which need more than the history of an orbit, are requested."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
 
-from app.job_clients.latest_request import LatestRequest
+from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, BirkhoffDigitsRequest, Fate, IndicatorVerdict, JobSubmitter, Orbit, evaluate_indicators
+from engine import (
+    BirkhoffDigits,
+    BirkhoffDigitsRequest,
+    Fate,
+    IndicatorVerdict,
+    JobSubmitter,
+    Orbit,
+    Subscription,
+    evaluate_indicators,
+)
 
 
 class IndicatorsRequests:
-    """Indicators of one session; `show(verdicts)` receives one verdict per indicator, none if there is no orbit."""
+    """Indicators of one session.
+
+    `show(orbits, verdicts)` receives the orbits with their digits, as far as known, and one verdict per indicator on the chosen
+    orbit, none if there is no orbit.
+    """
 
     def __init__(
         self,
         state: ViewState,
         jobs: JobSubmitter,
-        show: Callable[[Sequence[IndicatorVerdict]], None],
+        show: Callable[[Sequence[ChosenOrbit], Sequence[IndicatorVerdict]], None],
         notify: Callable[[str], None],
         locked: Locked,
     ) -> None:
-        self._state, self._show = state, show
-        self._orbit: Orbit | None = None
-        self._request = LatestRequest(jobs, self._on_digits, notify, locked)
+        self._state, self._jobs, self._show, self._notify = state, jobs, show, notify
+        self._orbits: tuple[ChosenOrbit, ...] = ()
+        self._digits: dict[Orbit, BirkhoffDigits] = {}
+        self._subscriptions: dict[Orbit, Subscription | None] = {}
+        self._deliver = locked(self._on_result)
 
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Evaluate the indicators of the chosen orbit."""
-        chosen = self._state.chosen
-        orbit = orbits[chosen].orbit if chosen < len(orbits) else None
-        if orbit is not None and orbit is self._orbit:
-            return
-        self._orbit = orbit
-        self._request.cancel()
-        self._show(evaluate_indicators(orbit) if orbit is not None else ())
-        if orbit is not None and orbit.fate == Fate.BOUNDED:
-            spec = self._state.orbit_spec(orbits[chosen].start)
-            assert spec is not None
-            self._request.submit(BirkhoffDigitsRequest(spec.potential, spec.state, spec.t_max))
+        """Evaluate the indicators of the orbits."""
+        self._orbits = tuple(orbits)
+        bounded = {one.orbit: one for one in orbits if one.orbit is not None and one.orbit.fate == Fate.BOUNDED}
+        for orbit in self._subscriptions.keys() - bounded.keys():
+            self._cancel(orbit)
+        self._digits = {orbit: digits for orbit, digits in self._digits.items() if orbit in bounded}
+        for orbit, one in bounded.items():
+            if orbit not in self._digits and orbit not in self._subscriptions:
+                self._request(orbit, one)
+        self._update()
 
     def close(self) -> None:
-        """Cancel the request."""
-        self._request.cancel()
+        """Cancel all requests."""
+        for orbit in tuple(self._subscriptions):
+            self._cancel(orbit)
 
-    def _on_digits(self, digits: BirkhoffDigits) -> None:
-        if self._orbit is not None:
-            self._show(evaluate_indicators(self._orbit, digits))
+    def _request(self, orbit: Orbit, one: ChosenOrbit) -> None:
+        spec = self._state.orbit_spec(one.start)
+        assert spec is not None
+        # Cached digits are delivered before `request` returns.
+        self._subscriptions[orbit] = None
+        deliver = partial(self._deliver, orbit)
+        subscription = self._jobs.request(BirkhoffDigitsRequest(spec.potential, spec.state, spec.t_max), deliver, deliver)
+        if orbit in self._subscriptions:
+            self._subscriptions[orbit] = subscription
+
+    def _on_result(self, orbit: Orbit, result: BirkhoffDigits | Exception) -> None:
+        if orbit not in self._subscriptions:
+            return
+        del self._subscriptions[orbit]
+        if isinstance(result, Exception):
+            self._notify(sentence(result))
+        else:
+            self._digits[orbit] = result
+            self._update()
+
+    def _update(self) -> None:
+        """Show what is known."""
+        orbits, chosen = [self._with_digits(one) for one in self._orbits], self._state.chosen
+        one = orbits[chosen] if chosen < len(orbits) else None
+        self._show(orbits, evaluate_indicators(one.orbit, one.digits) if one is not None and one.orbit is not None else ())
+
+    def _with_digits(self, one: ChosenOrbit) -> ChosenOrbit:
+        return replace(one, digits=self._digits.get(one.orbit)) if one.orbit is not None else one
+
+    def _cancel(self, orbit: Orbit) -> None:
+        subscription = self._subscriptions.pop(orbit)
+        if subscription is not None:
+            subscription.cancel()

@@ -11,21 +11,44 @@ from app.job_clients.locking import Locked
 from app.rendering.orbit_curves import OrbitCurves, compute_orbit_curves
 from app.state.system import SYSTEM
 from app.state.view_state import Start, ViewState
-from engine import Fate, JobSubmitter, Orbit, OrbitRequest, Subscription, describe_fate
+from engine import (
+    BirkhoffDigits,
+    Fate,
+    JobSubmitter,
+    Orbit,
+    OrbitRequest,
+    OrbitVerdict,
+    Subscription,
+    describe_fate,
+    judge_orbit,
+)
 
 
 @dataclass(frozen=True)
 class ChosenOrbit:
-    """A start with its orbit, or with the reason why there is none; with neither while the orbit is computed."""
+    """A start with its orbit, or with the reason why there is none; with neither while the orbit is computed.
+
+    The Birkhoff digits follow later, for bounded orbits.
+    """
 
     start: Start
     drawing: OrbitCurves | None = None
     problem: str = ""
+    digits: BirkhoffDigits | None = None
 
     @property
     def orbit(self) -> Orbit | None:
         """The orbit, once it is computed."""
         return self.drawing.orbit if self.drawing is not None else None
+
+    @property
+    def verdict(self) -> OrbitVerdict | None:
+        """The verdict on the orbit, as far as known."""
+        return judge_orbit(self.orbit, self.digits) if self.orbit is not None else None
+
+    def describe(self) -> str:
+        """The verdict, or why there is none, in one sentence."""
+        return self.verdict.describe() if self.verdict is not None else self.problem or "Integrating …"
 
 
 class OrbitRequests:

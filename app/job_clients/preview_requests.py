@@ -102,6 +102,7 @@ class PreviewRequests:
         if energy != self._current:
             return
         self._current = None
+        # The next one is computed while this one is shown.
+        self._begin()
         if frame is not None:
             self._show(frame, columns)
-        self._begin()

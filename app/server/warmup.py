@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import threading
 from collections.abc import Callable, Mapping
@@ -50,5 +51,7 @@ def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> No
             log.exception("%s could not be prepared", name)
             state.kernels_failed.set()
             return
+    # Modules, compiled code and defaults live as long as the process: the collector need not visit them again.
+    gc.freeze()
     state.kernels_ready.set()
     log.info("ready")

@@ -13,11 +13,12 @@ import panel as pn
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
+from app.rendering.manifold_strokes import select_image
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
 from app.rendering.map_images import ON_DEMAND
 from app.rendering.palette import Palette
 from app.state.system import SYSTEM
-from app.state.view_state import Analysis, ViewState
+from app.state.view_state import IMAGES, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.maps.map_plots import MapsView
@@ -45,9 +46,6 @@ from engine import (
     default_window,
 )
 
-IMAGES = 3
-"""Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
-
 SWEPT_ENERGIES = 33
 """Energies of the curves against energy."""
 
@@ -64,6 +62,8 @@ class AnalysisPresenter:
         self._state, self._maps, self._on_analyses = state, maps, on_analyses
         self._spec: MapSpec | None = None
         self._analyses = NO_ANALYSES
+        # All images that are computed.
+        self._manifolds: StableManifolds | None = None
         self._notes: dict[str, str] = {}
         self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure))
@@ -88,12 +88,14 @@ class AnalysisPresenter:
         if spec == self._spec:
             return
         self._spec = spec
+        self._manifolds = None
         self._exponent.cancel()
         self._maps.overlays.begin(spec)
         self.measures.begin()
         if self._analyses != NO_ANALYSES:
             self._update(**dict.fromkeys(_RESULT_OF.values()))
         self._note(**dict.fromkeys(_RESULT_OF, ""))
+        self._explain_manifolds()
 
     def set_palette(self, palette: Palette) -> None:
         """Change the colours."""
@@ -109,6 +111,8 @@ class AnalysisPresenter:
         watch, state = self._state.param.watch, self._state
         watch(lambda *events: self._show_pictures(), list(ON_DEMAND.values()))
         watch(self._remove_switched_off, list(_RESULT_OF))
+        watch(lambda event: self._draw_manifolds(), "images")
+        watch(lambda *events: self._explain_manifolds(), ["manifolds", "plane"])
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
         watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
         watch(lambda *events: self.curves.show(None), list(SYSTEM))
@@ -145,6 +149,7 @@ class AnalysisPresenter:
         if name == "trust":
             self._maps.overlays.show_trust(None)
         if name == "manifolds":
+            self._manifolds = None
             self._maps.overlays.show_manifolds(None)
         self._update(**{_RESULT_OF[name]: None})
         self._note(**{name: ""})
@@ -155,6 +160,10 @@ class AnalysisPresenter:
         self._analyses = replace(self._analyses, **results)
         self._maps.describe()
         self._on_analyses(self._analyses)
+
+    def _explain_manifolds(self) -> None:
+        if self._state.manifolds and self._state.plane is not Plane.X_PX:
+            self._note(manifolds=f"Stable manifolds are curves in the {Plane.X_PX.value} plane and are drawn there only.")
 
     def _note(self, **sentences: str) -> None:
         self._notes |= sentences
@@ -178,9 +187,18 @@ class AnalysisPresenter:
         self._update(origins=origins)
 
     def _show_manifolds(self, frame: EscapeMap, manifolds: StableManifolds) -> None:
-        self._maps.overlays.show_manifolds(manifolds)
-        self._note(manifolds=_describe_manifolds(manifolds))
-        self._update(manifolds=manifolds)
+        self._manifolds = manifolds
+        self._draw_manifolds()
+
+    def _draw_manifolds(self) -> None:
+        """Draw the image of the manifolds that is chosen, or all."""
+        if self._manifolds is None:
+            return
+        image = self._state.images
+        chosen = select_image(self._manifolds, image)
+        self._maps.overlays.show_manifolds(chosen)
+        self._note(manifolds=_describe_manifolds(chosen, image))
+        self._update(manifolds=chosen)
 
     # Measurements started by buttons.
 
@@ -236,8 +254,9 @@ def _manifolds_request(frame: EscapeMap) -> StableManifoldsRequest | None:
     return StableManifoldsRequest(spec.potential, spec.energy, IMAGES, None if whole else spec.window)
 
 
-def _describe_manifolds(manifolds: StableManifolds) -> str:
+def _describe_manifolds(manifolds: StableManifolds, image: int) -> str:
     points = sum(arc.x.size for arc in manifolds.arcs)
     truncated = " Some spirals are truncated." if manifolds.truncated else ""
     arcs = f"{len(manifolds.arcs)} arcs, {points} points"
-    return f"Stable manifolds of the Lyapunov orbits, images 1 to {manifolds.images}: {arcs}.{truncated}"
+    drawn = f"image {image}" if image else f"images 1 to {manifolds.images}"
+    return f"Stable manifolds of the Lyapunov orbits, {drawn}: {arcs}.{truncated}"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
+from urllib.parse import parse_qsl
 
 import panel as pn
 
@@ -16,12 +17,14 @@ from app.job_clients.map_requests import MapRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.preview_requests import LoadPolicy
 from app.job_clients.separation_requests import SeparationRequests
+from app.rendering.palette import MOST_ORBITS
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
 from app.session.analysis_presenter import AnalysisPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.state.navigation import Navigation
+from app.state.history import History
+from app.state.navigation import window_moves
 from app.state.permalink import LINKED, read_link, write_link
 from app.state.presets import Preset
 from app.state.system import SYSTEM, System
@@ -46,8 +49,8 @@ from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
-from app.views.panels.tour import Tour
-from engine import EscapeMap, JobClient, Plane, Window
+from app.views.panels.tour import Act, Tour
+from engine import EscapeMap, Fate, IndicatorVerdict, JobClient, Plane, Window, describe_fate
 
 # Time until a preview that was postponed under load is tried again.
 _RETRY_MS = 300
@@ -59,7 +62,10 @@ class Explorer:
     def __init__(self) -> None:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
-        values, self._problems = read_link(_parameters())
+        parameters = _parameters()
+        values, self._problems = read_link(parameters)
+        # A tour over a shared view would hide it.
+        self._offers_tour = not parameters
         self.state = ViewState(**values)
         callbacks = SessionCallbacks(document)
         # Panel runs widget callbacks without the session's lock, which changes of bare Bokeh models need.
@@ -75,9 +81,7 @@ class Explorer:
         self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
         self.divergent_start = DivergentStartRequests(self.state, jobs, self.orbit_controls.say, self._locked)
         self.separation = SeparationRequests(self.state, jobs, self.separation_plot.show, self.orbit_controls.say, self._locked)
-        self.indicators = IndicatorsRequests(
-            self.state, jobs, self.orbit_controls.show_indicators, self.orbit_controls.say, self._locked
-        )
+        self.indicators = IndicatorsRequests(self.state, jobs, self._show_verdicts, self.orbit_controls.say, self._locked)
         self.analysis = Stack(
             {
                 Analysis.STATISTICS: self.statistics.build,
@@ -93,18 +97,19 @@ class Explorer:
         )
         self._orbits_shown: tuple[ChosenOrbit, ...] = ()
         self._requested_at: float | None = None
+        self._navigating = False
         self._connect()
         pn.state.on_session_destroyed(self.close)
         pn.state.onload(self._begin)
 
     def _make_views(self) -> None:
         state, locked = self.state, self._locked
-        self.navigation = Navigation(state)
-        self.maps = MapsView(self._add_start, self.navigation.visit, self._count_in)
+        self.history = History()
+        self.maps = MapsView(self._add_start, self._zoom_to, self.history.end_gesture, self._count_in)
         self.toolbar = MapToolbar(
-            locked(self.navigation.back),
-            locked(self.navigation.forward),
-            locked(lambda: self.navigation.visit(None)),
+            lambda: self.browser.go_back(),
+            lambda: self.browser.go_forward(),
+            locked(lambda: state.param.update(window=None)),
             locked(self.maps.set_drag),
         )
         self.orbit_controls: OrbitControls = OrbitControls(
@@ -127,21 +132,23 @@ class Explorer:
         self.browser = BrowserEvents(
             BrowserActions(
                 key=locked(self._press),
+                navigate=locked(self._navigate),
                 dark=locked(self.set_dark),
                 touch=locked(self._begin_touch),
-                first_visit=locked(lambda: self.tour.start()),
+                first_visit=locked(self._welcome),
                 copied=locked(self._copied),
             )
         )
         self.downloads: Downloads = Downloads(state, self.browser.copy_link)
         self.notice = Notice()
         self.gallery = Gallery(locked(self._show_preset))
-        self.tour: Tour = Tour()
+        self.tour: Tour = Tour(locked(self._act))
         actions = ControlActions(
             preview=lambda energy: self.map_requests.request_preview(energy),
             settle=lambda: self.map_requests.request_map(),
             play=locked(self._play),
             choose_potential=locked(lambda: self.potential.toggle()),
+            lock_times=locked(lambda on: state.param.update(lock_times=self.maps.longest_time if on else None)),
         )
         self.controls = Controls(state, actions)
         self.drawers = Drawers(
@@ -154,18 +161,20 @@ class Explorer:
 
     def _connect(self) -> None:
         watch, state = self.state.param.watch, self.state
-        watch(lambda *events: self.toolbar.follow(self.navigation.history), ["window", *SYSTEM, "plane"])
         watch(lambda event: self.orbit_controls.follow_plane(event.new), "plane")
         watch(lambda event: self._show_orbits(self._orbits_shown), "chosen")
         watch(lambda event: self._set_palette(), "palette")
-        watch(lambda *events: self._count_in(None), [*SYSTEM, "plane", "window"])
+        watch(lambda event: self.maps.lock_times(event.new), "lock_times")
+        watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
         watch(lambda event: self._show_box(event.new), "box")
         watch(lambda event: self._show_analysis(), "analysis")
-        watch(lambda *events: self._write_link(), list(LINKED))
+        watch(self._write_link, list(LINKED))
         self.orbit_controls.follow_plane(state.plane)
         self._set_palette()
-        self.toolbar.follow(self.navigation.history)
+        self.maps.lock_times(state.lock_times)
+        self._follow_history()
         self._show_analysis()
+        self._show_box(state.box)
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
@@ -194,9 +203,28 @@ class Explorer:
         if self._problems:
             self.notice.warn(" ".join(self._problems))
 
-    def _write_link(self) -> None:
-        if pn.state.location is not None:
-            pn.state.location.search = write_link(self.state)
+    def _write_link(self, *events: Any) -> None:
+        """Show the state as the address; a choice among the orbits is not an entry of the browser's history."""
+        if not self._navigating:
+            entry = self.history.entry if {event.name for event in events} == {"chosen"} else self.history.record()
+            self.browser.write_link(write_link(self.state), entry)
+        self._follow_history()
+
+    def _follow_history(self) -> None:
+        self.toolbar.follow(self.history, zoomed=self.state.window is not None)
+
+    def _navigate(self, link: str, entry: int) -> None:
+        """Show the state of a link in the browser's history."""
+        values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
+        shown = ViewState(**values)
+        self.history.move_to(entry)
+        self._navigating = True
+        try:
+            with pn.io.hold():
+                self.state.param.update(**{name: getattr(shown, name) for name in LINKED})
+        finally:
+            self._navigating = False
+        self._follow_history()
 
     def _set_palette(self) -> None:
         palette = self.state.colours
@@ -204,6 +232,30 @@ class Explorer:
             for view in (self.maps, self.orbit_plots, self.orbit_controls, self.statistics, self.separation_plot, self.analyses):
                 view.set_palette(palette)
             self._show_orbits(self._orbits_shown)
+
+    def _welcome(self) -> None:
+        if self._offers_tour:
+            self.tour.start()
+
+    def _act(self, act: Act) -> None:
+        """Do on the page what a step of the tour is about."""
+        state = self.state
+        match act:
+            case Act.PLAY:
+                self._play()
+            case Act.ZOOM:
+                window_moves(state)["+"]()
+            case Act.ORBIT:
+                window = state.map_spec().window
+                x = 0.6 * window.x_low + 0.4 * window.x_high
+                ordinate = 0.6 * window.ordinate_low + 0.4 * window.ordinate_high
+                self._add_start(*self.maps.snapped(x, ordinate))
+            case Act.TWIN:
+                self.divergent_start.search()
+            case Act.LAYER:
+                state.judge = True
+            case Act.GALLERY:
+                self.drawers.show("gallery")
 
     def _begin_touch(self) -> None:
         self.toolbar.begin_touch()
@@ -225,12 +277,26 @@ class Explorer:
 
     # Callbacks of the views.
 
+    def _zoom_to(self, window: Window | None) -> None:
+        self.history.begin_gesture()
+        self.state.window = window
+
     def _add_start(self, x: float, ordinate: float) -> None:
-        self.state.add_start((x, ordinate))
+        """Add a start, or say why not; a forbidden start takes no place."""
+        state = self.state
+        if state.orbit_spec((x, ordinate)) is None:
+            self.notice.show(describe_fate(Fate.FORBIDDEN))
+        elif not state.add_start((x, ordinate)):
+            self.notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 
     def _count_in(self, box: Window | None) -> None:
         """Count in a box, and show the statistics; None removes the box."""
         self.state.param.update(box=box, analysis=self.state.analysis if box is None else Analysis.STATISTICS)
+
+    def _remove_box(self, *events: Any) -> None:
+        """Remove the box of another view, unless a link gives a new one."""
+        if all(event.name != "box" for event in events):
+            self._count_in(None)
 
     def _show_box(self, box: Window | None) -> None:
         self.maps.marks.show_box(box)
@@ -245,14 +311,20 @@ class Explorer:
     def _show_preset(self, preset: Preset) -> None:
         self.animation.stop()
         self.state.param.update(chosen=0, **(asdict(System(preset.case)) | preset.values()))
-        self.navigation.visit(preset.window)
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Link copied." if success else "The browser does not allow it: copy the page's address instead.")
 
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""
-        moves = {**self.navigation.moves(), "p": self._play, "Escape": self._escape, "?": self.tour.start}
+        moves: dict[str, Callable[[], Any]] = {
+            **window_moves(self.state),
+            "b": self.browser.go_back,
+            "f": self.browser.go_forward,
+            "p": self._play,
+            "Escape": self._escape,
+            "?": lambda: self.drawers.toggle("help"),
+        }
         try:
             moves[key]()
         except ValueError as error:
@@ -296,6 +368,8 @@ class Explorer:
         with pn.io.hold():
             self.analyses.begin(frame.spec)
             self.maps.show(frame, columns, preview=True)
+            if not isinstance(frame.spec.energy, tuple):
+                self.controls.show_energy(frame.spec.energy)
             self.progress.show_preview()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
@@ -334,14 +408,19 @@ class Explorer:
             self.maps.marks.show_starts([one.start for one in orbits])
             on_section = self.state.plane is Plane.X_PX
             self.maps.marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
-            self.orbit_controls.show(orbits, chosen)
             self.orbit_plots.show(self.state.potential, drawings, chosen)
             drawing = drawings[chosen] if orbits else None
             self.playback.follow(float(drawing.orbit.t[-1]) if drawing is not None else None)
             # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
-            self.inspector.follow(sum(not one.problem for one in orbits))
+            self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
             self.separation.follow(orbits)
             self.indicators.follow(orbits)
+
+    def _show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
+        """Show what is known of the orbits in words."""
+        with pn.io.hold():
+            self.orbit_controls.show(orbits, self.state.chosen)
+            self.orbit_controls.show_indicators(verdicts)
             self.downloads.show_orbits(orbits)
             self.accessible_table.show_orbits(orbits)
 

@@ -37,7 +37,7 @@ class ExplorerTemplate(pn.Template):
     """The page of one session: a header, the controls, and the stage with the maps."""
 
     def __init__(self, **roots: pn.viewable.Viewable) -> None:
-        super().__init__(_frame(), items=roots, design=ExplorerDesign, location=True)
+        super().__init__(_frame(), items=roots, design=ExplorerDesign, location=False)
         self.add_variable("theme_css", theme_css())
         self.add_variable("theme_key", THEME_KEY)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.state.system import SYSTEM, TYPED, System, refusal
+from app.state.system import SYSTEM, System, refusal
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import PotentialPanel
-from engine import CASES, Answer, JobSubmitter, Potential, PotentialReview, PotentialReviewRequest, review_potential
+from engine import CASES, Answer, JobSubmitter, Potential, PotentialReview, PotentialReviewRequest
 
 
 class PotentialPresenter:
@@ -21,14 +21,14 @@ class PotentialPresenter:
         self.panel = PotentialPanel(locked(self._preview), locked(self._choose))
         self._request = LatestRequest(jobs, self._on_review, self.panel.say, locked)
         state.param.watch(lambda *events: self._follow(), list(SYSTEM))
-        self._follow()
         self.panel.section.open(state.case not in CASES or bool(state.system.changed))
+        self._follow()
 
     def toggle(self) -> None:
-        """Open the section with the properties of the current system, or close it."""
+        """Open the section with the properties of its system, or close it."""
         self.panel.section.open(not self.panel.section.is_open)
         if self.panel.section.is_open:
-            self._preview(self._state.system)
+            self._preview(self.panel.shown)
 
     def close(self) -> None:
         """Cancel the request at the end of the session."""
@@ -38,8 +38,7 @@ class PotentialPresenter:
         self._propose(system, use=False)
 
     def _choose(self, system: System) -> None:
-        if system != self._state.system:
-            self._propose(system, use=True)
+        self._propose(system, use=system != self._state.system)
 
     def _propose(self, system: System, *, use: bool) -> None:
         """Review a system, unless its review is cached; `use` shows it if it is valid."""
@@ -47,6 +46,7 @@ class PotentialPresenter:
             potential = system.potential
         except ValueError as error:
             self._request.cancel()
+            self._proposed = None
             self.panel.say(str(error))
             return
         # The event of the last letter may arrive after Enter.
@@ -66,11 +66,10 @@ class PotentialPresenter:
         system, use = self._proposed
         self._proposed = system, False
         problem = refusal(review)
-        self.panel.show(review, problem)
         if use and problem is None:
             self._state.show_system(system, self._energy_for(system))
-        elif use:
-            self.panel.follow(self._state.system)
+        else:
+            self.panel.show(review, problem)
 
     def _energy_for(self, system: System) -> float | None:
         """Energy in the same ratio to the escape energy as before; None for another potential."""
@@ -82,8 +81,6 @@ class PotentialPresenter:
 
     def _follow(self) -> None:
         """Follow the view state."""
-        system = self._state.system
-        self.panel.follow(system)
-        if system.case == TYPED or system.case not in CASES or system.changed:
-            review = review_potential(system.potential)
-            self.panel.show(review, refusal(review))
+        self.panel.follow(self._state.system)
+        if self.panel.section.is_open:
+            self._preview(self._state.system)

@@ -23,7 +23,8 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "times": (
             "The escape time is the time at which an orbit crosses a Lyapunov orbit outward. It is short and smooth inside "
             "the basins and diverges at their fractal boundaries. It is long near islands of bounded orbits, too, because "
-            "orbits stick to the edge of an island before they escape. The colour scale is logarithmic."
+            "orbits stick to the edge of an island before they escape. The colour scale is logarithmic; the colours at its ends "
+            "stand for all shorter and all longer times."
         ),
         "crossings": (
             "The number of times an orbit passes the axis y = 0 upward before it escapes; the start does not count. No "

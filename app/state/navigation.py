@@ -1,12 +1,11 @@
-"""Pan and zoom of the window, with history."""
+"""Pan and zoom of the window."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
-from app.state.system import SYSTEM
 from app.state.view_state import ViewState
-from app.state.zoom_history import ZoomHistory
 from engine import Window
 
 PAN_SHARE = 0.25
@@ -35,42 +34,22 @@ def zoom(window: Window, factor: float) -> Window:
     return Window(x - half_x, x + half_x, ordinate - half, ordinate + half)
 
 
-class Navigation:
-    """Moves the window of a view state and keeps its history."""
+def window_moves(state: ViewState) -> dict[str, Callable[[], None]]:
+    """Actions of the keys that move the window of a view state; they raise ValueError at the limit of double precision."""
 
-    def __init__(self, state: ViewState) -> None:
-        self._state = state
-        self.history = ZoomHistory()
-        if state.window is not None:
-            self.history.visit(state.window)
-        state.param.watch(lambda *events: self.history.clear(), [*SYSTEM, "plane"])
+    def show(change: Callable[[Window], Window | None]) -> Callable[[], None]:
+        def act() -> None:
+            state.window = change(state.map_spec().window)
 
-    def visit(self, window: Window | None) -> None:
-        """Show a window; None is the whole interior."""
-        self.history.visit(window)
-        self._state.window = window
+        return act
 
-    def back(self) -> None:
-        """Show the previous window."""
-        self._state.window = self.history.back()
+    return {
+        "+": show(lambda window: zoom(window, ZOOM_FACTOR)),
+        "-": show(lambda window: zoom(window, 1.0 / ZOOM_FACTOR)),
+        "h": show(lambda window: None),
+        **{arrow: show(partial(_pan_by, arrow)) for arrow in DIRECTIONS},
+    }
 
-    def forward(self) -> None:
-        """Show the next window of the history."""
-        self._state.window = self.history.forward()
 
-    def moves(self) -> dict[str, Callable[[], None]]:
-        """Actions of the keys that move the window; they raise ValueError at the limit of double precision."""
-        return {
-            "+": lambda: self.visit(zoom(self._window(), ZOOM_FACTOR)),
-            "-": lambda: self.visit(zoom(self._window(), 1.0 / ZOOM_FACTOR)),
-            "h": lambda: self.visit(None),
-            "b": self.back,
-            "f": self.forward,
-            **{arrow: self._pan(arrow) for arrow in DIRECTIONS},
-        }
-
-    def _pan(self, arrow: str) -> Callable[[], None]:
-        return lambda: self.visit(pan(self._window(), arrow))
-
-    def _window(self) -> Window:
-        return self._state.map_spec().window
+def _pan_by(arrow: str, window: Window) -> Window:
+    return pan(window, arrow)

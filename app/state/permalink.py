@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, astuple
 from typing import Any
 from urllib.parse import urlencode
@@ -11,13 +11,24 @@ import numpy as np
 
 from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.system import SYSTEM, TYPED, System, refusal
-from app.state.view_state import LAYERS, Analysis, Start, ViewState, allowed_resolutions, allowed_t_max
+from app.state.view_state import (
+    IMAGE_CHOICES,
+    LAYERS,
+    LOCKED_TIMES,
+    Analysis,
+    Start,
+    ViewState,
+    allowed_resolutions,
+    allowed_t_max,
+)
 from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window, review_potential
 
 LONGEST_VALUE = LONGEST_TEXT
 """Maximal length of a value in a link, in characters."""
 
 _SHOWN = 40
+# Attributes that have no meaning for another system.
+_OF_SYSTEM = ("energy", "window", "box", "starts", "chosen")
 
 
 def write_link(state: ViewState) -> str:
@@ -31,13 +42,19 @@ def write_link(state: ViewState) -> str:
         "t_max": f"{state.t_max:g}",
         "resolution": state.resolution,
     }
-    if state.window is not None:
-        chosen["window"] = _joined(astuple(state.window))
+    for name in ("window", "box"):
+        part: Window | None = getattr(state, name)
+        if part is not None:
+            chosen[name] = _joined(astuple(part))
     chosen |= {name: "yes" for name in LAYERS if getattr(state, name)}
+    if state.images:
+        chosen["images"] = state.images
     if state.analysis is not Analysis.NONE:
         chosen["analysis"] = state.analysis.value
     if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette
+    if state.lock_times is not None:
+        chosen["lock_times"] = f"{state.lock_times:g}"
     starts: tuple[Start, ...] = state.starts
     if starts:
         chosen["orbits"] = ";".join(map(_joined, starts))
@@ -71,8 +88,10 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
                 raise ValueError
             values[attribute] = read(text)
         except (ValueError, KeyError):
-            problems.append(f"Ignored {name}={_shown(text)} in the link: choose {legal}.")
+            problems.append(f"Ignored {_quoted(name, text)}: choose {legal}.")
     values, problem = _with_system(values)
+    problems += [problem] if problem else []
+    values, problem = _with_energy(values)
     problems += [problem] if problem else []
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
@@ -92,9 +111,24 @@ def _with_system(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
         problem = str(error)
     if problem is None:
         return {"energy": system.energies.first} | values | asdict(system), ""
-    # Energy, window and starts are meaningless for the default system.
-    others = {name: value for name, value in values.items() if name not in (*SYSTEM, "energy", "window", "starts", "chosen")}
+    # What belongs to another system is meaningless for the default one.
+    others = {name: value for name, value in values.items() if name not in (*SYSTEM, *_OF_SYSTEM)}
     return others, f"Ignored the potential in the link: {problem}"
+
+
+def _with_energy(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
+    """Drop an energy below the well, and return the reason."""
+    system = System(**({"case": ViewState.param.case.default} | {name: values[name] for name in SYSTEM if name in values}))
+    lowest, first = float(system.potential.value(0.0, 0.0)), system.energies.first
+    if values.get("energy", first) > lowest:
+        return values, ""
+    problem = f"Ignored h={values['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
+    return values | {"energy": first}, problem
+
+
+def _quoted(name: str, text: str) -> str:
+    # "nan" in a message looks like a result.
+    return name if "nan" in text.lower() else f"{name}={_shown(text)}"
 
 
 def _shown(text: str) -> str:
@@ -121,6 +155,10 @@ def _read_numbers(text: str, count: int) -> tuple[float, ...]:
     return numbers
 
 
+def _read_window(text: str) -> Window:
+    return Window(*_read_numbers(text, 4))
+
+
 def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
     starts = tuple(_read_numbers(pair, 2) for pair in text.split(";"))
     if len(starts) > MOST_ORBITS:
@@ -142,38 +180,52 @@ def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
     return lambda text: choices[text]
 
 
+def _one_number_of(choices: Iterable[float]) -> Callable[[str], Any]:
+    """A parser of any usual format of one of the numbers: 100000, 1e5, 1E+5, 100 000 and 100,000."""
+    by_value = {float(choice): choice for choice in choices}
+    return lambda text: by_value[_read_number("".join(text.split()).replace(",", ""))]
+
+
+def _listed(choices: Iterable[str]) -> str:
+    *others, last = choices
+    return f"{', '.join(others)} or {last}" if others else last
+
+
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
 _PLANES = {plane.name.lower(): plane for plane in Plane}
 _SWITCH = {"yes": True, "no": False}
 _ANALYSES = {analysis.value: analysis for analysis in Analysis}
 _PALETTES = {name: name for name in PALETTES}
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
+_WINDOW = "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high"
 
 # For each parameter: attribute of the view state, parser, and legal values.
 _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
-    "case": ("case", _one_of(_CASES), f"one of {', '.join(_CASES)}"),
+    "case": ("case", _one_of(_CASES), _listed(_CASES)),
     "V": ("formula", str, f"a polynomial in x and y of at most {LONGEST_TEXT} characters"),
     "omega_1": ("omega_1", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
     "omega_2": ("omega_2", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
     "epsilon": ("epsilon", _between(*STRENGTHS), f"a number from {STRENGTHS[0]:g} to {STRENGTHS[1]:g}"),
-    "plane": ("plane", _one_of(_PLANES), f"one of {', '.join(_PLANES)}"),
-    "h": ("energy", _read_number, "a finite number"),
-    "window": ("window", lambda text: Window(*_read_numbers(text, 4)), "x_low,x_high,ordinate_low,ordinate_high"),
+    "plane": ("plane", _one_of(_PLANES), _listed(_PLANES)),
+    "h": ("energy", _read_number, "a number, such as 0.25"),
+    "window": ("window", _read_window, _WINDOW),
+    "box": ("box", _read_window, _WINDOW),
     **{name: (name, _one_of(_SWITCH), "yes or no") for name in LAYERS},
-    "analysis": ("analysis", _one_of(_ANALYSES), f"one of {', '.join(Analysis)}"),
-    "palette": ("palette", _one_of(_PALETTES), f"one of {', '.join(_PALETTES)}"),
+    "analysis": ("analysis", _one_of(_ANALYSES), _listed(_ANALYSES)),
+    "images": ("images", _one_of(IMAGE_CHOICES), _listed(IMAGE_CHOICES)),
+    "palette": ("palette", _one_of(_PALETTES), _listed(_PALETTES)),
+    "lock_times": ("lock_times", _between(*LOCKED_TIMES), f"a number from {LOCKED_TIMES[0]:g} to {LOCKED_TIMES[1]:g}"),
     "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons"),
-    "look": ("chosen", _one_of(_PLACES), f"one of {', '.join(_PLACES)}"),
+    "look": ("chosen", _one_of(_PLACES), _listed(_PLACES)),
 }
 
 
 def _limited_readers() -> dict[str, tuple[str, Callable[[str], Any], str]]:
     """Readers of the parameters whose choices depend on the server's settings."""
-    times = {text: t_max for t_max in allowed_t_max().values() for text in (f"{t_max:g}", f"{t_max:.0f}")}
-    sides = {str(side): side for side in allowed_resolutions().values()}
+    times, sides = allowed_t_max(), allowed_resolutions().values()
     return {
-        "t_max": ("t_max", _one_of(times), ", ".join(allowed_t_max())),
-        "resolution": ("resolution", _one_of(sides), ", ".join(sides)),
+        "t_max": ("t_max", _one_number_of(times.values()), _listed(times)),
+        "resolution": ("resolution", _one_number_of(sides), _listed(map(str, sides))),
     }
 
 

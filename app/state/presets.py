@@ -28,7 +28,7 @@ class Preset:
         One of `GROUPS`.
     picture
         Picture of its thumbnail, one of `app.rendering.map_images.TITLES`.
-    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, origins, analysis
+    case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, images, origins, analysis
         As in `ViewState`.
     """
 
@@ -47,6 +47,7 @@ class Preset:
     judge: bool = False
     trust: bool = False
     manifolds: bool = False
+    images: int = 0
     origins: bool = False
     analysis: Analysis = Analysis.NONE
 
@@ -96,9 +97,9 @@ PRESETS: tuple[Preset, ...] = (
     Preset(
         key="crossings", title="Counting crossings", group=_PAPER, picture="crossings",
         case="II", plane=Plane.X_PX, energy=0.22, starts=((0.2, 0.3), (0.3, -0.05), (0.45, 0.0), (0.3, 0.35), (0.55, -0.15)),
-        caption="How often an orbit passes y = 0 upward before it escapes: never (red), once (blue), twice (magenta), 3 to 10 "
-        "times (orange), or more often (green). The bands of each count lie along those of the previous count, which "
-        "builds up the fractal. The five orbits start on five different colours.",
+        caption="How often an orbit passes y = 0 upward before it escapes: the darker the colour, the more often, from none "
+        "(lightest) to more than ten times (darkest). The bands of each count lie along those of the previous count, "
+        "which builds up the fractal. The five orbits start on five different colours.",
     ),
     Preset(
         key="all-energies", title="All energies", group=_PAPER, picture="basins",
@@ -211,8 +212,8 @@ PRESETS: tuple[Preset, ...] = (
         key="feather", title="Bands of crossings", group=_PLACES, picture="crossings",
         case="II", plane=Plane.X_PX, energy=0.20, window=Window(-0.2, 0.3, -0.3, 0.2),
         starts=((-0.03, -0.29), (-0.08, 0.12), (0.03, -0.03), (-0.04, 0.0)),
-        caption="In the red band orbits escape without a crossing, in the blue and magenta ones after one or two, and between "
-        "the bands later. In the middle a small island remains: its orbit alternates between this island and another "
+        caption="In the lightest band orbits escape without a crossing, in the darker ones next to it after one or two, and "
+        "between the bands later. In the middle a small island remains: its orbit alternates between this island and another "
         "one near x = 0.7.",
     ),
     Preset(
@@ -247,7 +248,7 @@ PRESETS: tuple[Preset, ...] = (
         key="doubt", title="Doubtful pixels", group=_EXPLANATIONS, picture="basins", trust=True,
         case="I", plane=Plane.X_PX, energy=0.17, t_max=1e4, starts=((0.31, 0.05), (-0.2, 0.2)),
         caption="Every pixel with a neighbour of another colour was computed again, from a start moved by 10⁻¹¹ and with "
-        "another tolerance. The black ones changed: the exit of these orbits depends on rounding. The rest of the "
+        "another tolerance. The black and white ones changed: the exit of these orbits depends on rounding. The rest of the "
         "picture and its shares are not affected.",
     ),
     Preset(

@@ -13,8 +13,14 @@ from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula,
 TYPED = "typed"
 """Case of a potential that the user typed."""
 
-SYSTEM = ("case", "formula", "omega_1", "omega_2", "epsilon")
+PARAMETERS = {"omega_1": "ω1", "omega_2": "ω2", "epsilon": "ε"}
+"""Symbols of the parameters."""
+
+SYSTEM = ("case", "formula", *PARAMETERS)
 """Attributes of a view state that define its system."""
+
+SHOWN_DIGITS = 12
+"""Significant digits of the coefficients in formulas, where 1.46²/2 is 1.0658 without the rounding error of the product."""
 
 # In units of the escape energy: lower end of the slider, initial energy, upper end of the slider.
 _LOW, _FIRST, _HIGH = 0.8, 1.5, 4.0
@@ -52,19 +58,20 @@ class System:
     @property
     def changed(self) -> dict[str, float]:
         """The parameters that are not 1."""
-        given = {"omega_1": self.omega_1, "omega_2": self.omega_2, "epsilon": self.epsilon}
-        return {name: value for name, value in given.items() if value != 1.0}
+        return {name: getattr(self, name) for name in PARAMETERS if getattr(self, name) != 1.0}
 
     @property
     def title(self) -> str:
-        """Name of the potential without its parameters."""
-        return "Typed potential" if self.case == TYPED else POTENTIALS[self.case].title
+        """Name of the potential, with the parameters that are not 1."""
+        name = "Typed potential" if self.case == TYPED else POTENTIALS[self.case].title
+        changed = ", ".join(f"{PARAMETERS[name]} = {value:.6g}" for name, value in self.changed.items())
+        return f"{name} with {changed}" if changed else name
 
     @property
     def formula_shown(self) -> str:
         """V(x, y) as text, with the values of the parameters."""
         if self.case == TYPED or self.changed:
-            return write_formula(self.potential)
+            return write_formula(self.potential, SHOWN_DIGITS)
         return POTENTIALS[self.case].formula
 
     @property

@@ -34,6 +34,15 @@ def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> di
 
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
+LOCKED_TIMES = (10.0, 1e6)
+"""Limits of the upper end of a locked scale of escape times."""
+
+IMAGES = 3
+"""Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
+
+IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
+"""Images of the stable manifolds that can be drawn."""
+
 RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
 
 
@@ -98,9 +107,13 @@ class ViewState(param.Parameterized):
     judge = param.Boolean(default=False, doc="whether bounded orbits are classified as regular or chaotic")
     trust = param.Boolean(default=False, doc="whether pixels that depend on rounding are marked")
     manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
+    images = param.Selector(default=0, objects=list(IMAGE_CHOICES.values()), doc="image of the manifolds drawn; 0 for all")
     origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
     analysis = param.Selector(default=Analysis.NONE, objects=list(Analysis), doc="statistics, measures or curves below the maps")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
+    lock_times = param.Number(
+        default=None, bounds=LOCKED_TIMES, allow_None=True, doc="upper end of the scale of escape times; None follows the map"
+    )
     starts = _Starts(default=(), doc="starts of up to MOST_ORBITS orbits")
     chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="index of the chosen start")
 
@@ -151,15 +164,13 @@ class ViewState(param.Parameterized):
         x0, y, px, py = (float(value) for value in start_states(self.potential, self.plane, self.energy, x, ordinate)[0])
         return OrbitRequest(self.potential, (x0, y, px, py), self.t_max) if np.isfinite(py) else None
 
-    def add_start(self, start: Start) -> None:
-        """Add a start and choose it; if there are `MOST_ORBITS` already, it replaces the one after the chosen one."""
+    def add_start(self, start: Start) -> bool:
+        """Add a start and choose it; returns False if there are `MOST_ORBITS` others already."""
         if start in self.starts:
             self.chosen = self.starts.index(start)
-            return
-        place = len(self.starts) if len(self.starts) < MOST_ORBITS else (self.chosen + 1) % MOST_ORBITS
-        starts = list(self.starts)
-        starts[place : place + 1] = [start]
-        self.param.update(starts=tuple(starts), chosen=place)
+        elif len(self.starts) < MOST_ORBITS:
+            self.param.update(starts=(*self.starts, start), chosen=len(self.starts))
+        return start in self.starts
 
     def show_system(self, system: System, energy: float | None = None) -> None:
         """Select a system at an energy, by default its initial energy, and remove window and starts."""

@@ -11,6 +11,9 @@ from engine.taylor.kernels import events
 CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
+MIN_REGULAR_TIME = 1000.0
+"""Shortest orbit that can be called regular without a certificate: weak chaos takes this long to appear."""
+
 
 class Fate(IntEnum):
     """Code of the outcome of an orbit. Codes from 1 are not members; they are the number of the channel it escaped through."""

@@ -186,7 +186,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOr
 
     bracket = _find_bracket(outward_velocity, distance)
     if bracket is None:
-        raise _SearchError(f"no Lyapunov orbit found across channel {channel}")
+        raise _SearchError(f"too high, no Lyapunov orbit was found across channel {channel}; choose a lower energy")
     u = optimize.brentq(outward_velocity, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
     _, half_period, count = kernels.shoot(u, *arguments)
     if not np.isfinite(half_period):

@@ -13,7 +13,7 @@ import numpy as np
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
-from engine.dynamics.fates import Fate, Regularity, is_chaotic
+from engine.dynamics.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 from engine.execution import is_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
@@ -42,6 +42,11 @@ class RegularityMap(PixelAnalysis):
 
     character: np.ndarray
     complete: bool
+
+    @property
+    def is_too_short(self) -> bool:
+        """Whether t_max is too short to call an orbit regular: then the code only says that it is not chaotic until t_max."""
+        return self.spec.t_max < MIN_REGULAR_TIME
 
     @property
     def chaotic_share(self) -> float:

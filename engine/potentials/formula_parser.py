@@ -100,7 +100,7 @@ def parse_formula(text: str, name: str | None = None) -> Potential:
         between 1e-9 and 1e9.
     """
     if len(text) > LONGEST_TEXT:
-        raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} are allowed")
+        raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
     expanded = _Parser(text).parse()
     _check_expanded(expanded)
     terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=_by_degree))
@@ -120,12 +120,21 @@ def _check_expanded(expanded: ExactTerms) -> None:
             raise FormulaError(0, problem)
 
 
-def write_formula(potential: Potential) -> str:
-    """A potential as plain text, such as "x²/2 + y²/2 − x²y²"; `parse_formula` reads it back to exactly the same terms."""
+def write_formula(potential: Potential, digits: int | None = None) -> str:
+    """A potential as plain text, such as "x²/2 + y²/2 − x²y²".
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    digits
+        Significant digits of the coefficients, so that `parse_formula` reads back each with a relative error of at most
+        5·10^−digits; None for as many as it needs to read back exactly the same terms.
+    """
     text = ""
     for i, j, c in sorted(potential.terms, key=_by_degree):
         sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")
-        numerator, denominator = _ratio(abs(c))
+        numerator, denominator = _ratio(abs(c), digits)
         monomial = _monomial(i, j)
         factor = "" if numerator == "1" and monomial else numerator
         text += f"{sign}{factor}{monomial}{f'/{denominator}' if denominator != '1' else ''}"
@@ -138,12 +147,12 @@ def _by_degree(term: tuple[int, int] | tuple[int, int, float]) -> tuple[int, int
     return i + j, j
 
 
-def _ratio(size: float) -> tuple[str, str]:
+def _ratio(size: float, digits: int | None) -> tuple[str, str]:
     """Numerator and denominator of a number, as an integer fraction if it is short, otherwise as decimals over 1."""
-    exact = Fraction(size).limit_denominator(_LARGEST_DENOMINATOR)
-    if float(exact) == size:
-        return str(exact.numerator), str(exact.denominator)
-    return repr(float(size)), "1"
+    fraction = Fraction(size).limit_denominator(_LARGEST_DENOMINATOR)
+    if abs(float(fraction) - size) <= (0.0 if digits is None else 5.0 * 10.0**-digits * size):
+        return str(fraction.numerator), str(fraction.denominator)
+    return (repr(float(size)) if digits is None else f"{size:.{digits}g}"), "1"
 
 
 def _monomial(i: int, j: int) -> str:

@@ -26,6 +26,8 @@ _SINGULAR_RATIO = 1e-6
 _CIRCLE_RADIUS = 4.0
 # Smallest angle between the directions of two exit saddles, in radians, at which they can be distinguished by direction.
 _SMALLEST_ANGLE = 1e-3
+# Significant digits of coefficients after a shift of the origin, and rounding errors of zero relative to the largest.
+_MOVED_DIGITS, _MOVED_ROUNDING = 12, 1e-12
 # Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
 _OPEN_ENERGY_FACTOR = 100.0
 
@@ -76,6 +78,9 @@ class PotentialReview:
         A sentence that says why the potential cannot be used; None if it can.
     remarks
         Unusual properties, one sentence each.
+    moved_formula
+        If there is no well at the origin, V with the origin moved to the nearest minimum, as text with coefficients of 12 digits;
+        None if there is no minimum, or if the text would be longer than `LONGEST_TEXT`.
     """
 
     potential: Potential
@@ -88,6 +93,7 @@ class PotentialReview:
     rotations: int
     refusal: str | None
     remarks: tuple[str, ...]
+    moved_formula: str | None
 
 
 @lru_cache(maxsize=_CACHE_SIZE)
@@ -117,6 +123,7 @@ def review_potential(potential: Potential) -> PotentialReview:
         rotations=count_rotations(potential),
         refusal=refusal,
         remarks=() if refusal else _remarks(potential, points),
+        moved_formula=_moved_to_well(potential, points),
     )
 
 
@@ -170,20 +177,38 @@ def _limits_refusal(potential: Potential) -> str | None:
 
 
 def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
-    at_origin = next((point for point in points if point.x == point.y == 0.0), None)
+    at_origin = _point_at_origin(points)
     if at_origin is not None and at_origin.kind is PointKind.MINIMUM:
         return None
     if at_origin is None:
         problem = "There is no well at the origin: the force is not zero there, because V has linear terms."
     else:
         problem = f"There is no well at the origin: V has a {at_origin.kind.value} there."
-    minima = [point for point in points if point.kind is PointKind.MINIMUM]
-    if len(minima) != 1:
+    minima = _minima(points)
+    if not minima:
         return f"{problem} Add quadratic terms that make the origin a minimum."
-    x, y = minima[0].x, minima[0].y
-    formula = write_formula(_shifted(potential, x, y))
-    hint = f"; with the origin moved there, V is {formula}" if len(formula) <= LONGEST_TEXT else ""
-    return f"{problem} The only minimum is at ({x:.6g}, {y:.6g}){hint}."
+    place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
+    which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
+    moved = _moved_to_well(potential, points)
+    hint = f"; with the origin moved there, V is {moved}" if moved is not None else ""
+    return f"{problem} {which} at {place}{hint}."
+
+
+def _point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:
+    return next((point for point in points if point.x == point.y == 0.0), None)
+
+
+def _minima(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
+    """The minima, the nearest to the origin first."""
+    return [point for point in points if point.kind is PointKind.MINIMUM]
+
+
+def _moved_to_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+    nearest = next(iter(_minima(points)), None)
+    if nearest is None or nearest is _point_at_origin(points):
+        return None
+    formula = write_formula(_shifted(potential, nearest.x, nearest.y), _MOVED_DIGITS)
+    return formula if len(formula) <= LONGEST_TEXT else None
 
 
 def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
@@ -269,5 +294,5 @@ def _shifted(potential: Potential, x: float, y: float) -> Potential:
                     part = c * comb(i, k) * comb(j, m) * x ** (i - k) * y ** (j - m)
                     terms[k, m] = terms.get((k, m), 0.0) + part
     largest = max(map(abs, terms.values()), default=0.0)
-    kept = ((k, m, float(f"{c:.12g}")) for (k, m), c in terms.items() if abs(c) > 1e-12 * largest)
+    kept = ((k, m, c) for (k, m), c in terms.items() if abs(c) > _MOVED_ROUNDING * largest)
     return Potential(f"{potential.name}, shifted", tuple(kept))

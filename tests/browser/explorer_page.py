@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
-from playwright.sync_api import Locator, Page
+from playwright.sync_api import Locator, Page, expect
 
 _DOCUMENT = "Bokeh.documents[0]"
+_DRAG_TOOLS = {"Move": "PanTool", "Zoom": "BoxZoomTool", "Count": "BoxSelectTool"}
 _POINT = """([name, x, y]) => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.name !== name) continue
@@ -43,6 +46,22 @@ class ExplorerPage:
             f"window.Bokeh?.documents.length && {_DOCUMENT}.get_model_by_name('maps')?.data.complete[0] === true"
         )
 
+    def wait_for_view(self, *parts: str) -> None:
+        """Wait until the address has all of these parts, and the map of that view is complete."""
+        # The server writes "Starting …" before the address.
+        self.page.wait_for_url(lambda address: all(part in unquote(address) for part in parts))
+        self.wait_until_done()
+
+    def wait_until_done(self) -> None:
+        """Wait until the status line says that the map is complete."""
+        expect(self.text("Done, t =")).to_be_visible()
+
+    def return_home(self) -> None:
+        """Go back to the view that was opened, and wait for its map."""
+        if self.page.evaluate("() => { const steps = history.state.entry; history.go(-steps); return steps }"):
+            expect(self.button("← Back")).to_be_hidden()
+            self.wait_until_done()
+
     def column(self, name: str) -> Any:
         """A column of the maps' source: an image as an array, or a plain value."""
         value = self.page.evaluate(_COLUMN, name)
@@ -70,8 +89,18 @@ class ExplorerPage:
     def ranges(self, picture: str) -> list[float]:
         return self.page.evaluate(_RANGES, picture)
 
+    def button(self, label: str) -> Locator:
+        return self.page.get_by_role("button", name=label, exact=True)
+
     def press(self, label: str) -> None:
-        self.page.get_by_role("button", name=label, exact=True).click()
+        self.button(label).click()
+
+    def open_fold(self, title: str) -> None:
+        """Open a fold, unless it is open."""
+        self.page.get_by_role("button", name=re.compile(f"^[▸▾] {title}$")).wait_for()
+        if self.button(f"▸ {title}").is_visible():
+            self.press(f"▸ {title}")
+            self.button(f"▾ {title}").wait_for()
 
     def point(self, picture: str, x: float, ordinate: float) -> list[float]:
         """The position of a point of the plane on the screen."""
@@ -79,6 +108,18 @@ class ExplorerPage:
 
     def click(self, picture: str, x: float, ordinate: float) -> None:
         self.page.mouse.click(*self.point(picture, x, ordinate))
+
+    def drag(self, picture: str, begin: tuple[float, float], end: tuple[float, float]) -> None:
+        """Drag from one point of the plane to another."""
+        self.page.mouse.move(*self.point(picture, *begin))
+        self.page.mouse.down()
+        self.page.mouse.move(*self.point(picture, *end), steps=5)
+        self.page.mouse.up()
+
+    def turn_wheel(self, picture: str, x: float, ordinate: float, delta: float) -> None:
+        """Turn the wheel over a point of the plane; a negative `delta` zooms in."""
+        self.page.mouse.move(*self.point(picture, x, ordinate))
+        self.page.mouse.wheel(0, delta)
 
     def hover(self, picture: str, x: float, ordinate: float) -> None:
         left, top = self.point(picture, x, ordinate)
@@ -97,8 +138,16 @@ class ExplorerPage:
         self.radio(label).click()
 
     def choose(self, label: str, option: str) -> None:
-        """Choose an option of a drop-down list."""
+        """Choose an option of a list in "Quality and colours"."""
+        self.open_fold("Quality and colours")
         self.page.get_by_label(label, exact=True).select_option(label=option)
+
+    def set_drag(self, mode: str) -> None:
+        """Choose what a drag over a map does, and wait until the maps do it."""
+        self.pick(mode)
+        self.page.wait_for_function(
+            f"tool => {_DOCUMENT}.get_model_by_name('basins').toolbar.gestures.pan.active?.type == tool", arg=_DRAG_TOOLS[mode]
+        )
 
     def type_number(self, label: str, value: str) -> None:
         box = self.page.get_by_label(label, exact=True).first

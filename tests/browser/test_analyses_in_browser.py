@@ -9,78 +9,117 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from engine import CASES, MapSpec, Plane, Trust, compute_map, compute_origin_fates, compute_trust
+from app.views.analysis.energy_curves import TITLES as CURVES
+from engine import (
+    CASES,
+    MapSpec,
+    Plane,
+    Regularity,
+    Trust,
+    compute_map,
+    compute_origin_fates,
+    compute_regularity,
+    compute_trust,
+)
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.25, (113, 113), t_max=1e3)
-VIEW = "?case=II&h=0.25&resolution=113&t_max=1000"
+VIEW = "?case=II&plane=x_px&h=0.25&t_max=1000&resolution=113"
+
+
+@pytest.fixture(scope="module")
+def opened(open_for_all: OpenExplorer) -> ExplorerPage:
+    return open_for_all(link=VIEW)
 
 
 def switch(explorer: ExplorerPage, label: str) -> None:
     explorer.page.get_by_label(label, exact=True).click()
 
 
-def test_doubtful_pixels_are_those_of_the_engine_and_follow_the_switch(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW)
+def test_doubtful_pixels_are_those_of_the_engine_and_follow_the_switch(explorer: ExplorerPage) -> None:
     switch(explorer, "Pixels to trust")
     expect(explorer.text("of the pixels inside are doubtful")).to_be_visible()
     explorer.wait_for_data("doubts", "data.doubt.length == 1")
     marks = np.array(explorer.model_data("doubts")["doubt"]).ravel()
     expected = compute_trust(compute_map(SPEC)).trust == Trust.DOUBTFUL
-    assert marks.sum() == expected.sum() > 0
+    assert np.count_nonzero(marks) == expected.sum() > 0
     switch(explorer, "Pixels to trust")
     explorer.wait_for_data("doubts", "data.doubt.length == 0")
 
 
-def test_manifolds_lie_on_the_section_and_follow_the_energy(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW + "&manifolds=yes")
+def test_manifolds_lie_on_the_section_and_follow_the_energy(explorer: ExplorerPage) -> None:
+    switch(explorer, "Stable manifolds")
     explorer.wait_for_data("manifolds", "data.xs.length > 2")
     expect(explorer.text("Stable manifolds of the Lyapunov orbits")).to_be_visible()
     first = len(explorer.model_data("manifolds")["xs"])
     explorer.type_number("Exact h", "0.4")
-    explorer.page.wait_for_function(
-        f"Bokeh.documents[0].get_model_by_name('manifolds').data.xs.length > 0"
-        f" && Bokeh.documents[0].get_model_by_name('manifolds').data.xs.length != {first}"
-    )
+    explorer.wait_for_data("manifolds", f"data.xs.length > 0 && data.xs.length != {first}")
 
 
-def test_origins_have_a_picture_and_a_key(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW)
+def test_origins_have_a_picture_and_a_key(explorer: ExplorerPage) -> None:
     switch(explorer, "Origin and exit")
     expect(explorer.text("Enters by (rows), leaves by (columns)")).to_be_visible()
-    explorer.page.wait_for_function("Bokeh.documents[0].get_model_by_name('maps').data.passage[0].length > 1")
+    explorer.wait_for_data("maps", "data.passage[0].length > 1")
     passage, origins = explorer.column("passage"), compute_origin_fates(SPEC)
     same = (origins.origin == origins.fate) & (origins.fate == 1)
     assert len(set(passage[same].tolist())) == 1
     assert passage[same][0] not in passage[(origins.origin != 1) | (origins.fate != 1)]
 
 
+def test_regular_and_chaotic_orbits_can_be_distinguished(explorer: ExplorerPage) -> None:
+    entry = explorer.page.get_by_text("bounded and chaotic")
+    expect(entry).to_be_hidden()
+    switch(explorer, "Regular or chaotic")
+    expect(entry).to_be_visible()
+    expect(explorer.text(re.compile(r"\d % of the bounded orbits are chaotic"))).to_be_visible()
+    codes = explorer.column("character")
+    chaotic = compute_regularity(compute_map(SPEC)).character == Regularity.CHAOTIC
+    assert chaotic.any()
+    assert len(set(codes[chaotic])) == 1
+    switch(explorer, "Regular or chaotic")
+    expect(entry).to_be_hidden()
+
+
+def shown_figures(explorer: ExplorerPage) -> set[str]:
+    """Names of the figures that are visible."""
+    return set(
+        explorer.page.evaluate(
+            """() => [...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)
+                .map(view => view.model.name)"""
+        )
+    )
+
+
 @pytest.mark.slow
-def test_basins_are_measured(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW + "&measures=yes")
+def test_basins_are_measured(explorer: ExplorerPage) -> None:
+    explorer.pick("Basin measures")
     for text in ("Basin entropy.", "Wada.", "Escape law."):
         expect(explorer.text(text)).to_be_visible()
     explorer.wait_for_data("survival_steps", "data.t.length > 10")
+    assert {"survival", "uncertainty"} & shown_figures(explorer) == {"survival"}
     explorer.press("Measure the uncertainty exponent")
     expect(explorer.text("α =")).to_be_visible(timeout=60_000)
     assert len(explorer.model_data("pairs")["share"]) > 5
+    assert "uncertainty" in shown_figures(explorer)
 
 
 @pytest.mark.slow
-def test_curves_are_drawn_and_a_click_opens_a_map(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(height=2400, link=VIEW + "&energies=yes")
+def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> None:
+    explorer.pick("Against energy")
+    expect(explorer.button("Compute the curves")).to_be_visible()
+    assert not set(CURVES) & shown_figures(explorer)
     explorer.press("Compute the curves")
     explorer.wait_for_data("energy_points", "data.h.length >= 3")
-    explorer.page.get_by_role("button", name="Stop", exact=True).last.click()
-    expect(explorer.page.get_by_role("button", name="Compute the curves")).to_be_visible()
+    explorer.button("Stop").last.click()
+    expect(explorer.button("Compute the curves")).to_be_visible()
+    assert set(CURVES) <= shown_figures(explorer)
     points = explorer.model_data("energy_points")
     place = int(np.argmax(points["h"]))
-    explorer.page.get_by_role("button", name="Compute the curves").scroll_into_view_if_needed()
-    explorer.forget_pixels()
+    explorer.button("Compute the curves").scroll_into_view_if_needed()
     explorer.click("entropies", points["h"][place] - 1e-3, points["s_bb"][place])
-    explorer.wait_for_new_pixels()
-    expect(explorer.page.get_by_label("Exact h")).to_have_value(re.compile("^0.5"))
+    explorer.wait_for_view(f"h={points['h'][place]!r}")
+    explorer.pick("No analysis")
 
 
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
@@ -94,7 +133,7 @@ def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplor
 
 
 def test_a_link_sets_the_switches(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW + "&trust=yes&origins=yes")
-    for label in ("Pixels to trust", "Origin and exit"):
-        expect(explorer.page.get_by_label(label, exact=True)).to_be_checked()
-    expect(explorer.page.get_by_label("Stable manifolds", exact=True)).not_to_be_checked()
+    explorer = open_explorer(link=VIEW + "&trust=yes&origins=yes&analysis=measures")
+    for label, on in (("Pixels to trust", True), ("Origin and exit", True), ("Stable manifolds", False)):
+        expect(explorer.page.get_by_label(label, exact=True)).to_be_checked(checked=on)
+    expect(explorer.radio("Basin measures")).to_be_checked()

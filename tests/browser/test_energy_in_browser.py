@@ -9,9 +9,11 @@ import numpy as np
 from playwright.sync_api import expect
 
 from app.rendering.palette import OUTCOMES
-from engine import CASES, Fate, MapSpec, Plane, Window, compute_preview, default_window, preview_spec
+from engine import CASES, Fate, MapSpec, Plane, compute_map, compute_preview, preview_spec
+from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
+# Previews have 75 pixels per side.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
     window.previews = 0
@@ -19,29 +21,33 @@ WATCH = """() => {
 }"""
 
 
-def test_previews_follow_the_slider_while_it_is_dragged(explorer: ExplorerPage) -> None:
+def assert_same_fates(explorer: ExplorerPage, expected: np.ndarray) -> None:
+    """Compare escaping orbits."""
+    shown, escaped = explorer.column("fate"), expected >= 1
+    assert shown.shape == expected.shape
+    np.testing.assert_array_equal(shown[escaped] - list(OUTCOMES).index(Fate.BOUNDED), expected[escaped])
+
+
+def test_previews_follow_the_slider_and_the_map_its_release(explorer: ExplorerPage) -> None:
     explorer.page.evaluate(WATCH)
-    explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=100)
+    explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=50)
     explorer.page.wait_for_function("() => window.previews >= 3")
     expect(explorer.text("Preview up to t = 100")).to_be_visible()
-    explorer.page.wait_for_timeout(1000)
-    shown = explorer.column("fate")
-    expected = compute_preview(preview_spec(MapSpec(CASES["I"], Plane.X_PX, 0.46)))
-    assert shown.shape == expected.fate.shape
-    escaped = expected.fate >= 1
-    first = list(OUTCOMES).index(Fate.BOUNDED)
-    np.testing.assert_array_equal(shown[escaped] - first, expected.fate[escaped])
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (113, 113), t_max=100.0)
+    # The number follows the previews.
+    expect(explorer.page.get_by_label("Exact h", exact=True)).to_have_value("0.46")
+    assert_same_fates(explorer, compute_preview(preview_spec(spec)).fate)
     explorer.page.mouse.up()
-    expect(explorer.text("Done, t = 100 000")).to_be_visible()
-    assert explorer.column("fate").shape == (225, 225)
+    explorer.wait_for_view("h=0.46&")
+    assert_same_fates(explorer, compute_map(spec).fate)
 
 
 def test_dragging_back_shows_the_map_again(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
-    explorer.drag_energy_to(0.9, let_go=False, pause=100)
+    explorer.drag_energy_to(0.9, let_go=False)
     explorer.wait_for_data("maps", "data.fate[0].shape[0] == 75")
-    explorer.drag_energy_to(0.225, pause=100)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 225 && data.complete[0]")
+    explorer.drag_energy_to(0.225)
+    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 113 && data.complete[0]")
     np.testing.assert_array_equal(explorer.column("fate"), before)
 
 
@@ -50,28 +56,30 @@ def test_the_energy_can_be_played_and_stopped(explorer: ExplorerPage) -> None:
     explorer.press("▶ Play")
     explorer.page.wait_for_function("() => window.previews >= 5")
     explorer.press("■ Stop")
-    expect(explorer.text("Done, t = 100 000")).to_be_visible()
     explorer.page.wait_for_url(re.compile(r"h=0\.(19\d|[2-5]\d*)"))
-    expect(explorer.page.get_by_role("button", name="▶ Play")).to_be_visible()
+    expect(explorer.button("▶ Play")).to_be_visible()
+    explorer.wait_until_done()
 
 
 def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link="?case=I&h=0.3&window=0.1,0.3,0.0,0.2")
-    explorer.drag_energy_to(0.6, let_go=False, pause=100)
+    explorer = open_explorer(link=f"{QUICK}&window=0.1,0.3,0.0,0.2")
+    explorer.drag_energy_to(0.6, let_go=False)
     explorer.wait_for_data("maps", "data.fate[0].shape[0] == 75")
     assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
     explorer.page.mouse.up()
-    explorer.wait_until_complete()
+    explorer.wait_for_view("window=0.1,0.3,0.0,0.2")
+    assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
 
 
-def test_the_energy_plane_opens_the_plane_of_an_energy(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link="?case=II&plane=x_h&t_max=1000")
+def test_the_energy_plane_opens_the_plane_of_an_energy(explorer: ExplorerPage) -> None:
+    explorer.pick("II")
+    explorer.pick("(x, h)")
+    explorer.wait_for_view("plane=x_h")
     explorer.click("basins", 0.1, 0.3)
-    expect(explorer.text(re.compile("Escaped through"))).to_be_visible()
-    verdict = explorer.text(re.compile("Escaped through")).inner_text()
+    verdict = explorer.text(re.compile("Escaped through"))
+    expect(verdict).to_be_visible()
+    sentence = verdict.inner_text()
     explorer.press("Open (x, px) at this h")
-    explorer.page.wait_for_url(re.compile(r"plane=x_px&h=0\.(29|30)\d+.*orbits=0\.\d+,0\.0"))
-    explorer.wait_until_complete()
-    expect(explorer.text(re.compile("Escaped through"))).to_have_text(verdict)
-    ranges = explorer.ranges("basins")
-    assert Window(*ranges) != default_window(CASES["II"], Plane.X_PX, 0.2)
+    explorer.wait_for_view("plane=x_px", "orbits=")
+    explorer.page.wait_for_url(re.compile(r"h=0\.(29|30)\d+.*orbits=0\.\d+,0\.0"))
+    expect(verdict).to_have_text(sentence)

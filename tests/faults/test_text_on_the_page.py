@@ -16,7 +16,7 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.analysis.potential_panel import PotentialPanel
-from app.views.components.progress import ProgressView
+from app.views.components.notice import Notice
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 
 HOSTILE = (
@@ -25,9 +25,14 @@ HOSTILE = (
 )
 
 
-def _progress() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    view = ProgressView(lambda: None, lambda: None)
-    return view.warn, view.problem
+def _warning() -> tuple[Callable[[str], None], pn.pane.HTML]:
+    notice = Notice()
+    return notice.warn, notice.layout()
+
+
+def _notice() -> tuple[Callable[[str], None], pn.pane.HTML]:
+    notice = Notice()
+    return notice.show, notice.layout()
 
 
 def _controls() -> tuple[Callable[[str], None], pn.pane.HTML]:
@@ -55,7 +60,7 @@ def _potential() -> tuple[Callable[[str], None], pn.pane.HTML]:
     return panel.say, panel.message
 
 
-@pytest.mark.parametrize("make", [_progress, _controls, _verdict, _curves, _measures, _potential])
+@pytest.mark.parametrize("make", [_warning, _notice, _controls, _verdict, _curves, _measures, _potential])
 def test_html_panes_escape_text(make: Callable[[], tuple[Callable[[str], None], pn.pane.HTML]]) -> None:
     say, pane = make()
     say(HOSTILE)
@@ -63,10 +68,10 @@ def test_html_panes_escape_text(make: Callable[[], tuple[Callable[[str], None], 
     assert "<img" not in pane.object
 
 
-def _warning() -> pn.viewable.Viewable:
-    view = ProgressView(lambda: None, lambda: None)
-    view.warn(HOSTILE)
-    return view.layout()
+def _page() -> pn.viewable.Viewable:
+    notice = Notice()
+    notice.warn(HOSTILE)
+    return notice.layout()
 
 
 @pytest.fixture
@@ -75,7 +80,7 @@ def address() -> Iterator[str]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    thread = pn.serve({"page": _warning}, threaded=True, show=False, port=port, address="127.0.0.1")
+    thread = pn.serve({"page": _page}, threaded=True, show=False, port=port, address="127.0.0.1")
     yield f"http://127.0.0.1:{port}/page"
     thread.stop()
     thread.join(10)
@@ -86,8 +91,8 @@ def test_warning_executes_nothing_in_the_browser(address: str, chromium: Browser
     page = chromium.new_page()
     page.goto(address, timeout=120_000)
     shown = page.locator(".alert")
-    shown.wait_for(timeout=60_000)
+    shown.wait_for(state="attached", timeout=60_000)
     time.sleep(0.5)
     assert page.evaluate("window.hit") is None
-    assert shown.inner_text().strip() == HOSTILE
+    assert (shown.text_content() or "").strip() == HOSTILE
     page.close()

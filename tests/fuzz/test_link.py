@@ -18,8 +18,8 @@ from engine import CASES
 from tests.fuzz.hostile import LONGEST_MESSAGE, STRINGS, floats, formulas, result_or_error, texts
 
 NAMES = (
-    "case", "plane", "h", "t_max", "resolution", "window", "judge", "trust", "manifolds", "origins", "measures", "energies",
-    "palette", "orbits", "look", "V", "omega_1", "omega_2", "epsilon", "__class__", "utm_source", "",
+    "case", "plane", "h", "t_max", "resolution", "window", "box", "judge", "trust", "manifolds", "origins", "measures",
+    "energies", "palette", "orbits", "look", "V", "omega_1", "omega_2", "epsilon", "__class__", "utm_source", "",
 )  # fmt: skip
 LEGAL = {
     "case": "II", "plane": "x_y", "h": "0.2", "t_max": "1000", "resolution": "225", "window": "-1,1,-1,1", "orbits": "0.1,0.2",

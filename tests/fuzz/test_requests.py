@@ -37,6 +37,7 @@ from engine import (
     fit_escape_shares,
     fit_uncertainty,
     integrate_orbit,
+    judge_orbit,
     measure_deviation,
     plan_sweep,
     preview_spec,
@@ -121,7 +122,7 @@ def test_classify_orbits(energy: Any, rows: Any, t_max: Any) -> None:
 def test_integrate_orbit(state: Any, t_max: Any) -> None:
     orbit = result_or_error(lambda: integrate_orbit(CASE, state, shortened(t_max)), ["state", "t_max", "energy"])
     if orbit is not None:
-        assert orbit.describe()
+        assert judge_orbit(orbit).describe()
         assert orbit.t.size == orbit.x.size == orbit.sali.size
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, Plane, Regularity, integrate_orbit, start_states
+from engine import CASES, Plane, Regularity, Verdict, integrate_orbit, judge_orbit, judge_regularity, start_states
 from tests.peers import taylor_heyoka
 
 T_MAX, INTERVAL, DISTANCE = 3000.0, 10.0, 1e-8
@@ -30,7 +30,8 @@ def test_sali_agrees_with_the_lyapunov_exponent(name: str, energy: float) -> Non
     x, px = np.random.default_rng(4).uniform(-0.25, 0.25, (2, 16))
     starts = start_states(CASES[name], Plane.X_PX, energy, x, px)
     exponents = largest_exponents(name, starts)
-    chaotic = np.array([integrate_orbit(CASES[name], start, T_MAX).regularity is Regularity.CHAOTIC for start in starts])
+    sali = [float(integrate_orbit(CASES[name], start, T_MAX).sali[-1]) for start in starts]
+    chaotic = np.array([judge_regularity(value) is Regularity.CHAOTIC for value in sali])
     # Deviations of regular orbits grow linearly, which gives ln(T)/T = 0.0027; exponents of chaotic orbits are 0.01 or more.
     clear = (exponents < 0.004) | (exponents > 0.008)
     assert clear.sum() >= 12
@@ -45,5 +46,5 @@ def test_exponent_of_henon_heiles_agrees_with_the_literature() -> None:
     potential = CASES["II"]  # the Hénon–Heiles potential with x and y exchanged
     x, px = np.array([[-0.25, 0.0], [-0.2, 0.1], [-0.25, 0.05], [-0.22, 0.02], [-0.24, -0.04]]).T
     orbits = [integrate_orbit(potential, start, 1e5) for start in start_states(potential, Plane.X_PX, 0.125, x, px)]
-    assert {orbit.regularity for orbit in orbits} == {Regularity.CHAOTIC}
+    assert {judge_orbit(orbit).character for orbit in orbits} == {Verdict.CHAOTIC}
     assert 0.04 < np.median([orbit.lyapunov_exponent[-1] for orbit in orbits]) < 0.08

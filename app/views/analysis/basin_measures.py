@@ -12,12 +12,16 @@ from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
 from bokeh.plotting import figure
 
 from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
+from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
 from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
 
 _LAW_POINTS = 200
+_PAIRS_TEXT = "<b>@share{custom}</b> of the pairs have different fates<br>at a separation of @separation{custom}@note"
+_SURVIVAL_TEXT = "<b>@share{custom}</b> of the starts are still inside<br>at t = @t{custom}"
+_NO_PAIRS: dict[str, list[Any]] = {"separation": [], "share": [], "colour": [], "note": []}
 _MEASURING = "Comparing pairs of starts …"
 
 
@@ -30,7 +34,7 @@ class BasinMeasuresView:
         self._sentences: dict[str, str] = {}
         self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
         self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
-        self.pairs = ColumnDataSource({"separation": [], "share": [], "colour": []}, name="pairs")
+        self.pairs = ColumnDataSource(_NO_PAIRS, name="pairs")
         self._line = ColumnDataSource({"separation": [], "share": []}, name="exponent_line")
         self.steps = ColumnDataSource({"t": [], "share": []}, name="survival_steps")
         # Shown when there is something to draw.
@@ -76,13 +80,14 @@ class BasinMeasuresView:
         self._sentences.pop("Uncertainty exponent", None)
         self._uncertainty.visible = found is not None
         if found is None:
-            self.pairs.data, self._line.data = {"separation": [], "share": [], "colour": []}, {"separation": [], "share": []}
+            self.pairs.data, self._line.data = _NO_PAIRS, {"separation": [], "share": []}
             return
         shares = found.shares
         positive = shares > 0.0
         self.pairs.data = {
             "separation": found.separations[positive], "share": shares[positive],
             "colour": np.where(found.used[positive], MEASURED, SET_ASIDE),
+            "note": np.where(found.used[positive], "", "; not used for the exponent"),
         }  # fmt: skip
         ends = found.separations[found.used]
         fitted = ends if np.isfinite(found.exponent) else ends[:0]
@@ -112,7 +117,8 @@ class BasinMeasuresView:
         )  # fmt: skip
         style: dict[str, Any] = {"x": "separation", "y": "share"}
         plot.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
-        plot.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
+        pairs = plot.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
+        plot.add_tools(chart_hover(_PAIRS_TEXT, {"@share": "percent", "@separation": "number"}, [pairs]))
         return plot
 
     def _draw_survival(self) -> figure:
@@ -120,7 +126,8 @@ class BasinMeasuresView:
             "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
             x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
         )  # fmt: skip
-        plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
+        steps = plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
+        plot.add_tools(chart_hover(_SURVIVAL_TEXT, {"@share": "percent", "@t": "number"}, [steps], mode="vline"))
         for law, source in self._laws.items():
             plot.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
         return plot

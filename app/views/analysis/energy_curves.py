@@ -8,10 +8,11 @@ from html import escape
 import numpy as np
 import panel as pn
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, HoverTool, Line, MultiLine, Range1d, Scatter, Segment, Span
+from bokeh.models import ColumnDataSource, Line, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
 from app.rendering.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
+from app.views.components.chart_hover import chart_hover
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.legends import legend
 from app.views.components.plots import set_range, square_figure
@@ -26,8 +27,16 @@ TITLES = {
 }
 START, STOP = "Compute the curves", "Stop"
 _SECOND = LAW_COLOURS["exponential"]
-_NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": []}
+_NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"
+_SHARES_TEXT = "<b>$snap_y{custom}</b> of the interior starts @fate<br>at energy h = $snap_x{custom}"
+_WORDS = {
+    "s_b": "basin entropy <b>S_b = @s_b{custom}</b>",
+    "s_bb": "entropy of the boundary boxes <b>S_bb = @s_bb{custom}</b>",
+    "exponent": "<b>α = @exponent{custom}</b>, 95 % interval @exponent_low{custom} to @exponent_high{custom}",
+    "mean_escape_time": "mean escape time <b>@mean_escape_time{custom}</b>",
+    "median_escape_time": "median escape time <b>@median_escape_time{custom}</b>",
+}
 _COLUMNS = ("h", "s_b", "s_bb", "exponent", "exponent_low", "exponent_high", "mean_escape_time", "median_escape_time")
 
 
@@ -85,6 +94,7 @@ class EnergyCurvesView:
             "ys": [shares[k] for k in order],
             "colour": [colours[k] for k in order],
             "dash": [_DASH if _is_dashed(k) else "solid" for k in order],
+            "fate": [f"escape through channel {k}" if k else "are bounded" for k in order],
         }
         swept = curves.spec.energies
         if len(swept) > 1:
@@ -136,7 +146,9 @@ class EnergyCurvesView:
         for plot in figures.values():
             plot.add_layout(self._here)
             plot.on_event(Tap, lambda event: self.open_near(event.x))
-        figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
+        shares = figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
+        values = {"$snap_x": "number", "$snap_y": "percent"}
+        figures["shares"].add_tools(chart_hover(_SHARES_TEXT, values, [shares], line_policy="nearest"))
         drawn = {
             "entropies": {"s_b": MEASURED, "s_bb": _SECOND},
             "exponents": {"exponent": MEASURED},
@@ -155,8 +167,8 @@ class EnergyCurvesView:
 def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str) -> None:
     plot.add_glyph(source, Line(x="h", y=column, line_color=colour, line_width=2))
     points = plot.add_glyph(source, Scatter(x="h", y=column, size=5, fill_color=colour, line_color=colour))
-    tooltips = [("h", "@h{0.0000}"), (column.replace("_", " "), f"@{column}{{0.0000}}")]
-    plot.add_tools(HoverTool(tooltips=tooltips, renderers=[points], mode="vline", visible=False))
+    values = dict.fromkeys(("@h", f"@{column}", "@exponent_low", "@exponent_high"), "number")
+    plot.add_tools(chart_hover(f"{_WORDS[column]}<br>at energy h = @h{{custom}}", values, [points], mode="vline"))
 
 
 def _is_dashed(code: int) -> bool:

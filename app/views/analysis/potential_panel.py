@@ -10,18 +10,20 @@ from typing import Any
 import panel as pn
 
 from app.rendering.mathml import potential_formula
-from app.state.system import TYPED, System
+from app.state.system import PARAMETERS, SHOWN_DIGITS, TYPED, System
 from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.widgets import Slider, button
 from engine import FREQUENCIES, LONGEST_TEXT, POTENTIALS, PotentialReview, write_formula
 
-PARAMETERS = {"omega_1": "ω1", "omega_2": "ω2", "epsilon": "ε"}
-
 # Ends of the sliders; links and the command line allow wider ranges.
 _SLIDER = (max(FREQUENCIES[0], 0.2), 2.0)
 _STEP = 0.01
+# A box that cut a longer text at the limit would not say so.
+_MOST_TYPED = 200 * LONGEST_TEXT
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
-_HINT = "Numbers, x, y, r² and + − * / ^ ( ), for example 0.5(x^2+y^2) - x^2 y. Enter applies it."
+_HINT = (
+    f"Numbers, x, y, r² and + − * / ^ ( ), at most {LONGEST_TEXT} characters, for example 0.5(x^2+y^2) - x^2 y. Enter applies it."
+)
 
 
 class PotentialPanel:
@@ -38,12 +40,16 @@ class PotentialPanel:
     def __init__(self, review: Callable[[System], None], apply: Callable[[System], None]) -> None:
         self._review, self._apply = review, apply
         self._system = System("I")
+        self._moved: str | None = None
+        self._filling = False
+        self.shown = self._system
+        """The system of the widgets; that of the maps may be another one."""
         known = {f"{entry.title}: {entry.description}": name for name, entry in POTENTIALS.items()}
         self.known = pn.widgets.Select(
             label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width"
         )
         self.formula = pn.widgets.TextInput(
-            label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", max_length=LONGEST_TEXT
+            label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", max_length=_MOST_TYPED
         )
         self.sliders = {
             name: Slider(
@@ -51,8 +57,9 @@ class PotentialPanel:
             )
             for name, label in PARAMETERS.items()
         }
-        self.reset = button("Reset to 1", lambda: self._apply(System(self._system.case, self._system.formula)))
+        self.reset = button("Reset to 1", lambda: self._choose(System(self.shown.case, self.shown.formula)))
         self.message = pn.pane.HTML("", name="potential-message", sizing_mode="stretch_width")
+        self.move = button("Use this well, moved to the origin", self._move, visible=False)
         self.facts = pn.pane.HTML("", name="potential-facts", sizing_mode="stretch_width")
         self.section = CollapsibleSection(self._build, "potential")
         self._connect()
@@ -60,61 +67,103 @@ class PotentialPanel:
     def _build(self) -> list[pn.viewable.Viewable]:
         hint = pn.pane.HTML(f"<span class='quiet'>{_HINT}</span>", margin=(0, 10), sizing_mode="stretch_width")
         parameters = pn.pane.HTML("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 10, 0, 10), sizing_mode="stretch_width")
-        return [self.known, self.formula, hint, self.message, parameters, *self.sliders.values(), self.reset, self.facts]
+        text = [self.known, self.formula, hint, self.message, self.move]
+        return [*text, parameters, *self.sliders.values(), self.reset, self.facts]
 
     def follow(self, system: System) -> None:
-        """Show the system of the view state."""
+        """Show the system of the maps."""
         self._system = system
-        self.known.value = system.case
-        text = system.formula if system.case == TYPED else POTENTIALS[system.case].formula
-        self.formula.param.update(value=text, value_input=text)
-        for name, slider in self.sliders.items():
-            slider.value = min(max(getattr(system, name), slider.start), slider.end)
-        self.reset.disabled = not system.changed
+        self._show(system)
 
     def show(self, review: PotentialReview, problem: str | None) -> None:
-        """Show the properties of a potential, and why it cannot be used."""
-        if problem is not None:
-            self.say(problem)
-        else:
-            self.message.object = ""
+        """Show the properties of the potential of the widgets, and why it cannot be used."""
+        self._write(_alert(problem) if problem else self._is_draft("Press Enter to use this potential."))
+        self._offer(review.moved_formula if problem else None)
         self.facts.object = _summary(review) + _points(review) + _remarks(review)
 
     def say(self, sentence: str) -> None:
-        """Show why the choice is invalid."""
-        self.message.object = f"<div class='alert' role='alert'>{escape(sentence)}</div>"
+        """Show why the potential of the widgets has no properties."""
+        self._write(_alert(sentence))
+        self._offer(None)
+        self.facts.object = ""
+
+    def _write(self, message: str) -> None:
+        """Show a message, and what the maps show if it is another potential."""
+        system = self._system
+        self.message.object = message + self._is_draft(f"The maps still show {system.title}: V = {system.formula_shown}")
+
+    def _is_draft(self, sentence: str) -> str:
+        """HTML of a sentence if the widgets do not show the potential of the maps, else empty."""
+        return f"<p>{escape(sentence)}</p>" if self.shown != self._system else ""
+
+    def _offer(self, moved: str | None) -> None:
+        self._moved, self.move.visible = moved, moved is not None
 
     def _connect(self) -> None:
-        self.known.param.watch(lambda event: self._choose(event.new), "value")
-        self.formula.param.watch(lambda event: self._type(event.new), "value_input")
-        self.formula.param.watch(lambda event: self._enter(event.new), "value")
+        self.known.param.watch(lambda event: self._take_known(event.new), "value")
+        self.formula.param.watch(lambda event: self._take_text(event.new, self._review), "value_input")
+        self.formula.param.watch(lambda event: self._take_text(event.new, self._apply), "value")
         for name, slider in self.sliders.items():
             slider.param.watch(lambda event, name=name: self._slide(name, event.new), "value_throttled")
 
-    def _choose(self, case: str) -> None:
-        if case == self._system.case:
+    def _choose(self, system: System) -> None:
+        """Show a system in all widgets, and use it."""
+        self._show(system)
+        self._apply(system)
+
+    def _show(self, system: System) -> None:
+        self.shown = system
+        self._filling = True
+        try:
+            self.formula.param.update(value=_text(system), value_input=_text(system))
+        finally:
+            self._filling = False
+        self._show_around_text()
+
+    def _show_around_text(self) -> None:
+        """Update all widgets but the text, which is being typed."""
+        self.known.value = self.shown.case
+        for name, slider in self.sliders.items():
+            slider.value = _on_slider(getattr(self.shown, name))
+        self.reset.disabled = not self.shown.changed
+
+    def _take_known(self, case: str) -> None:
+        if case == self.shown.case:
             return
-        # A typed potential starts from the formula of the previous one.
-        formula = write_formula(self._system.potential) if case == TYPED else ""
-        self._apply(System(case, formula))
+        if case == self._system.case:
+            self._choose(self._system)
+        else:
+            # A typed potential starts from the formula of the previous one.
+            self._choose(System(case, write_formula(self.shown.potential, SHOWN_DIGITS) if case == TYPED else ""))
 
-    def _type(self, text: str) -> None:
-        if text.strip() and text != self._text():
-            self._review(System(TYPED, text))
+    def _take_text(self, text: str, use: Callable[[System], None]) -> None:
+        """Review or use the text that the user typed."""
+        if self._filling:
+            return
+        self.shown = self._system if text == _text(self._system) else System(TYPED, text)
+        self._show_around_text()
+        use(self.shown)
 
-    def _enter(self, text: str) -> None:
-        if text.strip() and text != self._text():
-            self._apply(System(TYPED, text))
-
-    def _text(self) -> str:
-        """The formula of the system in view, without its parameters."""
-        system = self._system
-        return system.formula if system.case == TYPED else POTENTIALS[system.case].formula
+    def _move(self) -> None:
+        if self._moved is not None:
+            self._choose(System(TYPED, self._moved))
 
     def _slide(self, name: str, value: Any) -> None:
-        shown = min(max(getattr(self._system, name), _SLIDER[0]), _SLIDER[1])
-        if value is not None and value != shown:
-            self._apply(System(**(asdict(self._system) | {name: float(value)})))
+        if value is not None and value != _on_slider(getattr(self.shown, name)):
+            self._choose(System(**(asdict(self.shown) | {name: float(value)})))
+
+
+def _text(system: System) -> str:
+    """The formula of a system without its parameters."""
+    return system.formula if system.case == TYPED else POTENTIALS[system.case].formula
+
+
+def _on_slider(value: float) -> float:
+    return min(max(value, _SLIDER[0]), _SLIDER[1])
+
+
+def _alert(sentence: str) -> str:
+    return f"<div class='alert' role='alert'>{escape(sentence)}</div>"
 
 
 def _summary(review: PotentialReview) -> str:

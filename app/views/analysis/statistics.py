@@ -12,6 +12,7 @@ from bokeh.models.dom import HTML
 
 from app.rendering.palette import PAPER, Palette
 from app.state.help_texts import title_with_help
+from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent
 from app.views.components.widgets import button
@@ -24,6 +25,11 @@ MOST_CROSSINGS = 15
 CROSSINGS, PROBABILITY = "n", "p"
 """Columns of the second chart."""
 
+_TIMES_TEXT = "<b>@top{custom} starts</b> escape<br>from t = @left{custom} to @right{custom}"
+_PROBABILITIES_TEXT = (
+    f"n = @{CROSSINGS} upward crossings:<br><b>@{PROBABILITY}{{custom}}</b> of the orbits still inside<br>"
+    "escape before the next one"
+)
 _NUMBERS = [str(n) for n in range(MOST_CROSSINGS + 1)]
 _BAR = "#5b8db8"
 
@@ -66,7 +72,9 @@ class StatisticsView:
         """Make the content of the section."""
         hv.extension("bokeh")
         self._times = _plot(_draw_times(), "histogram", "Escape times")
+        _describe(self._times, _TIMES_TEXT, {"@left": "number", "@right": "number", "@top": "count"})
         self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escape probability after n crossings")
+        _describe(self._probabilities, _PROBABILITIES_TEXT, {f"@{PROBABILITY}": "percent"})
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
         left = pn.Column(self.whole, self.table, margin=0, css_classes=["plot"])
         return [left, histogram, probabilities]
@@ -76,9 +84,8 @@ class StatisticsView:
             return
         statistics = compute_statistics(self._frame, self._box)
         self.table.object = self._table(statistics)
-        if self._frame.complete:
-            self._show_times(*statistics.time_histogram(BINS))
-            self._show_probabilities(statistics.escape_probabilities[: len(_NUMBERS)])
+        self._show_times(*statistics.time_histogram(BINS))
+        self._show_probabilities(statistics.escape_probabilities[: len(_NUMBERS)])
 
     def _show_times(self, edges: np.ndarray, counts: np.ndarray) -> None:
         drawn = self._times.handles
@@ -122,7 +129,15 @@ def _draw_probabilities() -> hv.Bars:
 
 def _frame() -> dict[str, Any]:
     fonts = {"labels": "12px", "ticks": "11px"}
-    return {"responsive": True, "aspect": 1.1, "title": "", "fontsize": fonts, "toolbar": None, "hooks": [_simplify]}
+    return {
+        "responsive": True,
+        "aspect": 1.1,
+        "title": "",
+        "fontsize": fonts,
+        "toolbar": None,
+        "default_tools": [],
+        "hooks": [_simplify],
+    }
 
 
 def _simplify(plot: Any, _element: Any) -> None:
@@ -137,6 +152,11 @@ def _plot(element: hv.Element, name: str, title: str) -> Any:
     plot = hv.renderer("bokeh").get_plot(element)
     plot.state.elements = [HTML(html=title_with_help(title, name))]
     return plot
+
+
+def _describe(plot: Any, text: str, formats: dict[str, str]) -> None:
+    """Describe the bar under the mouse, also above a bar that is low."""
+    plot.state.add_tools(chart_hover(text, formats, [plot.handles["glyph_renderer"]], mode="vline"))
 
 
 def _number(value: float) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import panel as pn
 
-from app.state.view_state import LAYERS, Analysis, ViewState
+from app.state.view_state import IMAGE_CHOICES, LAYERS, Analysis, ViewState
 from app.views.components.widgets import SegmentedControl, Switches
 
 LAYER_LABELS = {
@@ -16,6 +16,9 @@ LAYER_LABELS = {
     "origins": "Origin and exit",
 }
 """Of the layers of a view state."""
+
+IMAGE_LABELS = {f"Image {name}" if image == 1 else name.capitalize(): image for name, image in IMAGE_CHOICES.items()}
+"""Labels of the images of the manifolds, in a row."""
 
 ANALYSIS_LABELS = {
     Analysis.NONE: "No analysis",
@@ -34,7 +37,22 @@ class LayerSwitches:
         options = {LAYER_LABELS[name]: name for name in LAYERS}
         self.switches = Switches(label="Layers", options=options, value=self._on(), margin=(0, 10))
         self.switches.param.watch(self._write, "value")
+        self._images: SegmentedControl | None = None
         state.param.watch(lambda *events: self.switches.param.update(value=self._on()), list(LAYERS))
+
+    def parts(self) -> list[pn.viewable.Viewable]:
+        """The switches and, while the manifolds are on, the choice of an image."""
+        return [self.switches, *([self._choose_image()] if self._state.manifolds else [])]
+
+    def _choose_image(self) -> SegmentedControl:
+        """The choice, made when it is first wanted."""
+        if self._images is None:
+            state = self._state
+            images = SegmentedControl(label="Image of the manifolds", options=IMAGE_LABELS, value=state.images, margin=(6, 10))
+            images.param.watch(lambda event: state.param.update(images=event.new), "value")
+            state.param.watch(lambda event: images.param.update(value=event.new), "images")
+            self._images = images
+        return self._images
 
     def _on(self) -> list[str]:
         return [name for name in LAYERS if getattr(self._state, name)]

@@ -47,6 +47,11 @@ class Stack:
         parts = [*self._head, *(self._contents[name] if name is not None else [])]
         self._column.param.update(objects=parts, visible=bool(parts))
 
+    def rebuild(self) -> None:
+        """Make the contents again when they are shown, which is now for the present one."""
+        self._contents.clear()
+        self.show(self.shown)
+
     def toggle(self, name: str) -> None:
         """Show a content, or take it off the page."""
         self.show(None if self.shown == name else name)
@@ -99,7 +104,9 @@ class Drawers(Stack):
     def __init__(self, drawers: Mapping[str, tuple[str, str, Build]]) -> None:
         super().__init__({name: self._with_head(title, build) for name, (_, title, build) in drawers.items()}, "drawer")
         options = {label: name for name, (label, _, _) in drawers.items()}
-        self.buttons = pn.widgets.CheckButtonGroup(options=options, color="light", margin=0)
+        self.buttons = pn.widgets.CheckButtonGroup(
+            options=options, color="light", margin=0, css_classes=["solid", "drawer-buttons"]
+        )
         self.buttons.param.watch(self._press, "value")
 
     def show(self, name: str | None) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from engine import format_whole
+
 
 def grouped(value: float) -> str:
     """A whole number with spaces between groups of three digits: 100 000."""
-    return f"{round(value):,}".replace(",", " ")
+    return format_whole(value)
 
 
 def percent(share: float, decimals: int = 1) -> str:

@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 from app.state.help_texts import title_with_help
 
 # Left and right, above and below of the frame together take the same space, so that a square figure has a square frame.
-_BORDERS = {"min_border_left": 52, "min_border_right": 14, "min_border_top": 28, "min_border_bottom": 38}
+_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
@@ -32,9 +32,10 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot.toolbar.autohide = True
     plot.toolbar.logo = None
     plot.center = []
-    plot.axis.axis_label_text_font_size, plot.axis.major_label_text_font_size = "12px", "11px"
-    plot.axis.axis_label_text_font_style = "normal"
-    plot.axis.major_tick_line_color = plot.axis.minor_tick_line_color = None
+    # `plot.axis` would search all models of the figure for each attribute.
+    for axis in (*plot.below, *plot.left):
+        axis.update(axis_label_text_font_size="12px", major_label_text_font_size="11px", axis_label_text_font_style="normal")
+        axis.update(major_tick_line_color=None, minor_tick_line_color=None)
     plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     plot.css_classes = [name]
     plot.elements = [HTML(html=title_with_help(title, name))]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -27,6 +29,8 @@ class ProgressView:
     def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None]) -> None:
         self._on_cancel, self._on_resume = on_cancel, on_resume
         self._running = False
+        # Time and undecided share at the beginning of the last stage.
+        self._last_stage: tuple[float, float] | None = None
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
         self.text = pn.pane.HTML("", name="progress", margin=0, css_classes=["status"])
         self.button = button(STOP, self._press, margin=0, visible=False)
@@ -37,11 +41,13 @@ class ProgressView:
 
     def start(self, *, compiling: bool = False) -> None:
         """A new map is requested; `compiling` says that its kernels are compiled first."""
+        self._last_stage = None
         self._set(running=True, label=STOP, text=_COMPILING if compiling else "Starting …")
 
     def show(self, frame: EscapeMap) -> None:
         """Show how far a frame is, and the shares of a complete map."""
-        self._set(running=not frame.complete, label=STOP, text=_result(frame) if frame.complete else _stage(frame))
+        text = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
+        self._set(running=not frame.complete, label=STOP, text=text)
         self.bar.value = int(100 * frame.progress)
 
     def show_preview(self) -> None:
@@ -62,6 +68,18 @@ class ProgressView:
             self._on_cancel()
         else:
             self._on_resume()
+
+    def _time_left(self, frame: EscapeMap) -> str:
+        """Estimate from the share of pixels that the last stage, which takes most of the time, has decided so far."""
+        now = time.monotonic()
+        if frame.horizon < frame.spec.t_max:
+            self._last_stage = None
+            return ""
+        begin, undecided = self._last_stage = self._last_stage or (now, frame.undecided)
+        if frame.undecided >= undecided:
+            return ""
+        left = (now - begin) * frame.undecided / (undecided - frame.undecided)
+        return f", about {math.ceil(left)} s left"
 
     def _set(self, *, running: bool, label: str, text: str) -> None:
         self._running = running

@@ -30,6 +30,7 @@ class MapLegend:
         *,
         regularity: str | None = None,
         origins: bool = False,
+        locked: bool = False,
     ) -> None:
         """Describe a map.
 
@@ -47,11 +48,13 @@ class MapLegend:
             Result of the analysis of bounded orbits; None while that picture is not shown.
         origins
             Whether the picture of origins and exits is shown.
+        locked
+            Whether the escape times keep their scale.
         """
         outcomes = palette.outcomes
         groups = {
             "Exit": legend_items([*palette.channel_entries(spec.potential.channels), outcomes[Fate.BOUNDED]]),
-            "Escape time": _colour_scale(palette, longest),
+            "Escape time": _colour_scale(palette, longest, locked=locked),
             "Crossings": legend_items(palette.crossing_entries),
             "Other starts": legend_items([outcomes[fate] for fate in (Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED)]),
             "Curves": legend_items(curves),
@@ -64,9 +67,10 @@ class MapLegend:
         )
 
 
-def _colour_scale(palette: Palette, longest: float) -> str:
-    """The logarithmic scale of escape times, with its ends; the last colour stands for all longer times."""
+def _colour_scale(palette: Palette, longest: float, *, locked: bool) -> str:
+    """The logarithmic scale of escape times; the colours at its ends stand for all shorter and all longer times."""
     colours = palette.escape_time
     stops = ",".join(colours[round(step * (len(colours) - 1) / _STEPS)] for step in range(_STEPS + 1))
     bar = f"<i class='scale' style='background:linear-gradient(90deg,{stops})'></i>"
-    return f"<span>{SHORTEST_TIME:g} {bar} ≥ {grouped(longest)}</span><span>(logarithmic)</span>"
+    kind = "logarithmic, locked" if locked else "logarithmic"
+    return f"<span>≤ {SHORTEST_TIME:g} {bar} ≥ {grouped(longest)}</span><span>({kind})</span>"

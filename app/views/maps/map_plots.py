@@ -28,7 +28,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.rendering.image_columns import character_column, longest_typical_time, passage_column
-from app.rendering.map_images import DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
+from app.rendering.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
 from app.rendering.palette import PAPER, Palette
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.flex_row import FULL_HEIGHT
@@ -52,6 +52,9 @@ SHORT_TITLES = {
 }
 """Titles of the pictures where there is little room."""
 
+GESTURE_PAUSE_MS = 500
+"""Drags and steps of the wheel that follow each other within this time are one entry of the browser's history."""
+
 REST_MS = 90
 """A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
 
@@ -65,6 +68,8 @@ class MapsView:
         Called with x and ordinate of the pixel clicked.
     on_zoom
         Called with the window when the ranges have stopped changing; None is the whole interior.
+    on_rest
+        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
     on_box
         Called with the box that is drawn to count in.
     """
@@ -73,21 +78,26 @@ class MapsView:
         self,
         on_tap: Callable[[float, float], None],
         on_zoom: Callable[[Window | None], None],
+        on_rest: Callable[[], None],
         on_box: Callable[[Window], None],
     ) -> None:
         self.source = ColumnDataSource(_blank(), name="maps")
         self.outlines, self.overlays, self.marks = CurveLayers(), Overlays(), Markers()
         self._palette = PAPER
         self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
+        # Upper ends of the scale of escape times: of the map in view, and the one that is kept instead.
+        self._typical_time: float = self._time_mapper.high
+        self._locked_time: float | None = None
         self._mappers = {name: LinearColorMapper() for name in TITLES}
         self._spec: MapSpec | None = None
         self._regularity_text = ""
         self._home: Window | None = None
         self._rest_timer: Any = None
+        self._gesture_timer: Any = None
         self._following = False
-        self._on_zoom = on_zoom
+        self._on_zoom, self._on_rest = on_zoom, on_rest
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
-        self._hover = pixel_hover(self.source, *self._ranges)
+        self._hover = pixel_hover(self.source, self.overlays.doubts, *self._ranges)
         self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
         self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover)
         self._on_tap, self._on_box = on_tap, on_box
@@ -100,7 +110,6 @@ class MapsView:
         self.picker = SegmentedControl(label="Map", value="basins", css_classes=["segmented", "map-picker"], visible=False)
         self.picker.param.watch(lambda event: self._pick(), "value")
         self._grid = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["maps"])
-        self.show_pictures(frozenset())
         self.set_palette(PAPER)
 
     def layout(self) -> list[pn.viewable.Viewable]:
@@ -142,9 +151,23 @@ class MapsView:
             else:
                 self.describe()
         if frame.stride == 1 and not preview:
-            self._time_mapper.high = longest_typical_time(frame)
-            self._show_legend()
+            self._typical_time = longest_typical_time(frame)
+            self._scale_times()
         self.source.data = columns
+
+    @property
+    def longest_time(self) -> float:
+        """Upper end of the scale of escape times."""
+        return float(self._time_mapper.high)
+
+    def lock_times(self, longest: float | None) -> None:
+        """Keep the upper end of the scale of escape times; None follows the maps again."""
+        self._locked_time = longest
+        self._scale_times()
+
+    def _scale_times(self) -> None:
+        self._time_mapper.high = self._locked_time or self._typical_time
+        self._show_legend()
 
     def show_origins(self, origins: OriginFateMap) -> None:
         """Paint through which channels orbits enter and leave."""
@@ -197,6 +220,9 @@ class MapsView:
         document = self.source.document
         if not self._following and document is not None:
             self._stop_waiting()
+            if self._gesture_timer is not None:
+                document.remove_timeout_callback(self._gesture_timer)
+                self._gesture_timer = None
             self._rest_timer = document.add_timeout_callback(self._waited, REST_MS)
 
     def _stop_waiting(self) -> None:
@@ -218,6 +244,17 @@ class MapsView:
             return
         self._on_zoom(None if self._home is not None and _is_near(window, self._home) else window)
 
+    def _end_gesture(self) -> None:
+        """The end of a drag, or a step of the wheel, which has no end: the next one may follow."""
+        self._rested()
+        document = self.source.document
+        if document is not None and self._gesture_timer is None:
+            self._gesture_timer = document.add_timeout_callback(self._finish_gesture, GESTURE_PAUSE_MS)
+
+    def _finish_gesture(self) -> None:
+        self._gesture_timer = None
+        self._on_rest()
+
     def _boxed(self, event: SelectionGeometry, on_box: Callable[[Window], None]) -> None:
         edges = event.geometry
         if event.final and edges["x0"] < edges["x1"] and edges["y0"] < edges["y1"]:
@@ -236,7 +273,7 @@ class MapsView:
         if spec is None:
             return
         for plot in self.figures.values():
-            plot.yaxis.axis_label = spec.plane.ordinate
+            plot.left[0].axis_label = spec.plane.ordinate
         self.outlines.show(spec)
         self._show_legend()
 
@@ -248,10 +285,11 @@ class MapsView:
         self.legend.show(
             spec,
             self._palette,
-            self._time_mapper.high,
+            self.longest_time,
             [*self.outlines.entries(spec), *self.overlays.entries()],
             regularity=self._regularity_text if "characters" in shown else None,
             origins="origins" in shown,
+            locked=self._locked_time is not None,
         )
 
     def _picker(self) -> list[pn.viewable.Viewable]:
@@ -259,8 +297,10 @@ class MapsView:
 
     def _pick(self) -> None:
         """Mark the picture that narrow screens show."""
-        for name, pane in self._panes.items():
-            pane.css_classes = ["map", "picked"] if name == self.picker.value else ["map"]
+        # The classes of a pane of Bokeh cannot be changed once it is on the page.
+        with pn.io.hold():
+            for name, plot in self.figures.items():
+                plot.css_classes = ["map", "picked"] if name == self.picker.value else ["map"]
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
@@ -276,7 +316,7 @@ class MapsView:
         plot.on_event(SelectionGeometry, lambda event: self._boxed(event, self._on_box))
         if name == "curves":
             # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
-            plot.on_event(RangesUpdate, lambda event: self._rested())
+            plot.on_event(RangesUpdate, lambda event: self._end_gesture())
         self._panes[name] = pn.pane.Bokeh(plot, margin=0)
 
     def _paint(self, name: str) -> None:
@@ -287,8 +327,7 @@ class MapsView:
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
         self._hover.renderers = [*self._hover.renderers, image]
         self.outlines.draw(plot, full=name == "curves")
-        if name == "curves" or name in DOUBTED:
-            self.overlays.draw(plot, doubts=name in DOUBTED, coloured=name == "curves")
+        self.overlays.draw(plot, doubts=name in DOUBTED, manifolds=name in CROSSED_BY_MANIFOLDS)
         self.marks.draw(plot, sections=name in ("curves", "basins"))
 
 
@@ -308,7 +347,8 @@ def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:
     if not bounded.size:
         return "No bounded orbits."
     if regularity.complete:
-        return f"{percent(regularity.chaotic_share)} of the bounded orbits are chaotic."
+        caveat = " Too short a t_max to call the others regular: no chaos so far." if regularity.is_too_short else ""
+        return f"{percent(regularity.chaotic_share)} of the bounded orbits are chaotic.{caveat}"
     return f"{percent(np.mean(bounded == Regularity.NOT_JUDGED))} of the bounded orbits left …"
 
 

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import panel as pn
 
-from app.state.zoom_history import ZoomHistory
+from app.state.history import History
 from app.views.components.flex_row import flex_row
 from app.views.components.widgets import SegmentedControl, button
 
@@ -22,7 +22,7 @@ class Drag(StrEnum):
 
 
 class MapToolbar:
-    """Buttons that move through a zoom history, and the choice of `Drag`.
+    """Buttons that undo, redo and show the whole plane, and the choice of `Drag`.
 
     Parameters
     ----------
@@ -60,11 +60,11 @@ class MapToolbar:
         """The page is used by touch: one finger scrolls the page until another mode is chosen, two fingers zoom."""
         self.drag.param.update(options=[Drag.SCROLL, Drag.PAN, Drag.ZOOM, Drag.COUNT], value=Drag.SCROLL)
 
-    def follow(self, history: ZoomHistory) -> None:
-        """Show the buttons that lead to another window."""
+    def follow(self, history: History, *, zoomed: bool) -> None:
+        """Show the buttons that lead somewhere."""
         needed = {
             self.back: history.can_go_back,
             self.forward: history.can_go_forward,
-            self.home: history.window is not None,
+            self.home: zoomed,
         }
         self._row.objects = [*self._before, *(one for one, is_needed in needed.items() if is_needed), self.drag]

@@ -28,13 +28,15 @@ class Inspector:
         """The whole inspector."""
         return self._grid
 
-    def follow(self, orbits: int) -> None:
-        """Show what a number of orbits needs."""
-        if orbits >= 1 and self._values is None:
+    def follow(self, starts: int, orbits: int) -> None:
+        """Show what a number of starts needs, of which some may have no orbit."""
+        if starts >= 1 and self._values is None:
             self._values = self._controls.values(self._playback.layout())
+        if orbits >= 1 and not self._single:
             self._single = self._plots.build()
         if orbits >= 2 and not self._pair:
             self._pair = [self._separation.build()]
-        parts = [*self._entry, *([self._values, *self._single] if orbits >= 1 else []), *(self._pair if orbits >= 2 else [])]
+        parts = [*self._entry, *([self._values] if starts >= 1 else []), *(self._single if orbits >= 1 else [])]
+        parts += self._pair if orbits >= 2 else []
         if parts != self._grid.objects:
             self._grid.objects = parts

@@ -10,14 +10,16 @@ from html import escape
 import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.palette import PAPER, PATCH_EDGE, Palette
+from app.rendering.palette import Palette
 from app.views.components.collapsible_section import Fold
 from app.views.components.flex_row import FULL_HEIGHT, flex_row
-from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, button
+from app.views.components.numbers import grouped
+from app.views.components.widgets import OrbitList, button
 from engine import IndicatorVerdict, Orbit, Plane
 
 HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
-_BOX = 130
+_BOX = 180
+_LONGEST_NUMBER = 40
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,12 @@ class OrbitControls:
 
     def __init__(self, actions: OrbitActions) -> None:
         self._actions = actions
-        self._palette = PAPER
         self._shown: tuple[tuple[ChosenOrbit, ...], int] = ((), 0)
-        self.x = pn.widgets.FloatInput(label="x", value=0.0, step=0.01, format=NUMBER_FORMAT, width=_BOX)
-        self.ordinate = pn.widgets.FloatInput(label="px", value=0.0, step=0.01, format=NUMBER_FORMAT, width=_BOX)
+        # Text boxes, as number boxes do not tell when Enter is pressed.
+        self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
+        self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
-        self.choice = SegmentedControl(label="Orbit", options=[], visible=False)
+        self.choice = OrbitList(label="Orbits", options=[])
         self.divergent_start = button("Find its twin", actions.find_divergent_start, margin=0)
         self.remove = button("Remove", actions.remove, margin=0)
         self.clear = button("Clear all", actions.clear, margin=0)
@@ -51,6 +53,8 @@ class OrbitControls:
         self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10))
         self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
         self.choice.param.watch(lambda event: self._choose(event.new), "value")
+        for box in (self.x, self.ordinate):
+            box.param.watch(lambda event: self._submit(), "enter_pressed")
         self._enable()
 
     def entry(self) -> list[pn.viewable.Viewable]:
@@ -74,8 +78,7 @@ class OrbitControls:
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
-        self._palette = palette
-        self.show(*self._shown)
+        self.choice.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
 
     def say(self, sentence: str) -> None:
         """Show a message about the orbits."""
@@ -96,47 +99,47 @@ class OrbitControls:
         if starts != ([one.start for one in self._shown[0]], self._shown[1]):
             self.note.object = "" if orbits else HINT
         self._shown = (tuple(orbits), chosen)
-        numbers = [str(place + 1) for place in range(len(orbits))]
-        self.choice.param.update(options=numbers, value=numbers[chosen] if orbits else None, visible=len(orbits) > 1)
+        self.choice.param.update(
+            options={_row(orbits, place): place for place in range(len(orbits))}, value=chosen if orbits else None
+        )
         self._enable()
         if not orbits:
             return
         one = orbits[chosen]
-        self.x.value, self.ordinate.value = one.start
-        self.text.object = f"{_verdict(one)}{self._table(orbits, chosen)}{_values(one.orbit)}"
-
-    def _table(self, orbits: Sequence[ChosenOrbit], chosen: int) -> str:
-        if len(orbits) < 2:
-            return ""
-        rows = "".join(
-            f"<tr{' aria-current=true style=font-weight:bold' if place == chosen else ''}><td>{self._patch(place)}</td>"
-            f"<td>{one.start[0]:.6g}, {one.start[1]:.6g}</td><td>{_fate(one)}</td></tr>"
-            for place, one in enumerate(orbits)
-        )
-        return f"<table aria-label='the chosen orbits'>{rows}</table>"
-
-    def _patch(self, place: int) -> str:
-        style = f"background:{self._palette.orbits[place]};border:1px solid {PATCH_EDGE};color:#ffffff;padding:0 5px"
-        return f"<span style='{style};border-radius:4px;text-shadow:0 0 2px #000000'>{place + 1}</span>"
+        self.x.value, self.ordinate.value = (f"{number!r}" for number in one.start)
+        self.text.object = f"{_verdict(one)}{_values(one.orbit)}"
 
     def _enable(self) -> None:
         for one in (self.divergent_start, self.remove, self.clear, self.open_plane):
             one.disabled = not self._shown[0]
 
-    def _choose(self, number: str | None) -> None:
-        if number is not None and int(number) - 1 != self._shown[1]:
-            self._actions.choose(int(number) - 1)
+    def _choose(self, place: int | None) -> None:
+        if place is not None and place != self._shown[1]:
+            self._actions.choose(place)
 
     def _submit(self) -> None:
-        if self.x.value is None or self.ordinate.value is None:
+        try:
+            start = float(self.x.value), float(self.ordinate.value)
+        except ValueError:
+            start = math.nan, math.nan
+        if all(map(math.isfinite, start)):
+            self._actions.add(*start)
+        else:
             self.say("Type a number into both boxes first.")
-            return
-        self._actions.add(self.x.value, self.ordinate.value)
+
+
+def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
+    """An orbit in the list; a start that looks like an earlier one is shown by the difference."""
+    x, ordinate = orbits[place].start
+    text = f"{x:.6g}, {ordinate:.6g}"
+    for other, one in enumerate(orbits[:place]):
+        if text == f"{one.start[0]:.6g}, {one.start[1]:.6g}":
+            text = f"orbit {other + 1} + ({x - one.start[0]:.2g}, {ordinate - one.start[1]:.2g})"
+    return f"{place + 1}: {text}: {_fate(orbits[place])}"
 
 
 def _verdict(one: ChosenOrbit) -> str:
-    sentence = one.orbit.describe() if one.orbit is not None else one.problem or "Integrating …"
-    return f"<p><b>{escape(sentence)}</b></p>"
+    return f"<p><b>{escape(one.describe())}</b></p>"
 
 
 def _value(value: float) -> str:
@@ -144,11 +147,7 @@ def _value(value: float) -> str:
 
 
 def _fate(one: ChosenOrbit) -> str:
-    if one.orbit is None:
-        return "none" if one.problem else "…"
-    if one.orbit.fate >= 1:
-        return f"channel {one.orbit.fate} at t = {one.orbit.escape_time:.5g}"
-    return f"bounded, {one.orbit.regularity}" if one.orbit.regularity is not None else "outside"
+    return one.verdict.summarize() if one.verdict is not None else "none" if one.problem else "…"
 
 
 def _values(orbit: Orbit | None) -> str:
@@ -158,7 +157,7 @@ def _values(orbit: Orbit | None) -> str:
         "energy h": f"{orbit.energy:.10g}",
         "start x, y": f"{orbit.x[0]:.6g}, {orbit.y[0]:.6g}",
         "start px, py": f"{orbit.px[0]:.6g}, {orbit.py[0]:.6g}",
-        "upward crossings of y = 0": f"{orbit.crossings}",
+        "upward crossings of y = 0": grouped(orbit.crossings),
         "last SALI": f"{orbit.sali[-1]:.3g}",
         "relative energy error": f"{orbit.energy_error:.1e}",
     }

@@ -104,6 +104,7 @@ class OrbitPlots:
             plot.add_glyph(self._histories[name], MultiLine(**self._style()))
             plot.add_layout(self._now)
         plots["r2"].xaxis.formatter = BasicTickFormatter(use_scientific=False)
+        plots["r2"].xaxis.ticker.desired_num_ticks = 4
         threshold = Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
         plots["sali"].add_layout(threshold)
         return list(plots.values())

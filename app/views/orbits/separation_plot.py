@@ -7,7 +7,7 @@ import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d
 
 from app.rendering.palette import PAPER, Palette
-from app.views.components.plots import set_range, square_figure
+from app.views.components.plots import set_decades, set_range, square_figure
 from engine import Separation
 
 TITLE = "Distance of two orbits"
@@ -20,6 +20,7 @@ class SeparationPlot:
     def __init__(self) -> None:
         self._times, self._distances = Range1d(0.0, 10.0), Range1d(LEAST, 10.0)
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
+        self._column = pn.Column(margin=0, sizing_mode="stretch_width", visible=False)
         self._pair = pn.pane.HTML("", name="pair", margin=(0, 10), css_classes=["quiet"])
         self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
 
@@ -30,10 +31,12 @@ class SeparationPlot:
             x_range=self._times, y_range=self._distances,
         )  # fmt: skip
         plot.add_glyph(self._source, self._line)
-        return pn.Column(pn.pane.Bokeh(plot, margin=0), self._pair, margin=0, sizing_mode="stretch_width")
+        self._column.objects = [pn.pane.Bokeh(plot, margin=0), self._pair]
+        return self._column
 
     def show(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         """Draw the distance of two orbits, given by their places in the list; None removes it."""
+        self._column.visible = separation is not None
         if pair is None or separation is None:
             self._source.data = {"t": [], "distance": []}
             self._pair.object = ""
@@ -41,7 +44,7 @@ class SeparationPlot:
         distance = np.maximum(separation.distance, LEAST)
         self._source.data = {"t": separation.t, "distance": distance}
         set_range(self._times, 0.0, float(separation.t[-1]))
-        set_range(self._distances, 0.5 * float(distance.min()), 10.0)
+        set_decades(self._distances, float(distance.min()), 10.0)
         self._pair.object = f"Orbits {pair[0] + 1} and {pair[1] + 1}"
 
     def set_palette(self, palette: Palette) -> None:

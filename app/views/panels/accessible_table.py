@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
+from math import isfinite
 
 import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
-from app.views.components.numbers import percent
-from engine import EscapeMap, Fate, compute_statistics
+from app.views.components.numbers import grouped, percent
+from engine import EscapeMap, Fate, compute_statistics, format_time
 
 
 class AccessibleTable:
@@ -22,7 +23,8 @@ class AccessibleTable:
         self._frame: EscapeMap | None = None
         self._orbits: Sequence[ChosenOrbit] = ()
         self.text = pn.pane.HTML("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
-        self.fold = Fold("This page as a table", self._build)
+        self.fold = Fold("This page as a table", lambda: [self.text])
+        self.fold.button.on_click(lambda event: self._write())
 
     def show_map(self, frame: EscapeMap) -> None:
         """Set the map."""
@@ -33,10 +35,6 @@ class AccessibleTable:
         """Set the orbits."""
         self._orbits = orbits
         self._write()
-
-    def _build(self) -> list[pn.viewable.Viewable]:
-        self._fill()
-        return [self.text]
 
     def _write(self) -> None:
         if self.fold.is_open:
@@ -51,7 +49,7 @@ class AccessibleTable:
     def _view(self) -> list[tuple[str, str]]:
         state, system = self._state, self._state.system
         rows = [("system", system.title), ("potential V(x, y)", system.formula_shown)]
-        rows += [("plane", state.plane.value), ("t_max", f"{state.t_max:g}")]
+        rows += [("plane", state.plane.value), ("t_max", grouped(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:
             w = state.window
@@ -65,15 +63,15 @@ class AccessibleTable:
         shares = statistics.shares
         rows = [(f"escape through channel {k}", percent(shares[k], 2)) for k in range(1, len(statistics.channel_counts) + 1)]
         rows += [("bounded", percent(shares[Fate.BOUNDED], 2)), ("direct escapes", percent(statistics.direct_share, 2))]
-        rows += [("mean escape time", f"{statistics.mean_escape_time:.5g}")]
-        return [*rows, ("median escape time", f"{statistics.median_escape_time:.5g}")]
+        rows += [("mean escape time", _time(statistics.mean_escape_time))]
+        return [*rows, ("median escape time", _time(statistics.median_escape_time))]
 
     def _chosen(self) -> list[tuple[str, str]]:
         return [
-            (f"orbit {place + 1}, from {one.start[0]:.6g}, {one.start[1]:.6g}", _described(one))
+            (f"orbit {place + 1}, from {one.start[0]:.6g}, {one.start[1]:.6g}", one.describe())
             for place, one in enumerate(self._orbits)
         ]
 
 
-def _described(one: ChosenOrbit) -> str:
-    return one.orbit.describe() if one.orbit is not None else one.problem or "being integrated"
+def _time(value: float) -> str:
+    return format_time(value, digits=5) if isfinite(value) else "nothing escaped"

@@ -1,9 +1,10 @@
-"""What only the browser knows: keys pressed anywhere on the page, the theme, touch, a first visit, and the clipboard."""
+"""What only the browser has: its history, keys pressed anywhere on the page, theme, touch, a first visit, the clipboard."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import count
 from types import MappingProxyType
 from typing import Any
 
@@ -20,11 +21,11 @@ KEYS: Mapping[str, str] = MappingProxyType(
         "+": "zoom in",
         "-": "zoom out",
         "h": "whole plane",
-        "b": "previous window",
-        "f": "next window",
+        "b": "back",
+        "f": "forward",
         "p": "play or stop the energy",
         "Escape": "stop the computation",
-        "?": "help",
+        "?": "these keys",
     }
 )
 """What each key does, by the name of the key in `KeyboardEvent.key`."""
@@ -85,7 +86,8 @@ export function render({model, el}) {
   const listen = event => {
     const key = key_of(event, model.keys)
     if (key === null) return
-    event.preventDefault()
+    // The browser closes help texts with Escape.
+    if (key !== "Escape") event.preventDefault()
     // A key that is held down repeats faster than pictures are painted.
     if (event.repeat && event.timeStamp - last < REST_MS) return
     last = event.timeStamp
@@ -95,12 +97,31 @@ export function render({model, el}) {
   document.addEventListener("keydown", listen)
   const tell_theme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
   document.addEventListener("themechange", tell_theme)
+  // Entries of the history have numbers: a new number is a new entry, the same one replaces the address.
+  const page = crypto.getRandomValues(new Uint32Array(1))[0]
+  let entry = 0
+  history.replaceState({page, entry}, "")
+  model.on("address", () => {
+    const {link, entry: next} = model.address
+    history[next > entry ? "pushState" : "replaceState"]({page, entry: next}, "", link)
+    entry = next
+  })
+  const tell_entry = event => {
+    entry = event.state?.page === page ? event.state.entry : 0
+    model.send_msg({link: window.location.search, entry})
+  }
+  window.addEventListener("popstate", tell_entry)
   model.on("lifecycle:remove", () => {
+    window.removeEventListener("popstate", tell_entry)
     document.removeEventListener("keydown", listen)
     document.removeEventListener("themechange", tell_theme)
   })
   if (document.documentElement.dataset.theme === "dark") tell_theme()
-  model.on("msg:custom", async () => model.send_msg({copied: await copy(window.location.href)}))
+  model.on("command", async () => {
+    const {name} = model.command
+    if (name === "copy") model.send_msg({copied: await copy(window.location.href)})
+    else history.go(name === "back" ? -1 : 1)
+  })
   if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
   if (is_first_visit()) model.send_msg({first_visit: true})
 }
@@ -109,9 +130,11 @@ export function render({model, el}) {
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class BrowserListener(JSComponent):
-    """The browser side: it sends {key}, {dark}, {touch}, {first_visit} or {copied}; any message to it copies the address."""
+    """The browser side: it sends {key}, {link, entry}, {dark}, {touch}, {first_visit} or {copied}."""
 
     keys = param.List(default=list(KEYS))
+    address = param.Dict(default={}, doc="link of the view, and number of its entry in the browser's history")
+    command = param.Dict(default={}, doc="name: back, forward or copy; and a number that makes repeats differ")
 
     _esm = _LISTENER
 
@@ -124,6 +147,8 @@ class BrowserActions:
     ----------
     key
         Called with each key of `KEYS`, except for keys that a field, slider or menu uses.
+    navigate
+        Called with the query string and the number of the entry that the browser's Back or Forward leads to.
     dark
         Called with whether the theme is dark, when it changes or is not light at the beginning.
     touch
@@ -135,6 +160,7 @@ class BrowserActions:
     """
 
     key: Callable[[str], None]
+    navigate: Callable[[str, int], None]
     dark: Callable[[bool], None]
     touch: Callable[[], None]
     first_visit: Callable[[], None]
@@ -146,6 +172,7 @@ class BrowserEvents:
 
     def __init__(self, actions: BrowserActions) -> None:
         self._actions = actions
+        self._numbers = count()
         self._listener = BrowserListener(width=0, height=0, margin=0, styles={"position": "absolute"})
         self._listener.on_msg(lambda event: self._receive(event.data))
 
@@ -155,13 +182,30 @@ class BrowserEvents:
 
     def copy_link(self) -> None:
         """Copy the page's address to the clipboard; browsers allow it only soon after a click or a key."""
-        self._listener._send_msg({})
+        self._command("copy")
+
+    def write_link(self, link: str, entry: int) -> None:
+        """Show a link as the address of the page, as this entry of the browser's history."""
+        self._listener.address = {"link": link, "entry": entry}
+
+    def go_back(self) -> None:
+        """Do what the browser's Back does."""
+        self._command("back")
+
+    def go_forward(self) -> None:
+        """Do what the browser's Forward does."""
+        self._command("forward")
+
+    def _command(self, name: str) -> None:
+        self._listener.command = {"name": name, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
         # Messages come from a browser: ignore what is not expected.
         match message:
             case {"key": str(key)} if key in KEYS:
                 self._actions.key(key)
+            case {"link": str(link), "entry": int(entry)}:
+                self._actions.navigate(link, entry)
             case {"dark": bool(dark)}:
                 self._actions.dark(dark)
             case {"touch": True}:

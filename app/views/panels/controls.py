@@ -16,9 +16,10 @@ from app.state.system import SYSTEM, System
 from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
-from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, button
+from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, Switches, button
 from engine import CASES, Plane
 
+LOCK = "Lock colour scale"
 PLAY, STOP = "▶ Play", "■ Stop"
 # Space beside the rail of a slider, half the width of its thumb, see theme.css.
 _THUMB = "9px"
@@ -42,12 +43,15 @@ class ControlActions:
         Starts or stops the animation over all energies.
     choose_potential
         Opens the choice of other potentials.
+    lock_times
+        Called with whether the scale of escape times keeps its limits.
     """
 
     preview: Callable[[float], None]
     settle: Callable[[], None]
     play: Callable[[], None]
     choose_potential: Callable[[], None]
+    lock_times: Callable[[bool], None]
 
 
 class ThrottledSlider(Slider):
@@ -65,7 +69,7 @@ class Controls:
         self.state = state
         self._actions = actions
         self._previewed = False
-        self._animating = False
+        self._following = False
         self.case = SegmentedControl(
             label="Case", options=list(CASES), value=self._case(), css_classes=["segmented", "half"], margin=(0, 0, 0, 10)
         )
@@ -85,11 +89,10 @@ class Controls:
         )
         self.facts = pn.pane.HTML(margin=(6, 10), sizing_mode="stretch_width")
         self.layers = LayerSwitches(state)
-        self._folds = [
-            Fold("Quality and colours", self._build_quality),
-            Fold("Layers", lambda: [self.layers.switches], is_open=True),
-        ]
-        self._energy_column = pn.Column(sizing_mode="stretch_width", margin=0)
+        layers = Fold("Layers", self.layers.parts, is_open=True)
+        state.param.watch(lambda event: layers.rebuild(), "manifolds")
+        self._folds = [Fold("Quality and colours", self._build_quality), layers]
+        self._energy_column = pn.Column(sizing_mode="stretch_width", margin=0, css_classes=["energy"])
         self._follow_system()
         self._connect()
 
@@ -110,6 +113,7 @@ class Controls:
             self._make_list("t_max", "t_max", allowed_t_max()),
             self._make_list("resolution", "Resolution", allowed_resolutions()),
             self._make_list("palette", "Colours", {palette.name: key for key, palette in PALETTES.items()}),
+            self._make_lock(),
         ]
 
     def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:
@@ -121,6 +125,18 @@ class Controls:
         box.param.watch(lambda event: state.param.update(**{name: event.new}), "value")
         state.param.watch(lambda event: box.param.update(value=event.new), name)
         return box
+
+    def _make_lock(self) -> pn.viewable.Viewable:
+        """A switch that keeps the limits of the escape times."""
+        state, on = self.state, [LOCK]
+        lock = Switches(label="Escape times", options=on, value=on if state.lock_times is not None else [], margin=(0, 10))
+        lock.param.watch(lambda event: self._take_lock(bool(event.new)), "value")
+        state.param.watch(lambda event: lock.param.update(value=on if event.new is not None else []), "lock_times")
+        return lock
+
+    def _take_lock(self, locked: bool) -> None:
+        if locked != (self.state.lock_times is not None):
+            self._actions.lock_times(locked)
 
     def _connect(self) -> None:
         state = self.state
@@ -137,15 +153,23 @@ class Controls:
 
     def show_animated(self, energy: float) -> None:
         """Move the slider to an energy of the animation."""
-        self._animating = True
+        self._following = True
         try:
             self.energy.value = energy
         finally:
-            self._animating = False
+            self._following = False
+
+    def show_energy(self, energy: float) -> None:
+        """Show the energy of a preview as a number."""
+        self._following = True
+        try:
+            self.exact_energy.value = round(energy, self.state.system.energies.decimals)
+        finally:
+            self._following = False
 
     def _preview(self, event: Any) -> None:
         """The slider moves; a move to the energy of the state is the end of a drag, or follows the state."""
-        if self._animating:
+        if self._following:
             return
         if event.new == self._slider_energy():
             self._settle()
@@ -176,7 +200,7 @@ class Controls:
 
     def _take_slider_energy(self, event: Any) -> None:
         # An energy beyond the slider, which can be typed, stays when the slider is released at its end.
-        if not self._animating and event.new != self._slider_energy():
+        if not self._following and event.new != self._slider_energy():
             self._previewed = False
             # All that follows makes one message.
             with pn.io.hold():
@@ -188,7 +212,7 @@ class Controls:
         return float(min(max(self.state.energy, energies.low), energies.high))
 
     def _take_exact_energy(self, event: Any) -> None:
-        if event.new is not None:
+        if event.new is not None and not self._following:
             with pn.io.hold():
                 self.state.energy = event.new
 
@@ -212,7 +236,7 @@ class Controls:
         """A slider for a range of energies; if the range of one changed, Bokeh would report a clamped value as a user's."""
         slider = ThrottledSlider(
             label="Energy h", start=energies.low, end=energies.high, step=10.0**-energies.decimals, value=self._slider_energy(),
-            format=f"0.{'0' * max(energies.decimals, 0)}", sizing_mode="stretch_width", margin=(0, 10),
+            format=_slider_format(self._slider_energy(), energies), sizing_mode="stretch_width", margin=(0, 10),
         )  # fmt: skip
         # If a move and a release arrive together, the release is handled first.
         slider.param.watch(self._preview, "value", precedence=1)
@@ -222,9 +246,19 @@ class Controls:
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane is Plane.X_H
-        self.energy.param.update(value=self._slider_energy(), disabled=on_h)
-        self.energy.label = "Energy is the vertical axis here" if on_h else "Energy h"
+        energies, shown = state.system.energies, self._slider_energy()
+        label = "Energy h" if shown == state.energy else f"h = {state.energy:.12g}, beyond the end of the slider"
+        # The browser uses a new format when the value changes.
+        self.energy.format = _slider_format(shown, energies)
+        self.energy.param.update(value=shown, disabled=on_h, label="Energy is the vertical axis here" if on_h else label)
         self.exact_energy.param.update(value=state.energy, disabled=on_h)
+        self.play.disabled = on_h
+
+
+def _slider_format(energy: float, energies: EnergyRange) -> str:
+    """Format that shows an energy without rounding, and with the decimals of the steps at least."""
+    decimals = max(len(f"{energy:.12f}".rstrip("0").partition(".")[2]), energies.decimals, 0)
+    return f"0.{'0' * decimals}"
 
 
 def _ticks(escape: float, energies: EnergyRange) -> str:

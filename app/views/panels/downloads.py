@@ -72,7 +72,14 @@ class Downloads:
         pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or available[name] is not None)]
         starts = tuple(one.start for one in self._orbits)
         make = partial(
-            png_bytes, self._map(), pictures, self._state.colours, self.side.value, analyses=self._analyses, starts=starts
+            png_bytes,
+            self._map(),
+            pictures,
+            self._state.colours,
+            self.side.value,
+            analyses=self._analyses,
+            starts=starts,
+            longest=self._state.lock_times,
         )
         return self._named(".png"), make
 
@@ -83,8 +90,9 @@ class Downloads:
     def csv_file(self) -> File:
         """The chosen orbits as a table."""
         orbits = [one.orbit for one in self._orbits if one.orbit is not None]
+        verdicts = [one.verdict for one in self._orbits if one.verdict is not None]
         name = "orbits.csv" if self._frame is None else self._named("-orbits.csv")
-        return name, lambda: orbits_csv(orbits).encode()
+        return name, lambda: orbits_csv(orbits, verdicts=verdicts).encode()
 
     def python_file(self) -> File:
         """A script that computes the map and the orbits."""

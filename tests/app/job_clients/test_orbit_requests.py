@@ -23,6 +23,7 @@ class Recorder:
         self.orbits: tuple[ChosenOrbit, ...] = ()
         self.messages: list[str] = []
         self.separations: list[tuple[tuple[int, int] | None, Separation | None]] = []
+        self.judged: tuple[ChosenOrbit, ...] = ()
         self.verdicts: list[tuple[IndicatorVerdict, ...]] = []
         self.changed = threading.Condition()
 
@@ -40,7 +41,8 @@ class Recorder:
     def show_separation(self, pair: tuple[int, int] | None, separation: Separation | None) -> None:
         self.record(lambda: self.separations.append((pair, separation)))
 
-    def show_verdicts(self, verdicts: Sequence[IndicatorVerdict]) -> None:
+    def show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
+        self.judged = tuple(orbits)
         self.record(lambda: self.verdicts.append(tuple(verdicts)))
 
     def wait_for(self, true: Callable[[], bool]) -> None:
@@ -208,14 +210,29 @@ def test_an_escaping_orbit_gets_no_conclusion(session: Session) -> None:
     assert jobs.in_flight == 0
 
 
-def test_an_orbit_is_evaluated_once(session: Session) -> None:
+def test_all_bounded_orbits_get_their_certificate_and_keep_it(session: Session) -> None:
     state, _, recorder, jobs = session
+    indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
+    state.param.update(energy=0.14, t_max=1e4)
+    for x in (-0.3, -0.305):
+        state.add_start((x, 0.0))
+    recorder.wait_for(lambda: recorder.all_computed(2))
+    indicators.follow(recorder.orbits)
+    recorder.wait_for(lambda: all(one.digits is not None for one in recorder.judged))
+    assert all(one.describe().startswith("Bounded for ever (certified: quasi-periodic") for one in recorder.judged)
+    indicators.follow(recorder.orbits)
+    assert all(one.digits is not None for one in recorder.judged)
+
+
+def test_closing_cancels_the_requests_for_digits(session: Session) -> None:
+    state, _, recorder, jobs = session
+    state.param.update(energy=0.1, t_max=1e4)
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
     indicators = IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked)
-    for _ in range(2):
-        indicators.follow(recorder.orbits)
-    assert len(recorder.verdicts) == 1
+    indicators.follow(recorder.orbits)
+    indicators.close()
+    assert jobs.in_flight == 0
 
 
 def test_without_an_orbit_there_is_no_verdict(session: Session) -> None:

@@ -19,10 +19,10 @@ from bokeh.server.session import ServerSession
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
-from app.rendering.palette import PALETTES
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
-from app.state.view_state import SWITCHES
+from app.state.view_state import LAYERS, Analysis
+from app.views.maps.map_toolbar import Drag
 from engine import Plane
 from tests.app.other_loop import run_on_new_loop
 
@@ -32,11 +32,16 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     lambda explorer: explorer.controls.exact_energy.param.update(value=0.3),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
-    lambda explorer: explorer.controls.t_max.param.update(value=1e3),
-    lambda explorer: explorer.controls.resolution.param.update(value=113),
-    lambda explorer: explorer.controls.palette.param.update(value=list(PALETTES)[-1]),
-    lambda explorer: explorer.analyses.switches.switches.param.update(value=list(SWITCHES)),
-    lambda explorer: explorer.analyses.switches.switches.param.update(value=[]),
+    # As the lists do.
+    lambda explorer: explorer.state.param.update(t_max=1e3),
+    lambda explorer: explorer.state.param.update(resolution=113),
+    lambda explorer: explorer.state.param.update(palette="safe"),
+    lambda explorer: explorer.controls.layers.switches.param.update(value=list(LAYERS)),
+    lambda explorer: explorer.controls.layers.switches.param.update(value=[]),
+    # As the tabs do.
+    *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),
+    *(lambda explorer, drag=drag: explorer.toolbar.drag.param.update(value=drag) for drag in (Drag.ZOOM, Drag.COUNT)),
+    *(lambda explorer, name=name: explorer.drawers.buttons.param.update(value=[name]) for name in ("gallery", "share", "help")),
     lambda explorer: explorer.set_dark(True),
 ]
 
@@ -55,7 +60,7 @@ async def with_session(change: Callable[[Explorer], Any]) -> None:
     def build(document: Document) -> None:
         with set_curdoc(document):
             built.append(Explorer())
-            built[0].orbit_layout.follow(2)
+            built[0].inspector.follow(2, 2)
             built[0].playback.follow(10.0)
             explorer_page(built[0]).server_doc(document)
 

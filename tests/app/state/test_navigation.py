@@ -1,12 +1,12 @@
-"""Keys move the window, and its history allows to go back."""
+"""Keys move the window."""
 
 from __future__ import annotations
 
 import pytest
 
-from app.state.navigation import PAN_SHARE, Navigation, pan, zoom
+from app.state.navigation import PAN_SHARE, pan, window_moves, zoom
 from app.state.view_state import ViewState
-from engine import Plane, Window
+from engine import Window
 
 WINDOW = Window(-1.0, 3.0, 0.0, 2.0)
 
@@ -35,39 +35,16 @@ def test_a_zoom_beyond_double_precision_is_rejected() -> None:
 def test_the_first_zoom_starts_from_the_whole_interior() -> None:
     state = ViewState(case="I", energy=0.2)
     whole = state.map_spec().window
-    Navigation(state).moves()["+"]()
+    window_moves(state)["+"]()
     assert state.window == zoom(whole, 2.0)
 
 
-def test_back_and_forward_follow_the_history() -> None:
-    state = ViewState(case="I", energy=0.2)
-    navigation = Navigation(state)
-    moves = navigation.moves()
-    moves["+"]()
-    first = state.window
-    moves["ArrowLeft"]()
-    second = state.window
-    moves["b"]()
-    assert state.window == first
-    moves["b"]()
-    assert state.window is None
-    moves["f"]()
-    moves["f"]()
-    assert state.window == second
-
-
-def test_home_is_the_whole_interior_and_part_of_the_history() -> None:
+def test_keys_move_the_window_of_the_state() -> None:
     state = ViewState(case="I", energy=0.2, window=WINDOW)
-    moves = Navigation(state).moves()
+    moves = window_moves(state)
+    moves["-"]()
+    assert state.window == zoom(WINDOW, 0.5)
+    moves["ArrowUp"]()
+    assert state.window == pan(zoom(WINDOW, 0.5), "ArrowUp")
     moves["h"]()
     assert state.window is None
-    moves["b"]()
-    assert state.window == WINDOW
-
-
-def test_another_plane_has_no_history() -> None:
-    state = ViewState(case="I", energy=0.2)
-    navigation = Navigation(state)
-    navigation.moves()["+"]()
-    state.param.update(plane=Plane.X_Y, window=None)
-    assert not navigation.history.can_go_back

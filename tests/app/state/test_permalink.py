@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.permalink import LONGEST_VALUE, read_link, write_link
-from app.state.view_state import RESOLUTION_CHOICES, SWITCHES, T_MAX_CHOICES, ViewState
+from app.state.view_state import LAYERS, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
 from engine import CASES, Plane, Window
 
 numbers = st.floats(-1e3, 1e3, allow_nan=False)
@@ -26,22 +26,24 @@ def parameters(link: str) -> dict[str, str]:
 @given(
     st.sampled_from(list(CASES)),
     st.sampled_from(list(Plane)),
-    numbers,
+    st.floats(1e-3, 1e3),
     st.sampled_from(list(T_MAX_CHOICES.values())),
     st.sampled_from(list(RESOLUTION_CHOICES.values())),
     windows,
+    windows,
     st.lists(st.tuples(numbers, numbers), max_size=MOST_ORBITS).map(tuple),
-    st.sets(st.sampled_from(SWITCHES)),
+    st.sets(st.sampled_from(LAYERS)),
+    st.sampled_from(Analysis),
     st.sampled_from(list(PALETTES)),
     st.integers(0, MOST_ORBITS - 1),
 )
 def test_a_link_contains_the_view_state_at_full_precision(
-    case, plane, energy, t_max, resolution, window, starts, switched_on, palette, look
+    case, plane, energy, t_max, resolution, window, box, starts, switched_on, analysis, palette, look
 ) -> None:
     chosen = {
         "case": case, "plane": plane, "energy": energy, "t_max": t_max, "resolution": resolution,
-        "window": window, "starts": starts, "palette": palette,
-        "chosen": look if look < len(starts) else 0, **{name: name in switched_on for name in SWITCHES},
+        "window": window, "box": box, "starts": starts, "analysis": analysis, "palette": palette,
+        "chosen": look if look < len(starts) else 0, **{name: name in switched_on for name in LAYERS},
     }  # fmt: skip
     values, problems = read_link(parameters(write_link(ViewState(**chosen))))
     assert not problems
@@ -64,6 +66,10 @@ def test_a_link_contains_the_view_state_at_full_precision(
         ("window", "1,2,3"),
         ("window", "1,0,0,1"),
         ("window", "0,inf,0,1"),
+        ("box", "1,0,0,1"),
+        ("box", "0,1"),
+        ("t_max", "7"),
+        ("resolution", "224"),
         ("orbits", "0.1"),
         ("orbits", "0.1,0.2;0.3"),
         ("orbits", ";".join(["0.1,0.2"] * (MOST_ORBITS + 1))),
@@ -71,19 +77,61 @@ def test_a_link_contains_the_view_state_at_full_precision(
         ("palette", "neon"),
         ("look", "6"),
         ("judge", "maybe"),
+        ("analysis", "all"),
     ],
 )
 def test_an_invalid_value_is_named_and_ignored(name: str, text: str) -> None:
     values, problems = read_link({name: text})
     assert values == {}
     assert len(problems) == 1
-    assert problems[0].startswith(f"Ignored {name}=")
-    assert "in the link: choose " in problems[0]
+    assert problems[0].startswith(f"Ignored {name}")
+    assert ": choose " in problems[0]
+    assert "nan" not in problems[0]
+
+
+@pytest.mark.parametrize(
+    ("link", "problem"),
+    [
+        ({"t_max": "7"}, "Ignored t_max=7: choose 100, 1 000, 10 000, 100 000 or 1 000 000."),
+        ({"resolution": "1e9"}, "Ignored resolution=1e9: choose 113, 225, 450 or 900."),
+        ({"h": "nan"}, "Ignored h: choose a number, such as 0.25."),
+        ({"case": "III", "h": "-5"}, "Ignored h=-5: choose an energy above 0, such as 0.35."),
+        (
+            {"box": "1,0,0,1"},
+            "Ignored box=1,0,0,1: choose four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high.",
+        ),
+    ],
+)
+def test_a_problem_says_what_to_do(link: dict[str, str], problem: str) -> None:
+    assert read_link(link)[1] == [problem]
+
+
+@pytest.mark.parametrize("text", ["100000", "1e5", "1E+5", "100000.0", "100 000", "100,000", "100\u202f000"])
+def test_any_usual_format_of_a_number_is_read(text: str) -> None:
+    assert read_link({"t_max": text}) == ({"t_max": 1e5}, [])
+
+
+@pytest.mark.parametrize("text", ["450", "450.0", "4.5e2"])
+def test_any_usual_format_of_the_resolution_is_read(text: str) -> None:
+    values, problems = read_link({"resolution": text})
+    assert not problems
+    assert repr(values["resolution"]) == "450"
+
+
+def test_a_link_counts_in_a_box() -> None:
+    assert read_link({"box": "-0.1,0.2,0.3,0.4"}) == ({"box": Window(-0.1, 0.2, 0.3, 0.4)}, [])
+    assert "box=-0.1,0.2,0.3,0.4" in write_link(ViewState(box=Window(-0.1, 0.2, 0.3, 0.4)))
+
+
+def test_an_invalid_potential_drops_what_belongs_to_it() -> None:
+    values, problems = read_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "113"})
+    assert values == {"resolution": 113}
+    assert len(problems) == 1
 
 
 def test_messages_contain_no_markup_of_the_link() -> None:
     _, problems = read_link({"h": "<b>[here](javascript:alert(1))</b>"})
-    assert not set("<>[]():") & set(problems[0].replace("h=", "").split(" in the link:")[0])
+    assert not set("<>[]():") & set(problems[0].replace("h=", "").split(": choose")[0])
 
 
 def test_a_missing_chosen_orbit_is_the_first() -> None:
@@ -107,7 +155,9 @@ def test_unknown_parameters_are_ignored() -> None:
 
 @given(
     st.dictionaries(
-        st.sampled_from(["case", "plane", "h", "t_max", "resolution", "window", "orbits", "palette", "look", *SWITCHES]),
+        st.sampled_from(
+            ["case", "plane", "h", "t_max", "resolution", "window", "orbits", "palette", "look", "analysis", *LAYERS]
+        ),
         st.text(),
     )
 )

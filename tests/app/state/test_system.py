@@ -47,6 +47,17 @@ def test_the_formula_contains_the_parameters() -> None:
     assert parse_formula(System("III", omega_2=1.5).formula_shown) == System("III", omega_2=1.5).potential
 
 
+def test_the_formula_has_no_rounding_errors_of_products() -> None:
+    assert System("I", omega_1=1.46).formula_shown == "1.0658x² + y²/2 − xy²"
+    assert System(TYPED, "½r² − xy²", omega_1=1.46).formula_shown == "1.0658x² + y²/2 − xy²"
+
+
+def test_the_title_names_the_parameters() -> None:
+    assert System("I").title == "Case I"
+    assert System("I", omega_1=1.46, epsilon=0.5).title == "Case I with ω1 = 1.46, ε = 0.5"
+    assert System(TYPED, "½r² − xy²", omega_2=2.0).title == "Typed potential with ω2 = 2"
+
+
 def test_more_exits_than_colours_are_rejected() -> None:
     assert "colours" in str(refusal(review_potential(channel_family(MOST_CHANNELS + 1))))
 

@@ -18,6 +18,15 @@ def test_the_same_notice_twice_is_two_changes() -> None:
     assert all("Link copied." in content for content in contents)
 
 
+def test_a_warning_is_text_in_an_alert_until_it_is_cleared() -> None:
+    notice = Notice()
+    notice.warn("<b>x</b>")
+    assert "role='alert'" in notice.layout().object
+    assert "&lt;b&gt;x&lt;/b&gt;" in notice.layout().object
+    notice.clear()
+    assert notice.layout().object == ""
+
+
 def test_the_server_finds_the_notice_in_a_document() -> None:
     document = Document()
     pn.Column(Notice().layout()).server_doc(document)

@@ -24,7 +24,7 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(escape_map)
     assert view.text.object.startswith("Done, t = 1 000. Interior starts: channel 1 ")
-    assert (view.bar.styles["opacity"], view.button.disabled) == ("0", True)
+    assert (view.bar.styles["opacity"], view.button.visible) == ("0", False)
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
@@ -36,17 +36,18 @@ def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap)
 
 def test_the_button_stops_and_continues() -> None:
     view, calls = make_view()
+    assert not view.button.visible
     view.start()
-    assert view.button.label == STOP
+    assert (view.button.label, view.button.visible) == (STOP, True)
     view.button.clicks += 1
     view.stop()
-    assert (view.button.label, view.button.disabled) == (CONTINUE, False)
+    assert (view.button.label, view.button.visible) == (CONTINUE, True)
     view.button.clicks += 1
     assert calls == ["cancel", "resume"]
 
 
-def test_a_message_is_shown_as_text() -> None:
+def test_without_a_map_there_is_neither_text_nor_button() -> None:
     view, _ = make_view()
-    view.warn("<b>x</b>")
-    assert "&lt;b&gt;x&lt;/b&gt;" in view.problem.object
-    assert view.problem.visible
+    view.start()
+    view.fail()
+    assert (view.text.object, view.button.visible, view.bar.styles["opacity"]) == ("", False, "0")

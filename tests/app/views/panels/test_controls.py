@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import panel as pn
 import pytest
 
 from app.state.system import TYPED, System
@@ -19,7 +20,13 @@ class Page:
         self.settled = 0
         self.controls = Controls(
             self.state,
-            ControlActions(preview=self.previews.append, settle=self.settle, play=lambda: None, choose_potential=lambda: None),
+            ControlActions(
+                preview=self.previews.append,
+                settle=self.settle,
+                play=lambda: None,
+                choose_potential=lambda: None,
+                lock_times=lambda locked: None,
+            ),
         )
 
     def settle(self) -> None:
@@ -88,8 +95,38 @@ def test_another_case_resets_energy_and_orbits(page: Page) -> None:
 
 def test_the_controls_follow_a_preset(page: Page) -> None:
     page.state.param.update(case="II", plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
-    shown = {name: getattr(page.controls, name).value for name in ("case", "plane", "energy", "t_max", "palette")}
-    assert shown == {"case": "II", "plane": Plane.X_Y, "energy": 0.22, "t_max": 1e3, "palette": "safe"}
+    shown = {name: getattr(page.controls, name).value for name in ("case", "plane", "energy")}
+    assert shown == {"case": "II", "plane": Plane.X_Y, "energy": 0.22}
+
+
+def open_quality(page: Page) -> dict[str, pn.widgets.Select]:
+    """The lists of the closed fold, by label."""
+    parts = page.controls.layout(pn.pane.HTML())
+    fold = next(part for part in parts if isinstance(part, pn.widgets.Button) and "Quality" in part.label)
+    assert fold.label == "▸ Quality and colours"
+    fold.clicks += 1
+    section = parts[parts.index(fold) + 1]
+    return {part.label: part for part in section.objects if isinstance(part, pn.widgets.Select)}
+
+
+def test_the_lists_follow_a_preset(page: Page) -> None:
+    lists = open_quality(page)
+    page.state.param.update(t_max=1e3, resolution=113, palette="safe")
+    assert {label: box.value for label, box in lists.items()} == {"t_max": 1e3, "Resolution": 113, "Colours": "safe"}
+
+
+def test_the_lists_change_the_state(page: Page) -> None:
+    lists = open_quality(page)
+    for label, value in (("t_max", 1e4), ("Resolution", 450), ("Colours", "safe")):
+        lists[label].value = value
+    assert (page.state.t_max, page.state.resolution, page.state.palette) == (1e4, 450, "safe")
+
+
+def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:
+    page.controls.begin_touch()
+    parts = page.controls.layout(pn.pane.HTML())
+    labels = [part.label for part in parts if isinstance(part, pn.widgets.Button)]
+    assert {label for label in labels if label[0] in "▸▾"} == {"▸ Quality and colours", "▸ Layers"}
 
 
 def test_other_potentials_leave_no_case_selected(page: Page) -> None:

@@ -1,0 +1,45 @@
+"""The position of a page in the history of its browser."""
+
+from __future__ import annotations
+
+
+class History:
+    """Counts the entries that the page has made, so that "Back" undoes one action of the user."""
+
+    def __init__(self) -> None:
+        self.entry = 0
+        self._last = 0
+        self._in_gesture = False
+        self._gesture_recorded = False
+
+    @property
+    def can_go_back(self) -> bool:
+        """Whether the page has an earlier entry."""
+        return self.entry > 0
+
+    @property
+    def can_go_forward(self) -> bool:
+        """Whether the page has a later entry."""
+        return self.entry < self._last
+
+    def record(self) -> int:
+        """Number of the entry of a new state; all states of one gesture have the same."""
+        if not (self._in_gesture and self._gesture_recorded):
+            self.entry += 1
+            self._last = self.entry
+            self._gesture_recorded = self._in_gesture
+        return self.entry
+
+    def begin_gesture(self) -> None:
+        """A drag or a turn of the wheel goes on; it may change the state several times."""
+        if not self._in_gesture:
+            self._in_gesture, self._gesture_recorded = True, False
+
+    def end_gesture(self) -> None:
+        """The next change of the state is a new action."""
+        self._in_gesture = False
+
+    def move_to(self, entry: int) -> None:
+        """The browser shows another entry; entries of an earlier page count as the first."""
+        self.end_gesture()
+        self.entry = entry if 0 <= entry <= self._last else 0

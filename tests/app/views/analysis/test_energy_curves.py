@@ -1,0 +1,18 @@
+"""Curves against energy have axes only when there are curves."""
+
+from __future__ import annotations
+
+from app.views.analysis.energy_curves import TITLES, EnergyCurvesView
+from engine import CASES, EnergyCurvesSpec, Plane, compute_energy_curves
+
+
+def test_there_are_no_axes_before_the_first_curves() -> None:
+    view = EnergyCurvesView(lambda: None, lambda energy: None)
+    _, plots = view.build()
+    assert not plots.visible
+    assert plots.objects == []
+    view.show(compute_energy_curves(EnergyCurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (20, 20), 100.0, exponent=False)))
+    assert plots.visible
+    assert len(plots.objects) == len(TITLES)
+    view.show(None)
+    assert not plots.visible

@@ -1,0 +1,46 @@
+"""Statistics of a map are counted while they are on the page, of the whole view or of a box."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.views.analysis.statistics import StatisticsView
+from app.views.components.numbers import percent
+from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
+
+BOX = Window(-0.1, 0.1, 0.2, 0.4)
+
+
+@pytest.fixture(scope="module")
+def frame() -> EscapeMap:
+    return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (40, 40), t_max=200.0))
+
+
+@pytest.fixture
+def view(frame: EscapeMap) -> StatisticsView:
+    view = StatisticsView(lambda: None)
+    view.build()
+    view.show(frame)
+    return view
+
+
+def test_nothing_is_counted_before_the_statistics_are_shown(view: StatisticsView) -> None:
+    assert view.table.object == ""
+
+
+def test_the_whole_view_or_a_box_is_counted(view: StatisticsView, frame: EscapeMap) -> None:
+    view.activate(True)
+    whole, part = compute_statistics(frame), compute_statistics(frame, BOX)
+    assert whole.shares[1] != part.shares[1]
+    for box, statistics, place in ((None, whole, "the whole view"), (BOX, part, "the box"), (None, whole, "the whole view")):
+        view.show_box(box)
+        assert f"Interior starts in {place}" in view.table.object
+        assert percent(statistics.shares[1], 2) in view.table.object
+        assert view.whole.visible == (box is not None)
+
+
+def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -> None:
+    view.activate(True)
+    statistics = compute_statistics(frame)
+    assert view._times.handles["source"].data["top"].sum() == statistics.escaped
+    assert view._probabilities.handles["source"].data["p"][0] == pytest.approx(statistics.direct_share)

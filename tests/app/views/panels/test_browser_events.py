@@ -1,0 +1,56 @@
+"""Messages of the browser become calls; what is not expected is ignored."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import pytest
+
+from app.views.panels.browser_events import KEYS, BrowserActions, BrowserEvents, key_legend
+
+
+@pytest.fixture
+def calls() -> list[tuple[Any, ...]]:
+    return []
+
+
+@pytest.fixture
+def events(calls: list[tuple[Any, ...]]) -> BrowserEvents:
+    def record(name: str) -> Any:
+        return lambda *values: calls.append((name, *values))
+
+    return BrowserEvents(BrowserActions(*[record(field.name) for field in fields(BrowserActions)]))
+
+
+def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[Any, ...]]) -> None:
+    messages = [
+        {"key": "h"},
+        {"link": "?case=II", "entry": 3},
+        {"dark": True},
+        {"touch": True},
+        {"first_visit": True},
+        {"copied": False},
+    ]
+    for message in messages:
+        events._receive(message)
+    assert calls == [
+        ("key", "h"),
+        ("navigate", "?case=II", 3),
+        ("dark", True),
+        ("touch",),
+        ("first_visit",),
+        ("copied", False),
+    ]
+
+
+@pytest.mark.parametrize(
+    "message", [None, 7, "h", [], {}, {"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1}]
+)
+def test_other_messages_are_ignored(events: BrowserEvents, calls: list[tuple[Any, ...]], message: Any) -> None:
+    events._receive(message)
+    assert calls == []
+
+
+def test_every_key_is_in_the_list_of_keys() -> None:
+    assert all(action in key_legend() for action in KEYS.values())

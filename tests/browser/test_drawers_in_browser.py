@@ -1,0 +1,97 @@
+"""Drawers over the controls: gallery, sharing and help; at most one is open."""
+
+from __future__ import annotations
+
+import re
+
+from playwright.sync_api import Locator, expect
+
+from app.state.presets import PRESETS, Preset
+from tests.browser.explorer_page import ExplorerPage
+
+HEADINGS = {"Gallery": "Gallery", "Share": "Share and download", "Help": "Help"}
+ZOOMED = next(preset for preset in PRESETS if preset.window is not None and preset.case == "III")
+
+
+def heading(explorer: ExplorerPage, drawer: str) -> Locator:
+    return explorer.page.get_by_role("heading", level=2, name=HEADINGS[drawer], exact=True)
+
+
+def card(explorer: ExplorerPage, preset: Preset) -> Locator:
+    return explorer.page.get_by_role("button", name=re.compile(f"^{re.escape(preset.title)}"))
+
+
+def expect_open(explorer: ExplorerPage, drawer: str | None) -> None:
+    for name in HEADINGS:
+        expect(heading(explorer, name)).to_be_visible(visible=name == drawer)
+
+
+def test_at_most_one_drawer_is_open(explorer: ExplorerPage) -> None:
+    expect_open(explorer, None)
+    for drawer in HEADINGS:
+        explorer.press(drawer)
+        expect_open(explorer, drawer)
+    explorer.press("Help")
+    expect_open(explorer, None)
+
+
+def test_escape_closes_the_drawer_and_so_does_its_button(explorer: ExplorerPage) -> None:
+    explorer.press("Share")
+    expect_open(explorer, "Share")
+    explorer.page.keyboard.press("Escape")
+    expect_open(explorer, None)
+    explorer.press("Help")
+    explorer.press("Close")
+    expect_open(explorer, None)
+
+
+def test_a_button_in_focus_can_be_pressed_with_the_keyboard(explorer: ExplorerPage) -> None:
+    explorer.button("Share").focus()
+    explorer.page.keyboard.press("Enter")
+    expect_open(explorer, "Share")
+    explorer.page.keyboard.press("Space")
+    expect_open(explorer, None)
+
+
+def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage) -> None:
+    explorer.press("Gallery")
+    for preset in PRESETS:
+        expect(card(explorer, preset)).to_have_count(1)
+    picture = card(explorer, PRESETS[0]).locator("img")
+    explorer.page.wait_for_function("picture => picture.naturalWidth == 160", arg=picture.element_handle())
+    explorer.press("Gallery")
+
+
+def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
+    window = ZOOMED.window
+    assert window is not None
+    explorer.press("Gallery")
+    card(explorer, ZOOMED).click()
+    explorer.wait_for_view(f"case=III&plane={ZOOMED.plane.name.lower()}&h={ZOOMED.energy!r}", "window=")
+    assert explorer.ranges("basins")[0] == window.x_low
+    expect(explorer.radio("III")).to_be_checked()
+    expect(explorer.text(ZOOMED.caption[:40])).to_be_visible()
+    explorer.press("Gallery")
+
+
+def test_the_equations_are_those_of_the_system(explorer: ExplorerPage) -> None:
+    explorer.press("Help")
+    expect(explorer.text("Equations: Case I")).to_be_visible()
+    expect(explorer.page.locator("math").first).to_be_visible()
+    explorer.pick("III")
+    expect(explorer.text("Equations: Case III")).to_be_visible()
+    explorer.press("Help")
+
+
+def test_the_page_can_be_read_as_a_table(explorer: ExplorerPage) -> None:
+    explorer.click("basins", 0.1, 0.05)
+    expect(explorer.text("Escaped through channel 1")).to_be_visible()
+    explorer.press("Help")
+    table = explorer.page.get_by_role("table", name="What is shown")
+    expect(table).to_have_count(0)
+    explorer.open_fold("This page as a table")
+    for text in (
+        "Case I", "½(x² + y²) − xy²", "energy h", "escape through channel 1", "median escape time", "Escaped through channel 1",
+    ):  # fmt: skip
+        expect(table).to_contain_text(text)
+    explorer.press("Help")

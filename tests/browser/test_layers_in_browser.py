@@ -1,0 +1,124 @@
+"""Layers over the maps, texts of pixels and bars under the mouse, and the lock of the escape times."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from app.rendering.palette import PAPER
+from engine import (
+    CASES,
+    MapSpec,
+    Plane,
+    Regularity,
+    compute_map,
+    compute_origin_fates,
+    compute_regularity,
+    describe_certificate,
+    find_stable_manifolds,
+)
+from tests.browser.explorer_page import ExplorerPage
+
+OpenExplorer = Callable[..., ExplorerPage]
+VIEW = "?case=III&h=0.28&resolution=113&t_max=1000"
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (113, 113), t_max=1e3)
+_BAR = """name => {
+    for (const view of Bokeh.index.all_views()) {
+        if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
+        const renderer = view.model.renderers[0]
+        const box = view.canvas_view.el.getBoundingClientRect()
+        const {data} = renderer.data_source
+        const tall = values => [...values].indexOf(Math.max(...values))
+        const bar = tall(data.top ?? data.p)
+        const x = data.left ? Math.sqrt(data.left[bar] * data.right[bar]) : data.n[bar]
+        return [box.left + view.frame.x_scale.compute(x), box.top + view.frame.bbox.bottom - 8]
+    }
+}"""
+
+
+def expect_tooltip(explorer: ExplorerPage, *texts: str) -> None:
+    for text in texts:
+        expect(explorer.page.locator(".bk-Tooltip").get_by_text(text).first).to_be_visible()
+
+
+def test_manifolds_have_the_colours_and_the_image_that_is_chosen(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=VIEW)
+    expect(explorer.page.get_by_role("radiogroup", name="Image of the manifolds")).to_have_count(0)
+    explorer.page.get_by_label("Stable manifolds", exact=True).click()
+    explorer.wait_for_data("manifolds", "data.xs.length > 4")
+    manifolds = find_stable_manifolds(CASES["III"], 0.28, 3)
+    assert len(explorer.model_data("manifolds")["xs"]) == len(manifolds.arcs)
+    assert set(explorer.model_data("manifolds")["colour"]) == set(PAPER.channels[:4])
+    for channel in range(1, 5):
+        expect(explorer.text(f"stable manifold of Lyapunov orbit {channel}")).to_be_visible()
+    explorer.pick("Image 1")
+    explorer.wait_for_data("manifolds", f"data.xs.length == {sum(arc.image == 1 for arc in manifolds.arcs)}")
+    explorer.page.wait_for_url("**images=1**")
+    expect(explorer.text("Lyapunov orbits, image 1:")).to_be_visible()
+
+
+def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{VIEW}&judge=yes&trust=yes&origins=yes")
+    explorer.wait_for_data("doubts", "data.trust.length == 1")
+    explorer.page.wait_for_function("Bokeh.documents[0].get_model_by_name('maps').data.passage[0].length > 1")
+    frame = compute_map(SPEC)
+    regularity, origins = compute_regularity(frame), compute_origin_fates(SPEC)
+    explorer.page.wait_for_function(
+        "regular => Bokeh.documents[0].get_model_by_name('maps').data.character[0].filter(code => code == 6).length == regular",
+        arg=int(np.sum(regularity.character == Regularity.REGULAR)),
+    )
+    xs, ordinates = SPEC.pixel_centres()
+    row, column = np.argwhere((origins.fate > 0) & (origins.origin > 0))[0]
+    explorer.hover("characters", xs[column], ordinates[row])
+    crossings = int(frame.crossings[row, column])
+    expect_tooltip(
+        explorer,
+        f"escapes through channel {origins.fate[row, column]}",
+        f"escape time {frame.escape_time[row, column]:#.5g}",
+        f"{crossings} upward crossing",
+        f"entered through channel {origins.origin[row, column]}",
+    )
+    expect(explorer.page.locator(".bk-Tooltip").get_by_text("confirmed").or_(
+        explorer.page.locator(".bk-Tooltip").get_by_text("not tested: like")).or_(
+        explorer.page.locator(".bk-Tooltip").get_by_text("doubtful")).first).to_be_visible()  # fmt: skip
+    row, column = np.argwhere(regularity.character == Regularity.REGULAR)[0]
+    reason = describe_certificate(frame.certificate[row, column])
+    explorer.hover("basins", xs[column], ordinates[row])
+    expect_tooltip(explorer, "bounded", reason, "regular", "never entered: inside since −t_max")
+
+
+@pytest.mark.parametrize(
+    ("chart", "texts"),
+    [("histogram", ("starts", "escape", "from t =")), ("probabilities", ("upward crossings", "of the orbits still inside"))],
+)
+def test_bars_have_texts(open_explorer: OpenExplorer, chart: str, texts: tuple[str, ...]) -> None:
+    explorer = open_explorer(link=f"{VIEW}&analysis=statistics", height=2000)
+    explorer.page.wait_for_function(_BAR, arg=chart)
+    expect(explorer.text("interior starts").last).to_be_visible()
+    x, y = explorer.page.evaluate(_BAR, chart)
+    explorer.page.mouse.move(x - 2, y)
+    explorer.page.mouse.move(x, y)
+    expect_tooltip(explorer, *texts)
+
+
+def test_a_locked_scale_stays_across_energies_and_in_a_shared_link(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=VIEW)
+    legend = explorer.text("≥")
+    shown = legend.inner_text()
+    explorer.page.get_by_role("button", name="Quality and colours").click()
+    explorer.page.get_by_label("Lock colour scale", exact=True).click()
+    expect(explorer.text("logarithmic, locked")).to_be_visible()
+    explorer.page.wait_for_url("**lock_times=**")
+    explorer.forget_pixels()
+    explorer.type_number("Exact h", "0.6")
+    explorer.wait_for_new_pixels()
+    explorer.wait_until_complete()
+    expect(legend).to_have_text(shown)
+    shared = open_explorer(link="?" + explorer.page.url.split("?")[1])
+    expect(shared.text("≥")).to_have_text(shown)
+    explorer.page.get_by_label("Lock colour scale", exact=True).click()
+    expect(explorer.text("logarithmic, locked")).to_have_count(0)
+    expect(legend).not_to_have_text(shown)

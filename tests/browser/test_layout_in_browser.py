@@ -1,0 +1,234 @@
+"""Where the parts of the page stand on wide, middling and narrow screens, and that nothing idle is shown."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable
+from html import unescape
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from app.rendering.map_images import TITLES
+from app.rendering.palette import PALETTES, Entry
+from app.state.help_texts import HELP_TEXTS
+from app.views.maps.map_plots import SHORT_TITLES
+from engine import CASES, Fate
+from tests.browser.conftest import QUICK
+from tests.browser.explorer_page import ExplorerPage
+
+OpenExplorer = Callable[..., ExplorerPage]
+PICTURES = ("curves", "basins", "times", "crossings")
+Box = tuple[float, float, float, float]
+
+# Of all figures in view: left, top, right and bottom on the screen, width and height of the frame. Parts scroll.
+_FIGURES = """() => {
+    const clipped = element => {
+        let {left, top, right, bottom} = element.getBoundingClientRect()
+        for (let node = element; node; node = node.parentElement ?? node.getRootNode().host) {
+            if (getComputedStyle(node).overflowY != "auto") continue
+            const box = node.getBoundingClientRect()
+            top = Math.max(top, box.top)
+            bottom = Math.min(bottom, box.bottom)
+        }
+        return [left, top, right, bottom]
+    }
+    return Object.fromEntries([...Bokeh.index.all_views()].filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)
+        .map(view => [view.model.name, [...clipped(view.el), view.frame.bbox.width, view.frame.bbox.height]]))
+}"""
+_ELEMENTS = """() => {
+    let count = 0
+    const walk = root => {
+        for (const node of root.querySelectorAll("*")) {
+            count++
+            if (node.shadowRoot) walk(node.shadowRoot)
+        }
+    }
+    walk(document)
+    return count
+}"""
+_LEGEND = """legend => [...legend.querySelectorAll(".patch")]
+    .map(patch => [patch.parentElement.textContent.trim(), patch.getAttribute("style").replace("background:", "")])"""
+_IDLE = ("← Back", "Forward →", "Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find its twin", "Count the whole view")
+
+
+def figures(explorer: ExplorerPage) -> dict[str, list[float]]:
+    return explorer.page.evaluate(_FIGURES)
+
+
+def boxes(explorer: ExplorerPage, names: Iterable[str] = PICTURES) -> list[Box]:
+    """Left, top, right and bottom of figures on the screen."""
+    shown = figures(explorer)
+    return [tuple(shown[name][:4]) for name in names]
+
+
+def overlap(one: Box, other: Box) -> bool:
+    return min(one[2], other[2]) > max(one[0], other[0]) + 1 and min(one[3], other[3]) > max(one[1], other[1]) + 1
+
+
+@pytest.fixture(scope="module")
+def wide(open_for_all: OpenExplorer) -> ExplorerPage:
+    return open_for_all(1600, 1000, QUICK)
+
+
+@pytest.fixture(scope="module")
+def middling(open_for_all: OpenExplorer) -> ExplorerPage:
+    return open_for_all(1280, 900, QUICK)
+
+
+@pytest.fixture(scope="module")
+def phone(open_for_all: OpenExplorer) -> ExplorerPage:
+    explorer = open_for_all(420, 900, QUICK, touch=True)
+    expect(explorer.radio(SHORT_TITLES["basins"])).to_be_checked()
+    return explorer
+
+
+def test_the_page_opens_with_few_models_and_elements(wide: ExplorerPage) -> None:
+    assert wide.page.evaluate("() => Bokeh.documents[0]._all_models.size") <= 250
+    assert wide.page.evaluate(_ELEMENTS) <= 1200
+
+
+def test_nothing_idle_is_shown(wide: ExplorerPage) -> None:
+    for label in _IDLE:
+        expect(wide.button(label)).to_be_hidden()
+    for disabled in wide.page.locator(":disabled, [aria-disabled=true]").all():
+        expect(disabled).to_be_hidden()
+    assert set(figures(wide)) == set(PICTURES)
+
+
+def test_on_a_wide_screen_the_maps_stand_in_one_row(wide: ExplorerPage) -> None:
+    places = boxes(wide)
+    assert len({place[1] for place in places}) == 1
+    assert [place[0] for place in places] == sorted(place[0] for place in places)
+    assert places[-1][2] <= 1600
+
+
+def test_on_a_middling_screen_the_maps_stand_in_two_rows_beside_the_inspector(middling: ExplorerPage) -> None:
+    places = boxes(middling)
+    assert len({place[0] for place in places}) == len({place[1] for place in places}) == 2
+    assert max(place[3] for place in places) <= 900
+    hint = middling.text("Click a map to see the orbit").bounding_box()
+    assert hint is not None
+    assert hint["x"] >= max(place[2] for place in places)
+    assert hint["y"] < places[2][1]
+
+
+@pytest.mark.parametrize("page", ["wide", "middling", "phone"])
+def test_the_maps_do_not_move_when_an_orbit_is_clicked(page: str, request: pytest.FixtureRequest) -> None:
+    explorer: ExplorerPage = request.getfixturevalue(page)
+    names = ["basins"] if page == "phone" else PICTURES
+    before = boxes(explorer, names)
+    explorer.click("basins", 0.1, 0.05)
+    expect(explorer.text("Escaped through channel 1")).to_be_attached()
+    explorer.wait_for_data("paths", "data.xs.length == 1")
+    assert boxes(explorer, names) == before
+    explorer.return_home()
+    explorer.wait_for_data("starts", "data.x.length == 0")
+
+
+def test_on_a_phone_one_map_is_shown_and_can_be_chosen(phone: ExplorerPage) -> None:
+    for name in ("times", "basins"):
+        phone.pick(SHORT_TITLES[name])
+        phone.page.wait_for_function(f"name => {{ const shown = ({_FIGURES})(); return shown[name] }}", arg=name)
+        assert set(figures(phone)) == {name}
+
+
+@pytest.mark.parametrize(("page", "width"), [("wide", 1600), ("middling", 1280), ("phone", 420)])
+def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, width: int, request: pytest.FixtureRequest) -> None:
+    explorer: ExplorerPage = request.getfixturevalue(page)
+    assert all(abs(place[4] - place[5]) <= 1 for place in figures(explorer).values())
+    assert explorer.page.evaluate("document.documentElement.scrollWidth") <= width
+    x_low, x_high, low, high = explorer.ranges("basins")
+    assert x_high - x_low == pytest.approx(high - low)
+
+
+def test_on_a_phone_one_finger_scrolls_until_another_mode_is_chosen(phone: ExplorerPage) -> None:
+    action = """() => getComputedStyle([...Bokeh.index.all_views()].find(view => view.model.name == 'basins')
+        .canvas_view.events_el).touchAction"""
+    assert phone.page.evaluate(action) == "pan-x pan-y"
+    phone.pick("Move")
+    phone.page.wait_for_function(f"({action})() == 'none'")
+    phone.pick("Scroll")
+    phone.page.wait_for_function(f"({action})() == 'pan-x pan-y'")
+
+
+def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
+    phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
+    expect(phone.text("Escaped through channel 1")).to_be_attached()
+    phone.return_home()
+
+
+@pytest.mark.parametrize(("width", "touch"), [(1600, False), (1280, False), (420, True)])
+def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
+    explorer = open_explorer(width, 900, f"{QUICK}&orbits=0.1,0.05;0.2,0.1&analysis=measures&origins=yes", touch=touch)
+    explorer.wait_for_data("separation_source", "data.t.length > 1")
+    explorer.wait_for_data("survival_steps", "data.t.length > 1")
+    shown = figures(explorer)
+    assert {"path", "sali", "r2", "exponent", "separation", "survival"} <= set(shown)
+    assert not [pair for pair in itertools.combinations(shown, 2) if overlap(shown[pair[0]][:4], shown[pair[1]][:4])]
+    assert explorer.page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def legend(explorer: ExplorerPage) -> list[tuple[str, str]]:
+    """Label and colour of each entry."""
+    return [tuple(entry) for entry in explorer.page.locator(".legend").first.evaluate(_LEGEND)]
+
+
+def expected_entries(palette: str, channels: int) -> list[tuple[str, str]]:
+    """Entries of every map without layers and curves."""
+    colours = PALETTES[palette]
+    outcomes = [colours.outcomes[fate] for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED)]
+    entries: list[Entry] = [*colours.channel_entries(channels), *colours.crossing_entries, *outcomes]
+    return [(entry.label, entry.colour) for entry in entries]
+
+
+@pytest.mark.parametrize("palette", list(PALETTES))
+def test_the_legend_has_the_colours_of_the_palette(explorer: ExplorerPage, palette: str) -> None:
+    if palette != "paper":
+        explorer.choose("Colours", PALETTES[palette].name)
+        explorer.wait_for_view(f"palette={palette}")
+    expect(explorer.page.locator(".legend").first).to_contain_text("channel 1")
+    assert set(expected_entries(palette, CASES["I"].channels)) <= set(legend(explorer))
+
+
+def test_the_legend_follows_case_and_plane(explorer: ExplorerPage) -> None:
+    strip = explorer.page.locator(".legend").first
+    explorer.pick("III")
+    expect(strip).to_contain_text("channel 4")
+    assert set(expected_entries("paper", 4)) <= set(legend(explorer))
+    for plane, curve in (("(x, h)", "V(x, 0) = h"), ("(x, y)", "V = h"), ("(x, px)", "½px² + V(x, 0) = h")):
+        explorer.pick(plane)
+        expect(strip).to_contain_text(f"limiting curve {curve}")
+        assert ("at other energies" in dict(legend(explorer))) == (plane != "(x, h)")
+
+
+def test_a_mode_of_dragging_acts_on_all_maps(explorer: ExplorerPage) -> None:
+    toolbars = explorer.page.evaluate(
+        "names => new Set(names.map(name => Bokeh.documents[0].get_model_by_name(name).toolbar)).size", list(PICTURES)
+    )
+    assert toolbars == 1
+    explorer.set_drag("Zoom")
+    for picture in ("crossings", "basins"):
+        width = explorer.column("dw")
+        x_low, x_high, low, high = explorer.ranges(picture)
+        middle = (x_low + x_high) / 2, (low + high) / 2
+        explorer.drag(picture, middle, (middle[0] + 0.3 * (x_high - x_low), middle[1] - 0.3 * (high - low)))
+        explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] < 0.5 * {width}")
+        assert len({tuple(explorer.ranges(name)) for name in PICTURES}) == 1
+    explorer.set_drag("Move")
+
+
+def help_text(explorer: ExplorerPage, name: str) -> Locator:
+    return explorer.page.locator(f"#help-{name}")
+
+
+def test_a_help_button_opens_its_text(explorer: ExplorerPage) -> None:
+    for name in PICTURES:
+        expect(help_text(explorer, name)).to_be_hidden()
+        explorer.press(f"About: {TITLES[name]}")
+        expect(help_text(explorer, name)).to_be_visible()
+        assert unescape(help_text(explorer, name).inner_text()) == HELP_TEXTS[name]
+    # Opening one closes the others.
+    expect(explorer.page.locator(".help-text:popover-open")).to_have_count(1)
+    explorer.page.keyboard.press("Escape")
+    expect(explorer.page.locator(".help-text:popover-open")).to_have_count(0)
