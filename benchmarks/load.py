@@ -91,9 +91,7 @@ def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={host.split(':')[1]}"]
     command += [f"--allow-websocket-origin={host}", *SERVER_OPTIONS]
     with log.open("w") as output:
-        process = subprocess.Popen(
-            command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **environment}
-        )
+        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **environment})
     try:
         yield Server(f"http://{host}/app", process.pid, log), process
     finally:
