@@ -1,6 +1,7 @@
 """First start of the server with an empty kernel cache, and a second start: seconds until the first map of the page.
 
-A simulated session opens the page as soon as the server answers, and waits for the map of the default view.
+A simulated session opens the page as soon as the server answers, and waits for the map of the default view. In brackets the
+processor time of the server until then, which depends less on what else the machine does.
 
 Run: uv run python -m benchmarks.first_start
 """
@@ -13,6 +14,7 @@ import json
 import statistics
 import tempfile
 import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -38,24 +40,28 @@ async def open_when_possible(address: str) -> str:
             await asyncio.sleep(POLL_SECONDS)
 
 
-async def watch_first_map(server: Server, begin: float) -> list[float]:
-    """Seconds from `begin` to the first four of `EVENTS`."""
+Moment = tuple[float, float]
+"""Time and processor time since the start of the process, in seconds."""
+
+
+async def watch_first_map(server: Server, moment: Callable[[], Moment]) -> list[Moment]:
+    """Moments of the first four of `EVENTS`."""
     page = await open_when_possible(server.address)
-    seconds = [time.perf_counter() - begin]
+    moments = [moment()]
     channel = await Channel.connect(server.address, page)
     async for kind, content in channel.messages():
         if kind == "ACK":
             channel.send("PULL-DOC-REQ", {})
         elif kind == "PULL-DOC-REPLY":
             channel.emit("document_ready")
-            seconds.append(time.perf_counter() - begin)
+            moments.append(moment())
         elif kind == "PATCH-DOC":
             for columns in map_updates(content):
-                if len(seconds) == 2:
-                    seconds.append(time.perf_counter() - begin)
+                if len(moments) == 2:
+                    moments.append(moment())
                 if columns["complete"] == [True]:
                     channel.close()
-                    return [*seconds, time.perf_counter() - begin]
+                    return [*moments, moment()]
     raise RuntimeError("the server closed the socket before the map was complete")
 
 
@@ -66,13 +72,23 @@ def map_updates(content: str) -> list[dict[str, Any]]:
     return [each for each in columns if "complete" in each]
 
 
-def time_start(folder: Path, cache: Path) -> list[float]:
-    """Seconds from the start of the process to each of `EVENTS`, and processor time until the last one."""
+def time_start(folder: Path, cache: Path) -> list[Moment]:
+    """Moments of `EVENTS`."""
     begin = time.perf_counter()
     with started(folder / "log", **{CACHE_VARIABLE: str(cache)}) as (server, process):
-        seconds = asyncio.run(watch_first_map(server, begin))
+
+        def moment() -> Moment:
+            return time.perf_counter() - begin, server.cpu_seconds()
+
+        moments = asyncio.run(watch_first_map(server, moment))
         wait_until_ready(server, process)
-        return [*seconds, time.perf_counter() - begin, server.cpu_seconds()]
+        return [*moments, moment()]
+
+
+def median(moments: Iterable[Moment]) -> str:
+    """Medians of both times."""
+    elapsed, used = (statistics.median(times) for times in zip(*moments, strict=True))
+    return f"{elapsed:.1f} ({used:.1f})"
 
 
 def main() -> None:
@@ -87,8 +103,8 @@ def main() -> None:
             second.append(time_start(Path(folder), cache))
     print(f"Seconds from the start of the process, medians of {repeats}:\n")
     print("| until | empty kernel cache | filled kernel cache |\n|---|---|---|")
-    for row, event in enumerate((*EVENTS, "processor time")):
-        columns = (f"{statistics.median(times[row] for times in runs):.1f}" for runs in (first, second))
+    for row, event in enumerate(EVENTS):
+        columns = (median(moments[row] for moments in runs) for runs in (first, second))
         print(f"| {event} | {' | '.join(columns)} |")
 
 
