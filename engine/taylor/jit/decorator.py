@@ -23,9 +23,9 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def subroutine(function: Callable[..., Any]) -> Any:
-    """The function, compiled as a part of each kernel that calls it, and left to Python elsewhere.
+    """The function, compiled as a part of the kernels that call it; from Python it runs uncompiled.
 
-    Unlike a kernel it is compiled without an entry from Python, which can take as long as the function itself, once for an
-    argument that is sometimes a literal, and has no file in the cache.
+    It compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second version for
+    arguments that are literals.
     """
     return register_jitable(**_OPTIONS)(function)

@@ -95,7 +95,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     exits: `Exits`; orbits: `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located and an orbit
     still inside is BOUNDED; without, it stays NOT_COMPUTED. Returns the number of steps taken.
     """
-    # All arrays are made by `np.zeros`, since each further function and type of array takes a tenth of a second to compile.
+    # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
     now = np.zeros((5, lanes))
     new = np.zeros((5, lanes))
     # Lanes without an orbit take harmless steps that never reach the horizon.

@@ -42,7 +42,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     lanes = state.shape[1]
     most = passages.shape[1]
     now = np.zeros((5, lanes))
-    # Element by element, as Numba compiles a message for an assignment of arrays of different shapes, which takes two seconds.
+    # Element by element: for `now[:4] = state` Numba compiles an error message as well, which takes 2 s.
     for c in range(4):
         for i in range(lanes):
             now[c, i] = state[c, i]
