@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import os
 import re
 import socket
 import statistics
@@ -75,23 +76,32 @@ class Server:
 
 @contextmanager
 def served(log: Path) -> Iterator[Server]:
-    """Run the app on a free port."""
+    """Run the app on a free port; its kernels are compiled when this begins."""
+    with started(log) as (server, process):
+        wait_until_ready(server, process)
+        yield server
+
+
+@contextmanager
+def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.Popen[bytes]]]:
+    """Start the app on a free port, with more environment variables; it does not answer yet when this begins."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         host = f"127.0.0.1:{probe.getsockname()[1]}"
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={host.split(':')[1]}"]
     command += [f"--allow-websocket-origin={host}", *SERVER_OPTIONS]
     with log.open("w") as output:
-        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **environment})
     try:
-        wait_until_ready(f"http://{host}/readiness", process)
-        yield Server(f"http://{host}/app", process.pid, log)
+        yield Server(f"http://{host}/app", process.pid, log), process
     finally:
         process.terminate()
         process.wait(30)
 
 
-def wait_until_ready(address: str, process: subprocess.Popen[bytes]) -> None:
+def wait_until_ready(server: Server, process: subprocess.Popen[bytes]) -> None:
+    """Wait until all kernels are compiled."""
+    address = server.address.removesuffix("/app") + "/readiness"
     deadline = time.monotonic() + START_SECONDS
     while process.poll() is None and time.monotonic() < deadline:
         try:

@@ -89,7 +89,13 @@ from engine.trajectories.section_crossings import find_section_crossings
 from engine.trajectories.separation import LONGEST_SEPARATION, Separation, compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
 from engine.validation import LONGEST_TIME
-from engine.warmup import is_ready_for_maps, prepare_kernels
+from engine.warmup import (
+    is_ready_for_maps,
+    prepare_for_certificates,
+    prepare_for_maps,
+    prepare_kernels,
+    seconds_until_ready_for_maps,
+)
 from engine.wording import format_number, format_time, format_whole
 
 __all__ = [
@@ -226,10 +232,13 @@ __all__ = [
     "measure_deviation",
     "parse_formula",
     "plan_sweep",
+    "prepare_for_certificates",
+    "prepare_for_maps",
     "prepare_kernels",
     "preview_spec",
     "review_potential",
     "run_sweep",
+    "seconds_until_ready_for_maps",
     "start_states",
     "tabulate_crossing_statistics",
     "trace_equipotentials",

@@ -1,6 +1,14 @@
-"""Compile kernels ahead of time, or load them from the kernel cache."""
+"""Compile kernels ahead of time, or load them from the kernel cache.
+
+Numba compiles one function at a time, whatever the number of threads, so the order matters: kernels of the first frame of a map,
+then those of certificates, without which a map is not complete, then all others. Background compilation lets maps go first.
+"""
 
 from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
 
 import numpy as np
 
@@ -8,10 +16,12 @@ from engine.dynamics.compiled import kernels_of
 from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
 from engine.dynamics.planes import Plane, start_states
 from engine.dynamics.section_points import find_section_points
+from engine.execution import SerialExecutor
 from engine.invariant_sets.birkhoff_averages import count_agreeing_digits
 from engine.invariant_sets.stable_manifolds import find_stable_manifolds
 from engine.maps.compute import compute_map
 from engine.maps.regularity import compute_regularity
+from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.trajectories.trajectory import integrate_orbit
@@ -19,14 +29,90 @@ from engine.trajectories.trajectory import integrate_orbit
 # Integration time of the calls that trigger compilation.
 _T_MAX = 10.0
 
-# Kernels of the first frame of a map and of the Lyapunov orbits it needs.
-_MAP_KERNELS = ("step", "jets", "potential_value", "propagate", "shoot")
+# Compiles in the calling thread, since the threads of pools have low priority.
+_EXECUTOR = SerialExecutor()
+
+# Kernels of the first frame of a map and of the Lyapunov orbits it needs, with the seconds that it takes to compile them on one
+# core of an AMD EPYC (Zen 4): those of each potential per operation, those of all potentials together.
+_SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
+_SECONDS = {"shoot": 0.8, "propagate": 2.2}
+_MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
+
+
+class _Compilations:
+    """Compilations for maps under way.
+
+    Attributes
+    ----------
+    slowness
+        How much slower than expected the last compilation was; at least 1, since kernels loaded from the cache take no time.
+    """
+
+    def __init__(self) -> None:
+        self.slowness = 1.0
+        self._ends: dict[Potential, float] = {}
+        self._changed = threading.Condition()
+
+    def run(self, potential: Potential, calls: tuple[Callable[[], object], ...]) -> None:
+        """Make the calls that compile the kernels for maps; background compilation waits meanwhile."""
+        try:
+            for call in calls:
+                expected, begin = _expected_seconds(potential), time.monotonic()
+                with self._changed:
+                    self._ends[potential] = begin + self.slowness * expected
+                call()
+                compiled = expected - _expected_seconds(potential)
+                if compiled > 0.0:
+                    self.slowness = max(1.0, (time.monotonic() - begin) / compiled)
+        finally:
+            with self._changed:
+                self._ends.pop(potential, None)
+                self._changed.notify_all()
+
+    def seconds_left(self, potential: Potential) -> float:
+        """Estimate from the kernels that are left and from the time since the compilation began."""
+        left, end = self.slowness * _expected_seconds(potential), self._ends.get(potential)
+        return left if end is None else min(left, max(end - time.monotonic(), 0.0))
+
+    def wait(self) -> None:
+        """Wait until no compilation for maps is under way."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._ends)
+
+
+_for_maps = _Compilations()
+
+
+def _expected_seconds(potential: Potential) -> float:
+    """Time to compile the kernels of maps that are not compiled yet."""
+    kernels = kernels_of(potential)
+    left = {name: getattr(kernels, name) for name in _MAP_KERNELS if not getattr(kernels, name).signatures}
+    return sum(
+        _SECONDS[name] if name in _SECONDS else _SECONDS_PER_OPERATION[name] * float(kernel.function.operations)
+        for name, kernel in left.items()
+    )
 
 
 def is_ready_for_maps(potential: Potential) -> bool:
     """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
     kernels = kernels_of(potential)
     return all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
+
+
+def seconds_until_ready_for_maps(potential: Potential) -> float:
+    """Estimated time until the kernels of maps are compiled.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit.
+
+    Returns
+    -------
+    Seconds, from the number of operations of the kernels that are left and the speed of earlier compilations in this process; 0
+    when they are compiled, or take longer than expected. Kernels that the cache contains take a fraction of a second instead.
+    """
+    return _for_maps.seconds_left(potential)
 
 
 def prepare_for_maps(potential: Potential) -> None:
@@ -39,8 +125,23 @@ def prepare_for_maps(potential: Potential) -> None:
     """
     if is_ready_for_maps(potential):
         return
-    find_lyapunov_orbits(potential, 1.01 * potential.escape_energy)
-    compute_map(MapSpec(potential, Plane.X_PX, 1.01 * potential.escape_energy, (2, 2), t_max=_T_MAX))
+    energy = 1.01 * potential.escape_energy
+    _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
+
+
+def prepare_for_certificates(potential: Potential) -> None:
+    """Compile the kernels for the certificates of bounded orbits, or load them from the cache.
+
+    Parameters
+    ----------
+    potential
+        Any `Potential` with an exit.
+    """
+    start = _bounded_start(potential)
+    _make_in_turn(
+        lambda: count_agreeing_digits(potential, start, _T_MAX, executor=_EXECUTOR),
+        lambda: find_section_points(potential, start, 1, _T_MAX, executor=_EXECUTOR),
+    )
 
 
 def prepare_kernels(potential: Potential) -> None:
@@ -52,12 +153,26 @@ def prepare_kernels(potential: Potential) -> None:
         Any `Potential` with an exit. Compilation takes some seconds, once per machine.
     """
     prepare_for_maps(potential)
-    find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1)
-    # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
-    energy = 0.5 * potential.escape_energy
-    spec = MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX)
-    compute_regularity(compute_map(spec))
-    start = start_states(potential, Plane.X_PX, energy, np.zeros(1), np.zeros(1))
-    integrate_orbit(potential, start[0], _T_MAX)
-    count_agreeing_digits(potential, start, _T_MAX)
-    find_section_points(potential, start, 1, _T_MAX)
+    prepare_for_certificates(potential)
+    _make_in_turn(
+        lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX),
+        # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
+        lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), executor=_EXECUTOR),
+        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1, executor=_EXECUTOR),
+    )
+
+
+def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
+    return compute_map(MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX), executor=_EXECUTOR)
+
+
+def _bounded_start(potential: Potential) -> np.ndarray:
+    """(1, 4) a state of low energy."""
+    return start_states(potential, Plane.X_PX, 0.5 * potential.escape_energy, np.zeros(1), np.zeros(1))
+
+
+def _make_in_turn(*calls: Callable[[], object]) -> None:
+    """Make the calls, each when no compilation for maps is under way."""
+    for call in calls:
+        _for_maps.wait()
+        call()

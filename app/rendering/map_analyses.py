@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from engine import Fate, OriginFateMap, Regularity, RegularityMap, StableManifolds, Trust, TrustMap, describe_codes
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import datashader
 import numpy as np
-import pandas as pd
-from datashader import transfer_functions
 
 from engine import Orbit, Plane, Potential, Window, default_window, find_section_crossings
 
@@ -83,6 +80,11 @@ def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
 
 
 def _visits(orbit: Orbit, window: Window) -> np.ndarray:
+    # Slow to import, and needed for long paths only.
+    import datashader
+    import pandas as pd
+    from datashader import transfer_functions
+
     canvas = datashader.Canvas(
         _SHADED_PIXELS, _SHADED_PIXELS, (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
     )

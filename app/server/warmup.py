@@ -10,16 +10,26 @@ from functools import partial
 
 from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
-from engine import CASES, prepare_kernels
+from engine import CASES, Potential, prepare_for_certificates, prepare_for_maps, prepare_kernels
 
-# A child of Bokeh's logger, so that `panel serve` shows the messages: the first start takes minutes.
+# A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
 
+_PURPOSES: Mapping[str, Callable[[Potential], None]] = {
+    "maps": prepare_for_maps,
+    "certificates": prepare_for_certificates,
+    "orbits and analyses": prepare_kernels,
+}
+
 STEPS: Mapping[str, Callable[[], None]] = {
-    **{f"the kernels of case {name}": partial(prepare_kernels, potential) for name, potential in CASES.items()},
+    **{
+        f"the kernels of case {name} for {purpose}": partial(prepare, potential)
+        for purpose, prepare in _PURPOSES.items()
+        for name, potential in CASES.items()
+    },
     "the panes of an orbit": orbit_plots.prepare,
 }
-"""Functions that compile kernels or load them from the disk cache, by what they prepare."""
+"""Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""
 
 
 def start_warmup(state: ProcessState, steps: Mapping[str, Callable[[], None]] = STEPS) -> threading.Thread:

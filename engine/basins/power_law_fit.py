@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from engine.arrays import read_only
 from engine.validation import checked_array, checked_integers, short_repr
@@ -99,7 +99,7 @@ class UncertaintyExponent:
     def probability(self) -> float:
         """Probability of at least this scatter about the fitted line by chance alone; NaN without a fitted line."""
         freedom = int(np.count_nonzero(self.used)) - 2
-        return float(stats.chi2.sf(self.misfit * freedom, freedom)) if np.isfinite(self.misfit) else float("nan")
+        return float(special.chdtrc(freedom, self.misfit * freedom)) if np.isfinite(self.misfit) else float("nan")
 
     @property
     def nbytes(self) -> int:
@@ -255,7 +255,7 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
     chi2 = float(np.sum((k - n * share) ** 2 / (n * share * (1.0 - share))))
     exponent = float(slope / np.ptp(x))
     tail = 0.5 * (1.0 + _CONFIDENCE)
-    errors = max(stats.norm.ppf(tail), stats.t.ppf(tail, freedom) * np.sqrt(chi2 / freedom))
+    errors = max(special.ndtri(tail), special.stdtrit(freedom, tail) * np.sqrt(chi2 / freedom))
     return _Law(
         used=used,
         exponent=exponent,
@@ -263,7 +263,7 @@ def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray
         amplitude=float(np.exp(level - exponent * x.mean())),
         misfit=chi2 / freedom,
         bend=_measure_bend(x, n, k),
-        plausible=bool(stats.chi2.sf(chi2, freedom) >= MIN_PROBABILITY),
+        plausible=bool(special.chdtrc(freedom, chi2) >= MIN_PROBABILITY),
     )
 
 

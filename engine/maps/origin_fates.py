@@ -5,16 +5,18 @@ from __future__ import annotations
 import threading
 from concurrent.futures import CancelledError, Executor
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from engine.dynamics.fates import Fate
 from engine.maps.compute import compute_map
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,9 @@ class OriginFateMap(PixelAnalysis):
 
     def to_xarray(self) -> xr.Dataset:
         """The map as a dataset with named axes and provenance, which can be written as NetCDF."""
+        # Slow to import, and seldom used.
+        import xarray as xr
+
         plane = self.spec.plane
         dims = (plane.ordinate, "x")
         variables: dict[str, Any] = {

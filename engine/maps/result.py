@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from engine.dynamics.batch import OrbitBatch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.dynamics.planes import Window
 from engine.maps.spec import MapSpec
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
     "fate": (np.int8, Fate.NOT_COMPUTED),
@@ -146,6 +148,9 @@ class EscapeMap:
 
     def to_xarray(self) -> xr.Dataset:
         """The map as a dataset with named axes, units and provenance, which can be written as NetCDF."""
+        # Slow to import, and seldom used.
+        import xarray as xr
+
         plane = self.spec.plane
         dims = (plane.ordinate, "x")
         variables = {

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize, special
 
 from engine.arrays import read_only
 from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
@@ -224,7 +224,7 @@ def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray, transform: np
     if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameters:
         return np.full(parameters, np.inf)
     root = transform @ np.linalg.inv(r) @ (q * (residuals / (1.0 - leverage))[:, None]).T
-    quantile = stats.t.ppf(0.5 * (1.0 + _CONFIDENCE), count - parameters)
+    quantile = special.stdtrit(count - parameters, 0.5 * (1.0 + _CONFIDENCE))
     half_widths: np.ndarray = quantile * np.sqrt(np.sum(root * root, axis=1))
     return half_widths
 

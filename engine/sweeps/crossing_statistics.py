@@ -6,10 +6,9 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Plane, Window
@@ -20,6 +19,9 @@ from engine.potentials.potential import Potential
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_curves import EnergyCurvesSpec
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _WINDOW = tuple(Window.__dataclass_fields__)
 
@@ -187,6 +189,9 @@ def _count(frame: EscapeMap, count_outside: bool) -> _Row:
 
 
 def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
+    # Slow to import, and seldom used.
+    import xarray as xr
+
     spec, statistics = rows[0].spec, [row.statistics for row in rows]
     starts, escaped, direct, failed, decided = (
         np.array([getattr(counts, name) for counts in statistics], np.int64)

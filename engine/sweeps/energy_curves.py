@@ -7,10 +7,9 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-import xarray as xr
 
 from engine.basins.basin_entropy import compute_basin_entropy
 from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
@@ -24,6 +23,9 @@ from engine.potentials.potential import Potential
 from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_grid import checked_sweep
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_ENERGIES = 1000
 """Most energies of one sweep."""
@@ -164,6 +166,9 @@ class EnergyCurves:
 
     def to_xarray(self) -> xr.Dataset:
         """All curves as a dataset with coordinates and provenance."""
+        # Slow to import, and seldom used.
+        import xarray as xr
+
         variables: dict[str, Any] = {"share": (("h", "fate"), self.shares)}
         variables |= {name: ("h", self.curve(name)) for name in _CURVES}
         coordinates = {"h": self.energies, "fate": np.arange(self.spec.potential.channels + 1)}

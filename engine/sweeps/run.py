@@ -8,9 +8,9 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.execution import SerialExecutor, count_workers, default_executor
@@ -25,6 +25,9 @@ from engine.sweeps.zarr_store import SweepStore, create_store
 from engine.validation import checked_count
 from engine.warmup import prepare_kernels
 from engine.wording import format_count
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # A plan is based on maps of these sides at this many energies; the small one measures the cost that does not depend on size.
 _COARSE_SIDES = (48, 96)

@@ -12,13 +12,14 @@ import shutil
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-import xarray as xr
-import zarr
 
 from engine.sweeps.checkpoint_blocks import CheckpointBlocks
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 DONE = "done"
 """Array (h,) of bool: the finished energies. An element is written after all other arrays of its energy."""
@@ -43,6 +44,9 @@ class SweepStore:
     """
 
     def __init__(self, path: Path) -> None:
+        # Slow to import, and seldom used.
+        import zarr
+
         self.path = path
         group = zarr.open_group(path, mode="r+", zarr_format=_FORMAT)
         self.attributes = dict(group.attrs)
@@ -109,6 +113,9 @@ class SweepStore:
 
     def open_dataset(self) -> xr.Dataset:
         """Open the arrays, without the flags; they are read from the disk on access."""
+        # Slow to import, and seldom used.
+        import xarray as xr
+
         dataset: xr.Dataset = xr.open_zarr(self.path, chunks=None, consolidated=False, zarr_format=_FORMAT)
         return dataset.drop_vars(DONE)
 
@@ -183,6 +190,9 @@ def _create_group(
     attributes: dict[str, Any],
     chunk_rows: int,
 ) -> None:
+    # Slow to import, and seldom used.
+    import zarr
+
     group = zarr.create_group(path, zarr_format=_FORMAT, attributes=_as_stored(attributes))
     shape = tuple(values.size for values in coordinates.values())
     chunks = (1, chunk_rows, *shape[2:])

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.decorator import kernel, subroutine
 
 # Columns of an exit curve.
 SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(
@@ -29,7 +29,7 @@ _ROOT_ITERATIONS = 80
 _ROOT_ACCURACY = 1e-15
 
 
-@kernel
+@subroutine
 def exit_distance(x, y, curve):
     """Distance of (x, y) from an exit curve along the channel: positive outside, negative inside."""
     dx = x - curve[SADDLE_X]
@@ -74,7 +74,7 @@ def find_outside(x, y, curves, curve_row):
     return channels
 
 
-@kernel
+@subroutine
 def series_value(jet, i, tau):
     """A series at time tau after the start of its step."""
     value = jet[jet.shape[0] - 1, i]
@@ -83,7 +83,7 @@ def series_value(jet, i, tau):
     return value
 
 
-@kernel
+@subroutine
 def series_slope(jet, i, tau):
     """The time derivative of a series at time tau after the start of its step."""
     order = jet.shape[0] - 1
@@ -93,7 +93,7 @@ def series_slope(jet, i, tau):
     return slope
 
 
-@kernel
+@subroutine
 def find_extremum(jet, i, low, high):
     """The time between `low` and `high` at which the slope of a series changes its sign, by bisection."""
     rising = series_slope(jet, i, low) > 0.0
@@ -108,7 +108,7 @@ def find_extremum(jet, i, low, high):
     return 0.5 * (low + high)
 
 
-@kernel
+@subroutine
 def count_upward_crossings(y_jet, i, duration):
     """Number of times y goes from y < 0 to y ≥ 0 within `duration` of the start of a step, pairs of zeros included."""
     count = 0
@@ -131,7 +131,7 @@ def count_upward_crossings(y_jet, i, duration):
     return count
 
 
-@kernel
+@subroutine
 def find_exit_time(x_jet, y_jet, i, duration, curve):
     """Time from the start of a step that ends outside to the crossing of the exit curve, by the Illinois method."""
     low, high = 0.0, duration

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_fixed_step, call_jets, call_tangent
 from engine.taylor.kernels.events import series_slope, series_value
 from engine.taylor.source.recurrence import ORDER
@@ -42,14 +42,16 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
     state (4, lanes), changed in place; points (lanes, m, 2), filled from index found (lanes,) on.
     """
     lanes = state.shape[1]
-    before = np.empty((4, lanes))
+    before = np.zeros((4, lanes))
     ignored_sums = np.zeros((2, lanes))
     # Steps with a crossing are collected, so that their series are computed together.
     start = np.zeros((4, lanes))
-    step_lane = np.empty(lanes, np.int64)
+    step_lane = np.zeros(lanes, np.int64)
     buffered = 0
     for taken in range(steps):
-        before[:] = state
+        for c in range(4):
+            for i in range(lanes):
+                before[c, i] = state[c, i]
         call_fixed_step(
             fixed_step, coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], ignored_sums[0], ignored_sums[1]
         )
@@ -63,13 +65,22 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
             if buffered == lanes:
                 _locate_crossings(jets, coefficients, h, buffered, start, step_lane, points, found)
                 buffered = 0
-        if taken % _STEPS_BETWEEN_CHECKS == 0 and found.min() == points.shape[1]:
+        if taken % _STEPS_BETWEEN_CHECKS == 0 and _count_below(found, points.shape[1]) == 0:
             break
     if buffered > 0:
         _locate_crossings(jets, coefficients, h, buffered, start, step_lane, points, found)
 
 
-@kernel
+@subroutine
+def _count_below(found, most):
+    count = 0
+    for each in found:
+        if each < most:
+            count += 1
+    return count
+
+
+@subroutine
 def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found):
     """Append the upward crossing in each of the first `n` steps of the buffer to the points of the step's lane."""
     x_jet = np.empty((ORDER + 1, start.shape[1]))
@@ -85,7 +96,7 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
         found[lane] += 1
 
 
-@kernel
+@subroutine
 def _find_crossing_time(y_jet, i, h):
     """The zero between 0 and h of a series that is negative at 0 and not at h: Newton's method, safeguarded by bisection."""
     low, high = 0.0, h
@@ -113,7 +124,9 @@ def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, s
     NaN for an orbit that has gone to infinity.
     """
     lanes = state.shape[1]
-    duration = np.full(lanes, h)
+    duration = np.zeros(lanes)
+    for i in range(lanes):
+        duration[i] = h
     ignored_sums = np.zeros((2, lanes))
     for taken in range(1, steps + 1):
         for w in (first, second):
@@ -127,7 +140,7 @@ def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, s
             _lower_sali(first, second, sali)
 
 
-@kernel
+@subroutine
 def _normalise(w):
     for i in range(w.shape[1]):
         norm = math.sqrt(w[0, i] ** 2 + w[1, i] ** 2 + w[2, i] ** 2 + w[3, i] ** 2)
@@ -135,7 +148,7 @@ def _normalise(w):
             w[c, i] /= norm
 
 
-@kernel
+@subroutine
 def _lower_sali(first, second, sali):
     for i in range(sali.shape[0]):
         difference = 0.0

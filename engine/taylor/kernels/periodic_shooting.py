@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_potential_value, call_step
 from engine.taylor.kernels.events import series_slope
 from engine.taylor.source.recurrence import ORDER
@@ -20,7 +20,7 @@ _MOST_STEPS = 400
 _MOST_CHANNELS = 128
 
 
-@kernel
+@subroutine
 def find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy):
     """The q < 0 at which V = energy on the line across the channel at u, on the zero-velocity curve; NaN where there is none.
 
@@ -60,12 +60,12 @@ def shoot(
     lanes = 1
     now = np.zeros((5, lanes))
     new = np.zeros((5, lanes))
-    h = np.empty(lanes)
+    h = np.zeros(lanes)
     flag = np.zeros(lanes, np.int64)
     crossed = np.zeros(lanes, np.int64)
     # No step is past these gates: exits are ignored.
-    gates = np.full((_MOST_CHANNELS, 3), np.inf)
-    gates[:, :2] = 0.0
+    gates = np.zeros((_MOST_CHANNELS, 3))
+    gates[:, 2] = np.inf
     q = find_wall(potential_value, coefficients, u, saddle_x, saddle_y, outward_x, outward_y, energy)
     if np.isnan(q):
         return np.nan, np.nan, 0
@@ -87,7 +87,7 @@ def shoot(
     return np.nan, np.nan, 0
 
 
-@kernel
+@subroutine
 def _turning_point(jets, coefficients, now, h, outward_x, outward_y, count):
     """What `shoot` returns for an orbit whose motion across the channel turns back within the step from `now`."""
     x_jet = np.empty((ORDER + 1, 1))

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import (
     BOUNDED,
@@ -79,7 +79,7 @@ class Orbits(NamedTuple):
 class _StepBuffer(NamedTuple):
     """Steps whose events are still to be located.
 
-    start (4, lanes): state; h, orbit, ends (lanes,): size of the step, number of the orbit, and whether the orbit ends in it.
+    start (4, lanes): state; h, orbit, ends (lanes,): size of the step, number of the orbit, and 1 if the orbit ends in it.
     """
 
     start: np.ndarray
@@ -95,17 +95,17 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     exits: `Exits`; orbits: `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located and an orbit
     still inside is BOUNDED; without, it stays NOT_COMPUTED. Returns the number of steps taken.
     """
-    now = np.empty((5, lanes))
-    new = np.empty((5, lanes))
+    # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
+    now = np.zeros((5, lanes))
+    new = np.zeros((5, lanes))
     # Lanes without an orbit take harmless steps that never reach the horizon.
     now[0] = 0.01
-    now[1:4] = 0.0
     now[4] = -np.inf
-    h = np.empty(lanes)
+    h = np.zeros(lanes)
     flag = np.zeros(lanes, np.int64)
     crossed = np.zeros(lanes, np.int64)
-    lane_orbit = np.empty(lanes, np.int64)
-    buffer = _StepBuffer(np.zeros((4, lanes)), np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.bool_))
+    lane_orbit = np.zeros(lanes, np.int64)
+    buffer = _StepBuffer(np.zeros((4, lanes)), np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
     buffered = 0
     active = min(lanes, todo.shape[0])
     next_orbit = active
@@ -151,7 +151,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     return taken
 
 
-@kernel
+@subroutine
 def _judge_step(flags, x, y, h, final, exits, orbit):
     """Whether an orbit ends in a flagged step, whether it has failed, and whether there are events to locate.
 
@@ -167,7 +167,7 @@ def _judge_step(flags, x, y, h, final, exits, orbit):
     return ends, failed, has_events and not failed
 
 
-@kernel
+@subroutine
 def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
     """Put an orbit into lane i of the (5, n) array `lanes`."""
     for c in range(4):
@@ -177,7 +177,7 @@ def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
     crossed[i] = 0
 
 
-@kernel
+@subroutine
 def _store_orbit(lanes, i, crossed, orbits, orbit):
     """Write lane i of the (5, n) array `lanes` back to its orbit."""
     for c in range(4):
@@ -186,7 +186,7 @@ def _store_orbit(lanes, i, crossed, orbits, orbit):
     orbits.crossings[orbit] += crossed[i]
 
 
-@kernel
+@subroutine
 def _move_lane(lanes, source, target, lane_orbit, crossed):
     for c in range(5):
         lanes[c, target] = lanes[c, source]
@@ -194,7 +194,7 @@ def _move_lane(lanes, source, target, lane_orbit, crossed):
     crossed[target] = crossed[source]
 
 
-@kernel
+@subroutine
 def _buffer_step(now, i, h, orbit, ends, buffer, k):
     """Put the step of lane i into place k of the buffer."""
     for c in range(4):
@@ -204,7 +204,7 @@ def _buffer_step(now, i, h, orbit, ends, buffer, k):
     buffer.ends[k] = ends
 
 
-@kernel
+@subroutine
 def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
     """Locate the events in the first `n` buffered steps: upward crossings and, for orbits that end, the exit and its time."""
     x_jet = np.empty((ORDER + 1, buffer.start.shape[1]))
@@ -214,7 +214,7 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
     for i in range(n):
         j = buffer.orbit[i]
         h = buffer.h[i]
-        if not buffer.ends[i]:
+        if buffer.ends[i] == 0:
             orbits.crossings[j] += count_upward_crossings(y_jet, i, h)
             continue
         curves = exits.curves[exits.curve_row[j]]
@@ -244,7 +244,7 @@ def record_steps(step, coefficients, start, begin, end, tolerance, gates, steps)
     """
     now = np.zeros((5, VECTOR))
     new = np.zeros((5, VECTOR))
-    h = np.empty(VECTOR)
+    h = np.zeros(VECTOR)
     flag = np.zeros(VECTOR, np.int64)
     crossed = np.zeros(VECTOR, np.int64)
     for c in range(4):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import find_exit_time, find_extremum, outside_channel, series_slope, series_value
 from engine.taylor.kernels.propagate import VECTOR
@@ -42,12 +42,17 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     lanes = state.shape[1]
     most = passages.shape[1]
     now = np.zeros((5, lanes))
-    now[:4] = state
-    new = np.empty((5, lanes))
-    h = np.empty(lanes)
+    # Element by element: for `now[:4] = state` Numba compiles an error message as well, which takes 2 s.
+    for c in range(4):
+        for i in range(lanes):
+            now[c, i] = state[c, i]
+    new = np.zeros((5, lanes))
+    h = np.zeros(lanes)
     flag = np.zeros(lanes, np.int64)
     crossed = np.zeros(lanes, np.int64)
-    lane_orbit = np.arange(lanes)
+    lane_orbit = np.zeros(lanes, np.int64)
+    for i in range(lanes):
+        lane_orbit[i] = i
     buffer = _StepBuffer(np.zeros((6, lanes)), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
     buffered = 0
     active = lanes
@@ -86,7 +91,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     _locate_passages(jets, coefficients, buffer, buffered, curves, passages, found)
 
 
-@kernel
+@subroutine
 def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
     """Append the downward passages in each of the first `n` buffered steps to those of the step's orbit."""
     start = buffer.start
@@ -123,7 +128,7 @@ def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
             found[j] += 1
 
 
-@kernel
+@subroutine
 def _find_passage_time(y_jet, i, above, below):
     """The zero between `above`, where a series is positive, and `below`, where it is not: Newton's method with bisection."""
     tau = 0.5 * (above + below)
