@@ -158,7 +158,9 @@ def _explain_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palett
         offset = _BELOW_BAR
     width = max(map_width, _LEGEND_INCHES * POINTS_PER_INCH)
     handles = [*patches(_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
-    handles += [*(curve for curve in axes.collections if curve.get_label()), *_manifold_handles(picture, palette, analyses)]
+    # Matplotlib names curves without a label "_child…".
+    handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
+    handles += _manifold_handles(picture, palette, analyses)
     legend = add_legend_below(axes, handles, offset, width)
     below = axes.annotate(
         provenance_line(frame), (0.0, 0.0), (0.0, -8.0), xycoords=legend, textcoords="offset points", va="top",

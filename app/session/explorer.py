@@ -50,7 +50,7 @@ from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, IndicatorVerdict, JobClient, Plane, Window, describe_fate
+from engine import EscapeMap, Fate, IndicatorVerdict, JobClient, Plane, Window, describe_fate, seconds_until_ready_for_maps
 
 # Time until a preview that was postponed under load is tried again.
 _RETRY_MS = 300
@@ -67,6 +67,8 @@ class Explorer:
         # A tour over a shared view would hide it.
         self._offers_tour = not parameters
         self.state = ViewState(**values)
+        self._document = document
+        self._countdown: Any = None
         callbacks = SessionCallbacks(document)
         # Panel runs widget callbacks without the session's lock, which changes of bare Bokeh models need.
         self._locked, self._latest = callbacks.every, callbacks.latest
@@ -360,8 +362,21 @@ class Explorer:
     def map_requested(self, *, compiling: bool = False) -> None:
         """A map is requested."""
         self._requested_at = time.monotonic()
-        self.progress.start(compiling=compiling)
+        self.progress.start()
+        self._count_down(compiling)
         self.notice.clear()
+
+    def _count_down(self, compiling: bool) -> None:
+        """Show each second how long the compilation will take, while it is under way."""
+        if self._countdown is not None:
+            self._document.remove_periodic_callback(self._countdown)
+            self._countdown = None
+        if compiling:
+            self._countdown = self._document.add_periodic_callback(self._show_compiling, 1000)
+            self._show_compiling()
+
+    def _show_compiling(self) -> None:
+        self.progress.show_compiling(seconds_until_ready_for_maps(self.state.potential))
 
     def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a preview."""
@@ -391,10 +406,12 @@ class Explorer:
 
     def map_stopped(self) -> None:
         """The map is cancelled."""
+        self._count_down(False)
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:
         """Show why there is no map; the last picture stays."""
+        self._count_down(False)
         self.progress.fail()
         self.notice.warn(sentence)
 

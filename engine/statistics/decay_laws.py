@@ -130,7 +130,8 @@ class DecayLaws:
         if self.exponential is None or self.power_law is None:
             return self._describe_missing_fit()
         kappa, gamma = _describe_fit("κ", self.exponential), _describe_fit("γ", self.power_law)
-        data = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}, t = {self.t_low:.4g} to {self.t_high:.4g}"
+        part = f"{format_whole(self.escapes)} of {format_count(self.escapes_in_all, 'escape')}"
+        data = f"{part}, t = {self.t_low:.4g} to {self.t_high:.4g}"
         if self.preferred is DecayLaw.EXPONENTIAL:
             return f"Exponential: {kappa}; {data}. A power law is less likely{_describe_exclusion(self.power_law)}."
         if self.preferred is DecayLaw.POWER_LAW:

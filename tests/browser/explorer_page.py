@@ -58,7 +58,9 @@ class ExplorerPage:
 
     def return_home(self) -> None:
         """Go back to the view that was opened, and wait for its map."""
-        if self.page.evaluate("() => { const steps = history.state.entry; history.go(-steps); return steps }"):
+        steps = self.page.evaluate("() => history.state.entry")
+        if steps:
+            self.page.evaluate("steps => history.go(-steps)", steps)
             expect(self.button("← Back")).to_be_hidden()
             self.wait_until_done()
 

@@ -126,8 +126,10 @@ class BasinMeasuresView:
             "survival", "Still inside", x_axis_label="t", y_axis_label="share of the starts",
             x_range=self._times, y_range=self._survivors, x_axis_type="log", y_axis_type="log",
         )  # fmt: skip
-        steps = plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
-        plot.add_tools(chart_hover(_SURVIVAL_TEXT, {"@share": "percent", "@t": "number"}, [steps], mode="vline"))
+        plot.add_glyph(self.steps, Step(x="t", y="share", line_color=MEASURED, line_width=2, mode="after"))
+        # The mouse finds lines between points, but not steps.
+        line, values = plot.add_glyph(self.steps, Line(x="t", y="share", line_alpha=0.0)), {"@share": "percent", "@t": "number"}
+        plot.add_tools(chart_hover(_SURVIVAL_TEXT, values, [line], mode="vline", line_policy="prev"))
         for law, source in self._laws.items():
             plot.add_glyph(source, Line(x="t", y="share", line_color=LAW_COLOURS[law], line_width=2, line_dash="dashed"))
         return plot

@@ -9,7 +9,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
-from app.rendering.palette import DARK, LIGHT, PAPER, Entry, Inks, Palette
+from app.rendering.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials
 
 # Energies of the faint equipotentials, in units of the escape energy.
@@ -84,11 +84,13 @@ class CurveLayers:
         colours = [self._palette.channels[orbit.channel - 1] for orbit in orbits]
         self._exits.data = {**_lines([orbit.half_path for orbit in orbits]), "colour": colours}
         middles = [np.array([orbit.x, orbit.y])[:, orbit.x.size // 4] for orbit in orbits]
+        # Always as many texts, some without a place: Bokeh fails when texts with colours of their own become fewer.
+        missing = MOST_CHANNELS - len(orbits)
         self._labels.data = {
-            "x": [0.86 * point[0] for point in middles],
-            "y": [0.86 * point[1] for point in middles],
-            "text": [str(orbit.channel) for orbit in orbits],
-            "colour": colours,
+            "x": [*(0.86 * point[0] for point in middles), *[np.nan] * missing],
+            "y": [*(0.86 * point[1] for point in middles), *[np.nan] * missing],
+            "text": [*(str(orbit.channel) for orbit in orbits), *[""] * missing],
+            "colour": [*colours, *[self._palette.bounded] * missing],
         }
 
     def entries(self, spec: MapSpec) -> list[Entry]:

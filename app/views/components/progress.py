@@ -14,7 +14,6 @@ from app.views.components.widgets import button
 from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
 
 STOP, CONTINUE = "Stop", "Continue"
-_COMPILING = "Compiling the integrator, once for each kind of potential …"
 
 
 class ProgressView:
@@ -39,10 +38,15 @@ class ProgressView:
         """The text and the button that stand in one line."""
         return [self.text, self.button]
 
-    def start(self, *, compiling: bool = False) -> None:
-        """A new map is requested; `compiling` says that its kernels are compiled first."""
+    def start(self) -> None:
+        """A new map is requested."""
         self._last_stage = None
-        self._set(running=True, label=STOP, text=_COMPILING if compiling else "Starting …")
+        self._set(running=True, label=STOP, text="Starting …")
+
+    def show_compiling(self, seconds: float) -> None:
+        """The kernels of the map are compiled first, which takes about this long."""
+        left = f"about {math.ceil(seconds)} s left" if seconds > 0.0 else "a moment more"
+        self.text.object = f"Compiling the integrator, once for each kind of potential: {left}"
 
     def show(self, frame: EscapeMap) -> None:
         """Show how far a frame is, and the shares of a complete map."""

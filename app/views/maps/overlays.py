@@ -45,7 +45,7 @@ class Overlays:
     def _draw_manifolds(self) -> None:
         plots, self._without_manifolds = self._without_manifolds, []
         for plot in plots:
-            plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width"))
+            plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width", line_alpha="halo_alpha"))
             plot.add_glyph(self.manifolds, MultiLine(line_color="colour", line_width="width", line_alpha="alpha"))
 
     def begin(self, spec: MapSpec) -> None:
@@ -82,6 +82,8 @@ class Overlays:
                 "width": [stroke.width for _, stroke in strokes],
                 "alpha": [stroke.alpha for _, stroke in strokes],
                 "halo_width": [stroke.halo_width for _, stroke in strokes],
+                # The browser draws lines of no width, too.
+                "halo_alpha": [float(stroke.halo_width > 0.0) for _, stroke in strokes],
             }
         elif self.manifolds.data["xs"]:
             self.manifolds.data = _no_curves()
@@ -102,4 +104,4 @@ def _no_doubts() -> dict[str, list[Any]]:
 
 
 def _no_curves() -> dict[str, list[Any]]:
-    return {name: [] for name in ("xs", "ys", "colour", "width", "alpha", "halo_width")}
+    return {name: [] for name in ("xs", "ys", "colour", "width", "alpha", "halo_width", "halo_alpha")}

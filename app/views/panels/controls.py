@@ -202,9 +202,9 @@ class Controls:
         # An energy beyond the slider, which can be typed, stays when the slider is released at its end.
         if not self._following and event.new != self._slider_energy():
             self._previewed = False
-            # All that follows makes one message.
+            # All that follows makes one message. The browser sends multiples of the step with rounding errors.
             with pn.io.hold():
-                self.state.energy = event.new
+                self.state.energy = round(event.new, self.state.system.energies.decimals)
 
     def _slider_energy(self) -> float:
         """The position of the slider for the energy of the state."""

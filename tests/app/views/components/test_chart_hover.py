@@ -1,0 +1,36 @@
+"""Every value of a text has a format."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from bokeh.models import HoverTool
+
+from app.views.analysis.basin_measures import BasinMeasuresView
+from app.views.analysis.energy_curves import EnergyCurvesView
+from app.views.analysis.statistics import StatisticsView
+
+
+def chart_hovers() -> list[HoverTool]:
+    """The hover tools of all charts."""
+    statistics, measures = StatisticsView(lambda: None), BasinMeasuresView(lambda: None)
+    statistics.build()
+    curves = EnergyCurvesView(lambda: None, lambda energy: None)
+    plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]
+    return [tool for plot in (*plots, *curves._draw().values()) for tool in plot.tools if isinstance(tool, HoverTool)]
+
+
+def test_every_chart_has_a_hover() -> None:
+    # Two charts of statistics, two of measures, the shares, and five curves.
+    assert len(chart_hovers()) == 10
+
+
+@pytest.mark.parametrize("place", range(10))
+def test_every_value_of_a_text_has_a_format(place: int) -> None:
+    hover = chart_hovers()[place]
+    assert isinstance(hover.tooltips, str)
+    values = set(re.findall(r"([@$]\w+){custom}", hover.tooltips))
+    assert values
+    assert values <= set(hover.formatters)
+    assert hover.renderers
