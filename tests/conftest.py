@@ -1,4 +1,4 @@
-"""Shared configuration: reproducible Hypothesis inputs, and one Chromium for all browser tests of a process."""
+"""Shared configuration: Hypothesis inputs, fixed or, in CI, random; one Chromium for all browser tests of a process."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from playwright.sync_api import Browser, Playwright, expect, sync_playwright
 TIMEOUT_MS = 30_000
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
-settings.register_profile("reproducible", derandomize=True, deadline=None, max_examples=60, database=None)
-settings.load_profile("reproducible")
+settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=25, database=None)
+settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
+settings.load_profile("random" if os.environ.get("CI") else "fixed")
 
 
 @pytest.fixture(scope="session")
