@@ -49,7 +49,10 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
     step_lane = np.empty(lanes, np.int64)
     buffered = 0
     for taken in range(steps):
-        before[:] = state
+        # Not by an assignment of arrays: the error message for unequal shapes takes seconds to compile.
+        for c in range(4):
+            for i in range(lanes):
+                before[c, i] = state[c, i]
         call_fixed_step(
             fixed_step, coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], ignored_sums[0], ignored_sums[1]
         )

@@ -42,7 +42,10 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     lanes = state.shape[1]
     most = passages.shape[1]
     now = np.zeros((5, lanes))
-    now[:4] = state
+    # Not by an assignment of arrays: the error message for unequal shapes takes seconds to compile.
+    for c in range(4):
+        for i in range(lanes):
+            now[c, i] = state[c, i]
     new = np.empty((5, lanes))
     h = np.empty(lanes)
     flag = np.zeros(lanes, np.int64)
