@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
+
+# All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 TIMEOUT_MS = 30_000
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
