@@ -27,8 +27,8 @@ class Finished:
 
 
 def start(function: Callable[..., Any], *arguments: Any) -> BaseProcess:
-    """Call a function of a module, with arguments that can be pickled, in a child process."""
-    process = fork_context().Process(target=function, args=arguments)
+    """Call a function of a module, with arguments that can be pickled, in a child process with the environment of this one."""
+    process = fork_context().Process(target=_call, args=(dict(os.environ), function, arguments))
     process.start()
     return process
 
@@ -52,6 +52,12 @@ def fork_context() -> ForkServerContext:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(["cli.main", "engine", "pytest"])
     return context
+
+
+def _call(environment: dict[str, str], function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
+    os.environ.clear()
+    os.environ.update(environment)
+    function(*arguments)
 
 
 def _call_redirected(out: Path, err: Path, function: Callable[..., Any], arguments: tuple[Any, ...]) -> None:

@@ -15,10 +15,13 @@ import pytest
 import xarray as xr
 
 from cli.main import FAILED, main
+from engine import CASES, prepare_kernels
 from tests.forked import Finished, run
 
 
 def limited_command(limit: int, folder: Path, arguments: tuple[str, ...]) -> None:
+    # Kernels that cannot be stored give a warning.
+    prepare_kernels(CASES["I"])
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     os.chdir(folder)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))

@@ -130,8 +130,7 @@ def test_a_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch
     assert hits(again) == 1
 
 
-def compile_and_print(cache: Path, x: float, all_ready: Barrier) -> None:
-    os.environ[CACHE_VARIABLE] = str(cache)
+def compile_and_print(x: float, all_ready: Barrier) -> None:
     compiled = fresh_kernel()
     all_ready.wait()
     sys.stdout.write(f"{compiled(x)}\n")
@@ -143,7 +142,7 @@ def test_processes_that_compile_at_once_do_not_affect_each_other(folder: Path, t
     for output in outputs:
         output.mkdir()
     with ThreadPoolExecutor(3) as pool:
-        found = pool.map(lambda output, x: run(output, compile_and_print, folder.parent, x, all_ready), outputs, (1.0, 2.0, 4.0))
+        found = pool.map(lambda output, x: run(output, compile_and_print, x, all_ready), outputs, (1.0, 2.0, 4.0))
         assert list(found) == [Finished(0, "3.0\n", ""), Finished(0, "6.0\n", ""), Finished(0, "12.0\n", "")]
     (file,) = folder.iterdir()
     assert file.suffix == SUFFIX
