@@ -1,20 +1,26 @@
-"""Shared configuration: reproducible Hypothesis inputs, and one Chromium for all browser tests of a process."""
+"""Shared configuration: Hypothesis inputs, fixed or, in CI, random; one Chromium for all browser tests of a process."""
 
 from __future__ import annotations
 
 import os
 import shutil
+import sys
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
 
+# All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
+
 TIMEOUT_MS = 30_000
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
-settings.register_profile("reproducible", derandomize=True, deadline=None, max_examples=60, database=None)
-settings.load_profile("reproducible")
+settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=25, database=None)
+settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
+settings.load_profile("random" if os.environ.get("CI") else "fixed")
 
 
 @pytest.fixture(scope="session")

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import csv
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -68,11 +65,6 @@ def test_pictures_can_be_drawn_in_several_threads(escape_map: EscapeMap) -> None
     with ThreadPoolExecutor(4) as pool:
         files = list(pool.map(lambda _: png_bytes(escape_map, ["basins"], PAPER, 100), range(4)))
     assert len(set(files)) == 1
-
-
-def test_the_page_does_not_import_matplotlib_before_a_download() -> None:
-    script = "import sys, app.session.explorer; sys.exit('matplotlib.figure' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[2], check=False).returncode == 0
 
 
 def test_a_png_contains_its_provenance(escape_map: EscapeMap) -> None:

@@ -43,7 +43,11 @@ def test_lyapunov_json_and_csv_equal_the_engine_result(run: Run, tmp_path: Path)
     assert [(one["channel"], one["period"]) for one in found] == [(orbit.channel, orbit.period) for orbit in wanted]
     with (tmp_path / "paths.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [float(row["x"]) for row in rows] == np.concatenate([orbit.x for orbit in wanted]).tolist()
+    for name in ("x", "y"):
+        assert [float(row[name]) for row in rows] == np.concatenate([getattr(orbit, name) for orbit in wanted]).tolist()
+    assert [int(row["channel"]) for row in rows] == [orbit.channel for orbit in wanted for _ in orbit.x]
+    times = np.concatenate([np.linspace(0.0, orbit.period, orbit.x.size) for orbit in wanted])
+    np.testing.assert_allclose([float(row["t"]) for row in rows], times, rtol=1e-14)
 
 
 def test_lyapunov_orbits_end_on_the_zero_velocity_curve(run: Run) -> None:

@@ -10,9 +10,9 @@ from engine.potentials.formula_parser import write_formula
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import review_potential
 
-# Compiling kernels for all potentials takes long, so normal runs only compile these, and exhaustive runs compile all of them. The
-# three cases of the paper are covered by other tests.
-ALWAYS = ("C5", "C8")
+# Compiling kernels takes long, so normal runs do it for one potential of the catalogue, and exhaustive runs for all. The three
+# cases of the paper are covered by other tests.
+MARKS = {"C5": (), "C8": (pytest.mark.slow,)}
 
 
 def _random(seed: int) -> Potential:
@@ -35,6 +35,6 @@ ALL = (*(entry.potential for entry in POTENTIALS.values()), *RANDOM)
 each_potential = pytest.mark.parametrize("potential", ALL, ids=lambda potential: potential.name)
 each_compiled = pytest.mark.parametrize(
     "potential",
-    [pytest.param(p, marks=() if p.name in ALWAYS else pytest.mark.exhaustive) for p in ALL],
+    [pytest.param(p, marks=MARKS.get(p.name, pytest.mark.exhaustive)) for p in ALL],
     ids=lambda potential: potential.name,
 )

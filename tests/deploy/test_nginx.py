@@ -23,7 +23,9 @@ from tornado.websocket import websocket_connect
 from tests.app.other_loop import run_on_new_loop
 from tests.deploy.proxy import ROOT, Proxy, authorization, free_port, nginx, proxied
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(nginx() is None, reason="nginx is not installed")]
+pytestmark = pytest.mark.skipif(nginx() is None, reason="nginx is not installed")
+# Starts the explorer; the other tests use servers that answer with their port.
+with_explorer = pytest.mark.slow
 START_SECONDS = 240.0
 
 
@@ -137,10 +139,11 @@ async def first_message_header(proxy: Proxy, origin: str, password: dict[str, st
 
 @pytest.mark.parametrize("headers", [{}, authorization("guessed")], ids=["none", "wrong"])
 @pytest.mark.parametrize("path", ["/app", "/app/ws", "/static/js/bokeh.min.js"])
-def test_password_is_required(proxy: Proxy, path: str, headers: dict[str, str]) -> None:
-    assert ask(proxy, path, headers)[0] == 401
+def test_password_is_required(proxy_before_two: Proxy, path: str, headers: dict[str, str]) -> None:
+    assert ask(proxy_before_two, path, headers)[0] == 401
 
 
+@with_explorer
 def test_page_and_scripts_are_served_with_the_password(proxy: Proxy) -> None:
     status, _, page = ask(proxy, "/app", authorization())
     assert status == 200
@@ -148,24 +151,27 @@ def test_page_and_scripts_are_served_with_the_password(proxy: Proxy) -> None:
     assert ask(proxy, "/static/js/bokeh.min.js", authorization())[0] == 200
 
 
+@with_explorer
 def test_websocket_works_through_tls(proxy: Proxy) -> None:
     assert run_on_new_loop(lambda: first_message_header(proxy, proxy.origin, authorization()))["msgtype"] == "ACK"
 
 
+@with_explorer
 def test_websocket_of_another_origin_is_refused(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
         run_on_new_loop(lambda: first_message_header(proxy, "https://elsewhere.example.org", authorization()))
     assert refused.value.code == 403
 
 
+@with_explorer
 def test_websocket_requires_the_password(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
         run_on_new_loop(lambda: first_message_header(proxy, proxy.origin, {}))
     assert refused.value.code == 401
 
 
-def test_http_redirects_to_https(proxy: Proxy) -> None:
-    connection = http.client.HTTPConnection("127.0.0.1", proxy.plain_port, timeout=10)
+def test_http_redirects_to_https(proxy_before_two: Proxy) -> None:
+    connection = http.client.HTTPConnection("127.0.0.1", proxy_before_two.plain_port, timeout=10)
     connection.request("GET", "/app?case=II")
     answer = connection.getresponse()
     answer.read()
@@ -173,8 +179,10 @@ def test_http_redirects_to_https(proxy: Proxy) -> None:
     assert (answer.status, answer.getheader("Location")) == (301, "https://127.0.0.1/app?case=II")
 
 
-def test_operator_endpoints_are_not_public(proxy: Proxy) -> None:
-    assert {ask(proxy, f"/{name}", authorization())[0] for name in ("liveness", "readiness", "metrics", "status")} == {404}
+def test_operator_endpoints_are_not_public(proxy_before_two: Proxy) -> None:
+    assert {ask(proxy_before_two, f"/{name}", authorization())[0] for name in ("liveness", "readiness", "metrics", "status")} == {
+        404
+    }
 
 
 def test_sessions_are_sticky_and_distributed(proxy_before_two: Proxy) -> None:

@@ -4,63 +4,66 @@ from __future__ import annotations
 
 import errno
 import os
+import resource
+import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+import xarray as xr
 
-from cli.main import FAILED
-
-ROOT = Path(__file__).parents[2]
-_PROGRAM = """
-import resource, signal, sys
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), int(sys.argv[1])))
-from cli.main import main
-sys.exit(main(sys.argv[2:]))
-"""
+from cli.main import FAILED, main
+from engine import CASES, prepare_kernels
+from tests.forked import Finished, run
 
 
-def run(limit: int, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run a command that cannot write files longer than `limit` bytes."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    command = [sys.executable, "-c", _PROGRAM, str(limit), *arguments]
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=300)
+def limited_command(limit: int, folder: Path, arguments: tuple[str, ...]) -> None:
+    # Kernels that cannot be stored give a warning.
+    prepare_kernels(CASES["I"])
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    os.chdir(folder)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    sys.exit(main(arguments))
+
+
+@pytest.fixture
+def run_limited(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Finished]:
+    """Run a command in a folder, in a child process that cannot write files longer than `limit` bytes."""
+    output = tmp_path_factory.mktemp("output")
+    return lambda limit, folder, *arguments: run(output, limited_command, limit, folder, arguments)
 
 
 def is_one_sentence(text: str) -> bool:
     return text.startswith("escape-explorer: ") and text.count("\n") == 1
 
 
-def test_failed_write_keeps_the_existing_file(tmp_path: Path) -> None:
+def test_failed_write_keeps_the_existing_file(tmp_path: Path, run_limited: Callable[..., Finished]) -> None:
     (tmp_path / "exits.csv").write_text("previous")
-    completed = run(2000, tmp_path, "lyapunov", "I", "--energy", "0.19", "--output", "exits.csv")
-    assert completed.returncode == FAILED
-    assert is_one_sentence(completed.stderr), completed.stderr
-    assert os.strerror(errno.EFBIG) in completed.stderr
+    completed = run_limited(2000, tmp_path, "lyapunov", "I", "--energy", "0.19", "--output", "exits.csv")
+    assert completed.code == FAILED
+    assert is_one_sentence(completed.err), completed.err
+    assert os.strerror(errno.EFBIG) in completed.err
     assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"exits.csv": "previous"}
 
 
-SWEEP = ("sweep", "I", "--energy", "0.19", "--energy", "0.2", "--resolution", "80", "--t-max", "20", "--store", "store.zarr")
+SWEEP = ("sweep", "I", "--energy", "0.19", "--energy", "0.2", "--resolution", "80", "--t-max", "5", "--store", "store.zarr")
 
 
-def test_sweep_can_be_resumed_after_a_full_disk(tmp_path: Path) -> None:
-    full = run(6000, tmp_path, *SWEEP)
-    assert full.returncode == FAILED, full.stderr
-    assert is_one_sentence(full.stderr), full.stderr
-    resumed = run(10**9, tmp_path, *SWEEP)
-    assert resumed.returncode == 0, resumed.stderr
+def test_sweep_can_be_resumed_after_a_full_disk(tmp_path: Path, run_limited: Callable[..., Finished]) -> None:
+    full = run_limited(6000, tmp_path, *SWEEP)
+    assert full.code == FAILED, full.err
+    assert is_one_sentence(full.err), full.err
+    resumed = run_limited(10**9, tmp_path, *SWEEP)
+    assert resumed.code == 0, resumed.err
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
-    assert run(10**9, elsewhere, *SWEEP).returncode == 0
+    assert run_limited(10**9, elsewhere, *SWEEP).code == 0
     assert _arrays(tmp_path / "store.zarr") == _arrays(elsewhere / "store.zarr")
 
 
 def _arrays(store: Path) -> dict[str, bytes]:
-    import xarray as xr
-
     with xr.open_zarr(store, consolidated=False) as dataset:
         return {str(name): dataset[name].to_numpy().tobytes() for name in dataset.data_vars}
 
@@ -76,10 +79,10 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", str(disk)], check=False)
 
 
-def test_disk_that_fills_up_is_reported_in_one_sentence(small_disk: Path) -> None:
-    completed = run(
-        10**9, small_disk, "orbit", "I", "--energy", "0.19", "--start", "0.1", "0.1", "--t-max", "200", "--output", "orbit"
-    )
-    assert completed.returncode == FAILED
-    assert is_one_sentence(completed.stderr), completed.stderr
-    assert not [path for path in small_disk.iterdir() if path.name.endswith(".part")]
+def test_disk_that_fills_up_is_reported_in_one_sentence(small_disk: Path, run_limited: Callable[..., Finished]) -> None:
+    command = ("map", "I", "--energy", "0.19", "--resolution", "120", "--t-max", "5", "--format", "nc", "--output", "map")
+    completed = run_limited(10**9, small_disk, *command)
+    assert completed.code == FAILED
+    assert is_one_sentence(completed.err), completed.err
+    assert os.strerror(errno.ENOSPC) in completed.err
+    assert not any(small_disk.iterdir())

@@ -5,9 +5,10 @@ from __future__ import annotations
 import errno
 import logging
 import os
-import subprocess
 import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.synchronize import Barrier
 from pathlib import Path
 from typing import Any
 
@@ -17,17 +18,7 @@ import engine.taylor
 from engine.taylor.jit import disk_cache
 from engine.taylor.jit.decorator import kernel
 from engine.taylor.jit.disk_cache import CACHE_VARIABLE, SUFFIX
-
-_PROGRAM = """
-import sys
-from engine.taylor.jit.decorator import kernel
-
-@kernel
-def scaled(x):
-    return 3.0 * x
-
-print(scaled(float(sys.argv[1])))
-"""
+from tests.forked import Finished, fork_context, run
 
 
 def fresh_kernel() -> Callable[[float], float]:
@@ -139,18 +130,20 @@ def test_a_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch
     assert hits(again) == 1
 
 
+def compile_and_print(x: float, all_ready: Barrier) -> None:
+    compiled = fresh_kernel()
+    all_ready.wait()
+    sys.stdout.write(f"{compiled(x)}\n")
+
+
 def test_processes_that_compile_at_once_do_not_affect_each_other(folder: Path, tmp_path: Path) -> None:
-    program = tmp_path / "program.py"
-    program.write_text(_PROGRAM)
-    root = Path(__file__).parents[2]
-    command = [sys.executable, str(program)]
-    environment = {**os.environ, "PYTHONPATH": str(root)}
-    started = [
-        subprocess.Popen([*command, str(x)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        for x in (1.0, 2.0, 4.0)
-    ]
-    answers = [process.communicate(timeout=120) for process in started]
-    assert answers == [("3.0\n", ""), ("6.0\n", ""), ("12.0\n", "")]
+    all_ready = fork_context().Barrier(3)
+    outputs = [tmp_path / str(n) for n in range(3)]
+    for output in outputs:
+        output.mkdir()
+    with ThreadPoolExecutor(3) as pool:
+        found = pool.map(lambda output, x: run(output, compile_and_print, x, all_ready), outputs, (1.0, 2.0, 4.0))
+        assert list(found) == [Finished(0, "3.0\n", ""), Finished(0, "6.0\n", ""), Finished(0, "12.0\n", "")]
     (file,) = folder.iterdir()
     assert file.suffix == SUFFIX
 

@@ -109,12 +109,10 @@ def test_hostile_formulas_are_shown_and_not_executed(open_page: Callable[..., Pa
     assert page.evaluate("window.hit") is None
 
 
-def test_lost_connection_is_shown(chromium: Browser, tmp_path: Path) -> None:
-    with running_app(tmp_path / "log", *LIFETIME) as running:
-        page = chromium.new_page()
-        page.goto(running.address)
-        ExplorerPage(page).wait_until_complete()
-        running.process.send_signal(signal.SIGKILL)
-        running.process.wait(30)
-        page.get_by_text("The connection to the server is lost.").wait_for(timeout=TIMEOUT_MS)
-        page.close()
+def test_lost_connection_is_shown(open_page: Callable[..., Page], served: RunningApp) -> None:
+    # Must be the last test in this file, as it kills the server.
+    page = open_page()
+    ExplorerPage(page).wait_until_complete()
+    served.process.send_signal(signal.SIGKILL)
+    served.process.wait(30)
+    page.get_by_text("The connection to the server is lost.").wait_for(timeout=TIMEOUT_MS)

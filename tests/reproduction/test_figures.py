@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,12 +23,20 @@ from reproduction.sample_orbits import SHOWN_CROSSINGS, find_sample_starts
 from reproduction.sticky_figures import LONGEST_DRAWN, find_shown
 
 TINY = Quality("tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=2000.0)
-FAMILIES = (
-    "potential", "basins-xy", "times-xy", "basins-xpx", "times-xpx",
-    "crossings-xpx", "percentages", "xh", "statistics", "survival",
-)  # fmt: skip
-# One of each family, spread over the cases.
-DRAWN = dict(zip(FAMILIES, ("II", "III", "I", "I", "II", "III", "III", "II", "I", "II"), strict=True))
+# For each family a case to draw, the numbers of maps and of lines in each panel, and the labels of the axes.
+DRAWN = {
+    "potential": ("II", 0, [46, 6, 9], {"$x$"}, {"$y$"}),
+    "basins-xy": ("III", 9, [0] * 9, {"$x$"}, {"$y$"}),
+    "times-xy": ("I", 9, [0] * 10, {"$x$"}, {"$y$", r"escape time $t_{\mathrm{esc}}$"}),
+    "basins-xpx": ("I", 9, [0] * 9, {"$x$"}, {r"$\dot{x}$"}),
+    "times-xpx": ("II", 9, [0] * 10, {"$x$"}, {r"$\dot{x}$", r"escape time $t_{\mathrm{esc}}$"}),
+    "crossings-xpx": ("III", 9, [0] * 9, {"$x$"}, {r"$\dot{x}$"}),
+    "percentages": ("III", 0, [5, 5], {"$h$"}, {"percentage of starts"}),
+    "xh": ("II", 1, [0], {"$x$"}, {"$h$"}),
+    "statistics": ("I", 0, [3, 3, 9, 9], {"$h$", "$n$"}, {"$N_e/N_0$", "$N_{de}/N_0$", r"$\log_{10}(dN_n/N_0)$", "$p_n$"}),
+    "survival": ("II", 0, [1, 1, 1], {"$t$"}, {"$S(t)$"}),
+}
+FAMILIES = tuple(DRAWN)
 
 
 @pytest.fixture(scope="module")
@@ -59,14 +64,17 @@ def test_every_case_has_every_figure() -> None:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_figures_have_a_title_and_axis_labels(family: str, shelf: MapShelf) -> None:
-    figure = FIGURES[f"{DRAWN[family]}-{family}"].draw(shelf)
-    assert DRAWN[family] in figure.get_suptitle()
-    assert any(axes.get_xlabel() for axes in figure.axes)
-    assert any(axes.get_ylabel() for axes in figure.axes)
+def test_figures_have_a_title_and_their_maps_lines_and_labels(family: str, shelf: MapShelf) -> None:
+    case, maps, lines, across, up = DRAWN[family]
+    figure = FIGURES[f"{case}-{family}"].draw(shelf)
+    assert case in figure.get_suptitle()
+    assert sum(len(axes.images) for axes in figure.axes) == maps
+    assert [len(axes.lines) for axes in figure.axes] == lines
+    assert {axes.get_xlabel() for axes in figure.axes} - {""} == across
+    assert {axes.get_ylabel() for axes in figure.axes} - {""} == up
 
 
-@pytest.mark.parametrize("place", range(9))
+@pytest.mark.parametrize("place", [0, 4, 8])
 def test_the_pixels_of_a_basin_panel_have_the_colours_of_their_channels(place: int, shelf: MapShelf) -> None:
     axes = panels(FIGURES["I-basins-xpx"].draw(shelf))[place]
     frame = shelf.map("I", Plane.X_PX, nine_energies("I")[place])
@@ -205,11 +213,3 @@ def test_curves_span_the_range_of_the_paper(case: str, quality: Quality) -> None
     assert (energies[0], energies[-1]) == {"I": (0.13, 0.5), "II": (0.17, 0.5), "III": (0.26, 0.6)}[case]
     assert len(set(energies)) == quality.curve_points
     assert plane_energies(case) == {"I": (0.125, 0.5), "II": (pytest.approx(1 / 6), 0.5), "III": (0.25, 1.0)}[case]
-
-
-def test_drawing_imports_no_server_and_no_pyplot() -> None:
-    script = (
-        "import sys, reproduction.figures; "
-        "sys.exit(any(name in sys.modules for name in ('panel', 'tornado', 'bokeh.server', 'matplotlib.pyplot')))"
-    )
-    assert subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[2], check=False).returncode == 0

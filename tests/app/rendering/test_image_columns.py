@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -115,6 +117,16 @@ def test_the_time_scale_ends_at_a_round_number_above_99_percent_of_the_times(esc
     high = longest_typical_time(escape_map)
     assert high in {step * 10.0**k for step in (1.0, 2.0, 5.0) for k in range(1, 6)}
     assert np.mean(escape_map.escape_time[escape_map.fate > 0] <= high) >= 0.99
+
+
+@pytest.mark.parametrize(
+    ("early", "late", "expected"),
+    [(1000, 0, 20.0), (995, 5, 20.0), (985, 15, 500.0), (0, 1000, 500.0), (0, 0, 100.0)],
+)
+def test_the_time_scale_leaves_out_the_last_percent(early: int, late: int, expected: float) -> None:
+    times = np.repeat([15.0, 400.0, np.nan], [early, late, 100])
+    frame = SimpleNamespace(escape_time=times, fate=np.where(np.isnan(times), Fate.BOUNDED, 1))
+    assert longest_typical_time(frame) == expected
 
 
 def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:

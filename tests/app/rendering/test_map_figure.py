@@ -74,6 +74,15 @@ def map_pixels(image: Image.Image, side: int) -> np.ndarray:
     return np.asarray(image)[row : row + side, column : column + side]
 
 
+def share_shown(image: Image.Image, frame: EscapeMap, picture: str, palette: Palette) -> float:
+    """Share of the starts whose pixel has its colour at its centre; curves and marks cover a few of them."""
+    square, bare = map_pixels(image, SIDE), picture_pixels(frame, picture, palette).astype(float)
+    expected = 255 + (bare[..., :3] - 255) * bare[..., 3:] / 255
+    down, right = SIDE // bare.shape[0], SIDE // bare.shape[1]
+    centres = square[down // 2 :: down, right // 2 :: right]
+    return float(np.mean(np.all(np.abs(centres - expected) <= 1, axis=-1)))
+
+
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 def test_pixels_have_the_colour_of_their_fate_with_row_0_at_the_bottom(escape_map: EscapeMap, palette: Palette) -> None:
     pixels = picture_pixels(escape_map, "basins", palette)
@@ -113,19 +122,13 @@ def test_a_coarse_frame_has_a_pixel_for_each_start() -> None:
     pixels = picture_pixels(frames[0], "basins", PAPER)
     assert pixels.shape == (90, 120, 4)
     assert not np.any(np.all(pixels == rgba(PAPER.outcomes[Fate.NOT_COMPUTED].colour), axis=-1))
-    draw(frames[0], "basins", PAPER, SIDE)
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize("picture", TITLES)
 def test_the_map_fills_its_frame_on_white(escape_map: EscapeMap, picture: str, palette: Palette) -> None:
     image = draw(escape_map, picture, palette, SIDE)
-    square = map_pixels(image, SIDE)
-    bare = picture_pixels(escape_map, picture, palette).astype(float)
-    expected = 255 + (bare[..., :3] - 255) * bare[..., 3:] / 255
-    # Each start is a block of 6 by 8 pixels; the limiting curve covers a few of them.
-    centres = square[4::8, 3::6]
-    assert np.mean(np.all(np.abs(centres - expected) <= 1, axis=-1)) > 0.9
+    assert share_shown(image, escape_map, picture, palette) > 0.9
     assert np.all(np.asarray(image)[0] == 255)
 
 
@@ -150,9 +153,13 @@ def test_an_unknown_picture_is_rejected(escape_map: EscapeMap) -> None:
         picture_pixels(escape_map, "orbits", PAPER)
 
 
-def test_the_smallest_and_a_large_picture_can_be_drawn(escape_map: EscapeMap) -> None:
-    for side in (100, 1500):
-        map_pixels(draw(escape_map, "times", PAPER, side, starts=[(0.0, 0.0)]), side)
+@pytest.mark.parametrize("side", [100, 700])
+def test_the_map_of_a_picture_has_the_given_side(escape_map: EscapeMap, side: int) -> None:
+    image = draw(escape_map, "times", PAPER, side)
+    square = map_pixels(image, side)
+    assert square.shape == (side, side, 3)
+    assert len(np.unique(square.reshape(-1, 3), axis=0)) > 20
+    assert side < image.width < side + 400
 
 
 def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> None:
@@ -206,11 +213,17 @@ def test_ticks_of_a_deep_zoom_are_distinct(centre: float, width: float) -> None:
     np.testing.assert_allclose(values, [low + place * (high - low) for place, _ in ticks], rtol=0, atol=1e-3 * width + 1e-16)
 
 
-def test_a_deep_zoom_next_to_an_exit_can_be_drawn() -> None:
+def test_a_deep_zoom_next_to_an_exit_shows_its_map_and_start() -> None:
     spec = MapSpec(CASES["I"], Plane.X_Y, 0.2, (20, 20), window=(0.3541234567, 0.3541234568, 0.1, 0.1 + 1e-10), t_max=100.0)
     whole = compute_map(spec)
     for picture in TITLES:
-        draw(whole, picture, PAPER, SIDE, starts=[(0.35412345675, 0.1 + 5e-11)])
+        plain, marked = (draw(whole, picture, PAPER, SIDE, starts=starts) for starts in ([], [(0.35412345675, 0.1 + 5e-11)]))
+        rows, columns = np.nonzero(np.any(np.asarray(plain) != np.asarray(marked), axis=-1))
+        assert 4 < np.ptp(rows) < 30
+        assert 4 < np.ptp(columns) < 30
+    (fate,) = np.unique(whole.fate)
+    shown = np.asarray(draw(whole, "basins", PAPER, SIDE)) == on_white(PAPER.channels[fate - 1])
+    assert np.sum(np.all(shown, axis=-1)) > 0.9 * SIDE**2
 
 
 def test_a_map_over_energies_has_its_ordinate_and_no_single_energy() -> None:
@@ -218,13 +231,15 @@ def test_a_map_over_energies_has_its_ordinate_and_no_single_energy() -> None:
     line = provenance_line(whole)
     assert "h = " not in line
     assert "h from 0.16666666666666666 to 0.4" in line
-    draw(whole, "crossings", PAPER, SIDE)
+    assert share_shown(draw(whole, "crossings", PAPER, SIDE), whole, "crossings", PAPER) > 0.8
 
 
-def test_a_map_without_escapes_can_be_drawn() -> None:
-    whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.1, (9, 9), t_max=50.0))
-    for picture in TITLES:
-        draw(whole, picture, PAPER, 100)
+@pytest.mark.parametrize("picture", TITLES)
+def test_a_map_without_escapes_shows_bounded_orbits(picture: str) -> None:
+    whole = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.1, (10, 10), t_max=50.0))
+    assert not np.any(whole.fate >= 1)
+    assert np.any(whole.fate == Fate.BOUNDED)
+    assert share_shown(draw(whole, picture, PAPER, SIDE), whole, picture, PAPER) > 0.8
 
 
 def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> None:

@@ -58,13 +58,11 @@ def test_a_new_start_is_the_last_and_chosen() -> None:
     assert view.starts == tuple(starts_of(3))
 
 
-def test_with_the_maximal_number_of_starts_the_one_after_the_chosen_is_replaced() -> None:
+def test_a_start_beyond_the_maximal_number_is_refused() -> None:
     view = ViewState()
-    for start in starts_of(MOST_ORBITS + 2):
-        view.add_start(start)
-    first, second, *rest = view.starts
-    assert [first, second] == starts_of(MOST_ORBITS + 2)[-2:]
-    assert rest == starts_of(MOST_ORBITS)[2:]
+    added = [view.add_start(start) for start in starts_of(MOST_ORBITS + 1)]
+    assert added == [True] * MOST_ORBITS + [False]
+    assert view.starts == tuple(starts_of(MOST_ORBITS))
 
 
 def test_an_existing_start_is_chosen() -> None:

@@ -28,6 +28,14 @@ def test_iteration_does_not_count_as_use() -> None:
     assert set(cache) == {"b", "c"}
 
 
+def test_iteration_continues_while_results_are_stored() -> None:
+    cache = ResultCache(100)
+    cache.put("a", sized(40))
+    keys = iter(cache)
+    cache.put("b", sized(40))
+    assert list(keys) == ["a"]
+
+
 def test_result_larger_than_the_cache_is_not_stored() -> None:
     cache = ResultCache(100)
     cache.put("a", sized(40))

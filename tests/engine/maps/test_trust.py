@@ -85,7 +85,6 @@ def test_doubtful_pixels_are_those_that_change_in_direct_reruns(
     assert not changed.all()
 
 
-@pytest.mark.slow
 def test_heyoka_agrees_on_confirmed_pixels_and_differs_on_doubtful_ones() -> None:
     pytest.importorskip("heyoka")
     from tests.peers import taylor_heyoka

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import resource
 import shutil
 import signal
-import subprocess
 import sys
 import threading
-import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor
@@ -26,67 +25,36 @@ import engine.sweeps.run
 from engine import CASES, EscapeMap, MapSpec, Plane, SweepPlan, SweepSpec, Window, compute_map, plan_sweep, run_sweep
 from engine.dynamics.planes import default_window
 from engine.execution import SerialExecutor, count_workers
+from tests.forked import Finished, run
 
-ROOT = Path(__file__).parents[3]
 ARRAYS = ("fate", "escape_time", "crossings", "certificate", "outside", "energy_error")
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.3, 0.5), (12, 10), t_max=300.0)
-# Long enough for all kinds of certificates, and to be killed midway.
-LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.34, 0.35, 0.36, 0.38, 0.4, 0.45), (20, 20), t_max=2e4)
-LONG_RUN = """
-import sys
-from pathlib import Path
-from engine import CASES, Plane, SweepSpec, run_sweep
-store, *energies = sys.argv[1:]
-run_sweep(SweepSpec(CASES["III"], Plane.X_PX, tuple(map(float, energies)), (20, 20), t_max=2e4), Path(store))
-"""
-# With certificates, and 5 row blocks at each of two energies.
-BLOCK_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80)
-BLOCK_RUN = """
-import os, signal, sys, threading, time
-from pathlib import Path
-import engine.sweeps.run
-from engine import CASES, Plane, SweepSpec, run_sweep
-
-store, killed_in, compute_block, begun = Path(sys.argv[1]), int(sys.argv[2]), engine.sweeps.run._compute_block, 0
-
-def counted(spec, rows, *arguments):
-    global begun
-    begun += 1
-    print(spec.energy, rows[0], flush=True)
-    if begun == killed_in:
-        threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGKILL)).start()
-        compute_block(spec, rows, *arguments)
-        time.sleep(60)
-    return compute_block(spec, rows, *arguments)
-
-engine.sweeps.run._compute_block = counted
-run_sweep(SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (20, 20), t_max=2e4, piece=80), store)
-"""
+# Long enough for all kinds of certificates; in 4 row blocks at each of two energies.
+LONG_SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (15, 15), t_max=2e4, piece=80)
 
 
-def run_blocks_in_subprocess(store: Path, killed_in: int = 0) -> tuple[int, list[str]]:
-    """Run `BLOCK_SPEC` in a process that is killed during its n-th block; return its exit code and the blocks it started."""
-    run = subprocess.run(
-        [sys.executable, "-c", BLOCK_RUN, str(store), str(killed_in)],
-        env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, text=True, timeout=300, check=False,
-    )  # fmt: skip
-    return run.returncode, run.stdout.splitlines()
-
-
-def start_in_subprocess(store: Path, spec: SweepSpec) -> subprocess.Popen[bytes]:
-    """Start the sweep of `LONG_SPEC`, at the energies of `spec`, in a process of its own, which loads its kernels from the cache.
+def run_in_child(folder: Path, name: str, killed_in: int = 0) -> Finished:
+    """Run `LONG_SPEC` in a child process that is killed during its n-th block; its stdout names the blocks that it starts.
 
     A bitwise comparison needs the same machine code in both runs: kernels that this process has compiled itself may differ in
-    rounding.
+    rounding from those that a child loads from the cache.
     """
-    command = [sys.executable, "-c", LONG_RUN, str(store), *map(repr, spec.energies)]
-    return subprocess.Popen(command, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    return run(folder, run_and_die, folder / name, killed_in)
 
 
-def run_in_subprocess(store: Path, spec: SweepSpec) -> xr.Dataset:
-    with start_in_subprocess(store, spec) as run:
-        assert run.wait(120) == 0
-    return run_sweep(spec, store)
+def run_and_die(store: Path, killed_in: int) -> None:
+    compute_block, numbers = engine.sweeps.run._compute_block, itertools.count(1)
+
+    def announced(spec: MapSpec, rows: np.ndarray, *arguments: Any) -> EscapeMap:
+        sys.stdout.write(f"{spec.energy} {rows[0]}\n")
+        sys.stdout.flush()
+        block = compute_block(spec, rows, *arguments)
+        if next(numbers) == killed_in:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return block
+
+    engine.sweeps.run._compute_block = announced
+    run_sweep(LONG_SPEC, store)
 
 
 @pytest.fixture
@@ -116,6 +84,14 @@ def computed_blocks(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, int]]:
 
     monkeypatch.setattr(engine.sweeps.run, "_compute_block", counted)
     return blocks
+
+
+@pytest.fixture(scope="module")
+def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of `LONG_SPEC`, computed by a child process without interruption."""
+    folder = tmp_path_factory.mktemp("straight")
+    assert run_in_child(folder, "store").code == 0
+    return folder / "store"
 
 
 def stored_blocks(store: Path) -> list[str]:
@@ -286,22 +262,6 @@ class TestResuming:
         assert files_of(store) == whole
         assert computed == [0.4]
 
-    @pytest.mark.slow
-    def test_killed_and_resumed_run_is_byte_identical(self, tmp_path: Path) -> None:
-        straight = run_in_subprocess(tmp_path / "straight", LONG_SPEC)
-        store = tmp_path / "killed"
-        with start_in_subprocess(store, LONG_SPEC) as run:
-            deadline = time.monotonic() + 120.0
-            while len(marks(store)) < 2 and run.poll() is None and time.monotonic() < deadline:
-                time.sleep(0.002)
-            run.send_signal(signal.SIGKILL)
-        assert run.returncode == -signal.SIGKILL
-        done = {mark: mark.stat().st_mtime_ns for mark in marks(store)}
-        assert 2 <= len(done) < len(LONG_SPEC.energies)
-        resumed = run_in_subprocess(store, LONG_SPEC)
-        assert {mark: mark.stat().st_mtime_ns for mark in done} == done
-        assert bytes_of(resumed) == bytes_of(straight)
-
     def test_progress_ascends_from_0_to_1(self, tmp_path: Path) -> None:
         seen: list[float] = []
         run_sweep(SPEC, tmp_path / "store", on_progress=seen.append)
@@ -321,7 +281,7 @@ class TestRowBlocks:
         assert np.unique(found["certificate"]).size >= 3
 
     def test_smaller_blocks_do_not_change_escaping_orbits(self, tmp_path: Path) -> None:
-        found, expected = run_sweep(BLOCK_SPEC, tmp_path / "store").load(), stacked_maps(replace(BLOCK_SPEC, piece=None))
+        found, expected = run_sweep(LONG_SPEC, tmp_path / "store").load(), stacked_maps(replace(LONG_SPEC, piece=None))
         for name in ("fate", "escape_time", "outside"):
             np.testing.assert_array_equal(found[name], expected[name])
         left = expected["fate"].to_numpy() >= 1
@@ -346,16 +306,26 @@ class TestRowBlocks:
         run_sweep(spec, tmp_path / "straight")
         assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
 
-    @pytest.mark.slow
-    def test_run_killed_during_an_energy_resumes_byte_identically(self, tmp_path: Path) -> None:
-        store = tmp_path / "killed"
-        code, begun = run_blocks_in_subprocess(store, killed_in=3)
-        assert (code, begun) == (-signal.SIGKILL, ["0.36 0", "0.36 2", "0.36 4"])
-        assert stored_blocks(store) == ["0/0.npz", "0/1.npz"]
-        code, begun = run_blocks_in_subprocess(store)
-        assert (code, begun) == (0, ["0.36 4", "0.36 6", "0.36 8", *(f"0.4 {row}" for row in range(0, 10, 2))])
-        assert run_blocks_in_subprocess(tmp_path / "straight")[0] == 0
-        assert files_of(store) == files_of(tmp_path / "straight")
+    @pytest.mark.parametrize(
+        ("killed_in", "first", "rest"),
+        [
+            (3, ["0.36 0", "0.36 2", "0.36 4"], ["0.36 4", "0.36 6", "0.4 0", "0.4 2", "0.4 4", "0.4 6"]),
+            (7, ["0.36 0", "0.36 2", "0.36 4", "0.36 6", "0.4 0", "0.4 2", "0.4 4"], ["0.4 4", "0.4 6"]),
+        ],
+        ids=["first energy", "second energy"],
+    )
+    def test_killed_run_resumes_byte_identically(
+        self, tmp_path: Path, straight: Path, killed_in: int, first: list[str], rest: list[str]
+    ) -> None:
+        killed = run_in_child(tmp_path, "store", killed_in)
+        assert (killed.code, killed.out.splitlines()) == (-signal.SIGKILL, first)
+        store = tmp_path / "store"
+        assert len(stored_blocks(store)) == 2
+        kept = {path: path.stat().st_mtime_ns for path in marks(store)}
+        resumed = run_in_child(tmp_path, "store")
+        assert (resumed.code, resumed.out.splitlines()) == (0, rest)
+        assert {path: path.stat().st_mtime_ns for path in kept} == kept
+        assert files_of(store) == files_of(straight)
 
     def test_run_killed_while_joining_blocks_recomputes_none(
         self, tmp_path: Path, computed_blocks: list[tuple[float, int]], monkeypatch: pytest.MonkeyPatch
@@ -396,9 +366,9 @@ class TestRowBlocks:
             assert not found["done"].any()
 
     def test_memory_is_bounded_by_a_block(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        limit_block_size(monkeypatch, 4000)
-        spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4,), (400, 400), t_max=0.5)
-        run_sweep(replace(spec, resolution=(60, 60)), tmp_path / "first")
+        limit_block_size(monkeypatch, 2000)
+        spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4,), (300, 300), t_max=0.5)
+        run_sweep(replace(spec, resolution=(30, 30)), tmp_path / "first")
         tracemalloc.start()
         whole = run_sweep(spec, tmp_path / "store")
         peak = tracemalloc.get_traced_memory()[1]
@@ -457,19 +427,23 @@ class TestCluster:
         executor._client = client  # type: ignore[attr-defined]
         assert count_workers(executor) == 7
 
-    @pytest.mark.slow
-    def test_dask_cluster_is_byte_identical(self, tmp_path: Path) -> None:
+    # Threads as workers, with messages as between processes; processes are in the long verification.
+    @pytest.mark.parametrize("processes", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["threads", "processes"])
+    def test_dask_cluster_is_byte_identical(self, tmp_path: Path, straight: Path, processes: bool) -> None:
         distributed = pytest.importorskip("distributed")
-        spec = SweepSpec(CASES["III"], Plane.X_PX, (0.35, 0.4), (20, 20), t_max=2e4)
         cluster = distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None
+            n_workers=2, threads_per_worker=1, processes=processes, protocol="tcp", host="127.0.0.1", dashboard_address=None
         )
         with cluster, distributed.Client(cluster) as client:
             executor: Executor = client.get_executor()
             assert count_workers(executor) == 2
-            spread = run_sweep(spec, tmp_path / "cluster", executor=executor)
-        assert bytes_of(spread) == bytes_of(run_in_subprocess(tmp_path / "threads", spec))
+            spread = run_sweep(LONG_SPEC, tmp_path / "cluster", executor=executor)
         assert np.unique(spread["certificate"]).size >= 3
+        if not processes:
+            # The machine code of this process may differ from that in the cache.
+            straight = tmp_path / "straight"
+            run_sweep(LONG_SPEC, straight)
+        assert files_of(tmp_path / "cluster") == files_of(straight)
 
 
 class TestPlan:

@@ -137,7 +137,6 @@ def test_a_step_ends_at_the_value_of_its_series(name: str) -> None:
     np.testing.assert_allclose(new[:4].T, expected, rtol=0, atol=1e-14)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.16), ("III", 0.24), ("III", 0.26)])
 def test_energy_error_is_at_most_1e_11_over_1e5_time_units(name: str, energy: float) -> None:
     x, px = np.random.default_rng(5).uniform(-0.45, 0.45, (2, 40))
@@ -223,7 +222,7 @@ def test_table_of_coefficients_is_read_only() -> None:
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="reads the assembly of x86-64")
-@pytest.mark.parametrize("name", [*CASES, "5", "8"])
+@pytest.mark.parametrize("name", [*CASES, "5", pytest.param("8", marks=pytest.mark.slow)])
 def test_a_step_is_vectorised_throughout(name: str) -> None:
     """A single library call or branch in the loop would keep the compiler from vectorising it."""
     potential = channel_family(int(name)) if name.isdigit() else CASES[name]

@@ -1,0 +1,64 @@
+"""What modules import and read when they are imported: in child processes that have imported the engine and the command line."""
+
+from __future__ import annotations
+
+import os
+import runpy
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.forked import Finished, run
+
+ROOT = Path(__file__).parents[1]
+
+
+def list_imported(*names: str) -> None:
+    sys.stdout.write(" ".join(name for name in names if name in sys.modules))
+
+
+def import_figures() -> None:
+    import reproduction.figures  # noqa: F401
+
+    list_imported("panel", "tornado", "bokeh.server", "matplotlib.pyplot", "matplotlib.figure")
+
+
+def import_page() -> None:
+    os.environ["ESCAPE_EXPLORER_THREADS"] = "0"
+    import app.app_hooks
+    import app.session.page  # noqa: F401
+    from app.runtime import process_state
+
+    list_imported("app.session.explorer", "matplotlib.figure")
+    assert process_state._started is None
+
+
+def serve_with_an_invalid_setting() -> None:
+    os.environ["ESCAPE_EXPLORER_THREADS"] = "0"
+    os.chdir(ROOT)
+    sys.argv = ["panel", "serve", "app", "--port", "0"]
+    runpy.run_module("panel", run_name="__main__")
+
+
+def test_figures_import_no_server_and_no_pyplot(tmp_path: Path) -> None:
+    assert run(tmp_path, import_figures) == Finished(0, "matplotlib.figure", "")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> Finished:
+    return run(tmp_path_factory.mktemp("page"), import_page)
+
+
+def test_page_imports_no_matplotlib_before_a_download(page: Finished) -> None:
+    assert page.out == "app.session.explorer"
+
+
+def test_page_does_not_read_the_environment_before_the_server_starts(page: Finished) -> None:
+    assert (page.code, page.err) == (0, "")
+
+
+def test_invalid_setting_ends_the_server_with_one_sentence(tmp_path: Path) -> None:
+    ended = run(tmp_path, serve_with_an_invalid_setting)
+    assert ended.code == 2
+    assert ended.err.splitlines()[-1] == "ESCAPE_EXPLORER_THREADS='0': must be a whole number from 1 to 1024"
