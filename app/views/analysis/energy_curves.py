@@ -15,7 +15,7 @@ from app.rendering.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRES
 from app.views.components.chart_hover import chart_hover
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.legends import legend
-from app.views.components.plots import set_range, square_figure
+from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
 from engine import EnergyCurves
 
@@ -29,6 +29,8 @@ START, STOP = "Compute the curves", "Stop"
 _SECOND = LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"
+# Of the vertical axes before there are curves; that of the entropies has room for the line at ln 2.
+_FIRST_RANGE = {"entropies": (0.0, 0.75), "escapes": (1.0, 100.0)}
 _SHARES_TEXT = "<b>$snap_y{custom}</b> of the interior starts @fate<br>at energy h = $snap_x{custom}"
 _WORDS = {
     "s_b": "basin entropy <b>S_b = @s_b{custom}</b>",
@@ -59,6 +61,8 @@ class EnergyCurvesView:
         self.button = button(START, on_sweep, width=180)
         self.text = pn.pane.HTML("", name="sweep", margin=(8, 10))
         self._energies = Range1d(0.0, 1.0)
+        # Automatic ranges would warn in the browser as long as there are no numbers.
+        self._values = {name: Range1d(*_FIRST_RANGE.get(name, (0.0, 1.0))) for name in TITLES}
         self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="energy_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
@@ -99,8 +103,17 @@ class EnergyCurvesView:
         swept = curves.spec.energies
         if len(swept) > 1:
             set_range(self._energies, swept[0], swept[-1])
+        self._scale_values(curves)
         self.text.object = _progress(curves)
         self._legend.object = legend(self._entries(len(shares) - 1))
+
+    def _scale_values(self, curves: EnergyCurves) -> None:
+        """Fit the ranges of the entropies and the escape times; the others are shares."""
+        entropies = _finite(curves, "s_b", "s_bb")
+        set_range(self._values["entropies"], 0.0, 1.05 * max([*entropies, _FIRST_RANGE["entropies"][1]]))
+        times = _finite(curves, "mean_escape_time", "median_escape_time")
+        if times.size:
+            set_decades(self._values["escapes"], float(times.min()), float(times.max()))
 
     def say(self, sentence: str) -> None:
         """Show why there are no curves."""
@@ -140,7 +153,9 @@ class EnergyCurvesView:
     def _draw(self) -> dict[str, figure]:
         logarithmic = {"escapes": {"y_axis_type": "log"}}
         figures = {
-            name: square_figure(name, title, x_axis_label="h", x_range=self._energies, **logarithmic.get(name, {}))
+            name: square_figure(
+                name, title, x_axis_label="h", x_range=self._energies, y_range=self._values[name], **logarithmic.get(name, {})
+            )
             for name, title in TITLES.items()
         }
         for plot in figures.values():
@@ -169,6 +184,12 @@ def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str
     points = plot.add_glyph(source, Scatter(x="h", y=column, size=5, fill_color=colour, line_color=colour))
     values = dict.fromkeys(("@h", f"@{column}", "@exponent_low", "@exponent_high"), "number")
     plot.add_tools(chart_hover(f"{_WORDS[column]}<br>at energy h = @h{{custom}}", values, [points], mode="vline"))
+
+
+def _finite(curves: EnergyCurves, *columns: str) -> np.ndarray:
+    """The numbers in some columns, without NaN."""
+    values = np.concatenate([curves.curve(column) for column in columns])
+    return values[np.isfinite(values)]
 
 
 def _is_dashed(code: int) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bokeh.models import Range1d
+
 from app.views.analysis.energy_curves import TITLES, EnergyCurvesView
 from engine import CASES, EnergyCurvesSpec, Plane, compute_energy_curves
 
@@ -16,3 +18,10 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
     assert len(plots.objects) == len(TITLES)
     view.show(None)
     assert not plots.visible
+
+
+def test_axes_have_ranges_when_there_are_no_numbers_yet() -> None:
+    view = EnergyCurvesView(lambda: None, lambda energy: None)
+    view.build()
+    view.show(compute_energy_curves(EnergyCurvesSpec(CASES["I"], Plane.X_PX, (0.1,), (20, 20), 100.0, exponent=False)))
+    assert all(isinstance(edges, Range1d) and edges.start < edges.end for edges in view._values.values())
