@@ -118,6 +118,19 @@ def test_every_point_of_a_lyapunov_orbit_lies_on_its_curve(name: str, energy: fl
         assert np.abs(distances).max() < 1e-10
 
 
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.5), ("II", 0.5), ("III", 1.0)])
+def test_curves_continue_straight_beyond_both_ends_of_a_lyapunov_orbit(name: str, energy: float) -> None:
+    for orbit in find_lyapunov_orbits(CASES[name], energy):
+        path = np.array([orbit.x, orbit.y])[:, : orbit.x.size // 2 + 1]
+        for end, before in ((0, 1), (-1, -2)):
+            # The path is densest at its ends, so that its last piece is nearly its tangent there.
+            tangent = path[:, end] - path[:, before]
+            tangent /= np.hypot(*tangent)
+            near, far = (exit_distance(*(path[:, end] + length * tangent), orbit.curve) for length in (1e-3, 1e-1))
+            assert abs(far) < 1e-3
+            assert far == pytest.approx(100.0 * near, abs=1e-6)
+
+
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.3), ("II", 0.4), ("III", 0.8)])
 def test_exit_time_of_a_straight_line_is_that_of_its_intersection_with_the_lyapunov_orbit(name: str, energy: float) -> None:
     for orbit in find_lyapunov_orbits(CASES[name], energy):
