@@ -38,8 +38,8 @@ class Trust(IntEnum):
     """Whether the outcome of a pixel is robust against small changes.
 
     ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
-    outcome. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate or its number of crossings before the escape changed.
-    ``NOT_TESTED``: not computed yet.
+    outcome, and the orbit escapes or has a certificate. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its number
+    of crossings before the escape or its escape time changed, or it is bounded only by chance. ``NOT_TESTED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0
