@@ -16,7 +16,7 @@ from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.trajectories.trajectory import integrate_orbit
 
-# Integration time of the calls that trigger compilation.
+# Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0
 
 # Kernels of the first frame of a map and of the Lyapunov orbits it needs.
@@ -25,7 +25,7 @@ _MAP_KERNELS = ("step", "jets", "potential_value", "propagate", "shoot")
 
 def is_ready_for_maps(potential: Potential) -> bool:
     """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
-    kernels = kernels_of(potential)
+    kernels = kernels_of(potential.in_well_units)
     return all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
@@ -40,7 +40,7 @@ def prepare_for_maps(potential: Potential) -> None:
     if is_ready_for_maps(potential):
         return
     find_lyapunov_orbits(potential, 1.01 * potential.escape_energy)
-    compute_map(MapSpec(potential, Plane.X_PX, 1.01 * potential.escape_energy, (2, 2), t_max=_T_MAX))
+    compute_map(MapSpec(potential, Plane.X_PX, 1.01 * potential.escape_energy, (2, 2), t_max=_T_MAX * potential.units.time))
 
 
 def prepare_kernels(potential: Potential) -> None:
@@ -55,9 +55,10 @@ def prepare_kernels(potential: Potential) -> None:
     find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1)
     # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
     energy = 0.5 * potential.escape_energy
-    spec = MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX)
+    spec = MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX * potential.units.time)
     compute_regularity(compute_map(spec))
     start = start_states(potential, Plane.X_PX, energy, np.zeros(1), np.zeros(1))
-    integrate_orbit(potential, start[0], _T_MAX)
-    count_agreeing_digits(potential, start, _T_MAX)
-    find_section_points(potential, start, 1, _T_MAX)
+    integrate_orbit(potential, start[0], _T_MAX * potential.units.time)
+    well, well_start = potential.in_well_units, start / potential.units.state
+    count_agreeing_digits(well, well_start, _T_MAX)
+    find_section_points(well, well_start, 1, _T_MAX)

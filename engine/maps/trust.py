@@ -26,7 +26,7 @@ from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE
 
 SHIFT = 1e-11
-"""Shift of a start along x and along the ordinate: far above rounding errors, far below a pixel of a whole map."""
+"""Shift of a start along x and along the ordinate in units of the well: far above rounding errors, far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
 """Largest shift as a share of the pixel, which limits it in deep zooms."""
@@ -35,14 +35,14 @@ SECOND_TOLERANCE = 10.0 * TOLERANCE
 """Tolerance of the second rerun: steps are a sixth longer, so that their errors are independent of the map's."""
 
 APART = SHIFT / CHAOS_THRESHOLD
-"""Distance of two reruns in phase space from which a bounded orbit counts as chaotic.
+"""Distance of two reruns in phase space, in units of the well, from which a bounded orbit counts as chaotic.
 
 Along a chaotic orbit SALI falls as exp(−λt) while a shift grows as exp(λt): the shift reaches this distance when SALI reaches its
 threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
 """
 
 LARGEST_DELAY = 0.01
-"""Largest change of an escape time by a rerun, dimensionless.
+"""Largest change of an escape time by a rerun, in units of the well.
 
 The escape time tends to infinity at the boundary of a basin, like the logarithm of the distance. A shift by the share d of that
 distance changes it by about d, so that at this limit shifts of the same size in other directions keep within the basin.
@@ -131,8 +131,8 @@ def compute_trust(
         When the map is not complete.
     """
     escape_map.check_complete("escape_map")
-    spec, reached = escape_map.spec, 0.0
     test = _TrustTest(escape_map, on_frame, cancel, executor)
+    spec, reached = escape_map.spec.in_well_units(), 0.0
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
             break
@@ -178,7 +178,7 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     Parameters
     ----------
     spec
-        The map.
+        The map in units of its well.
     x, ordinate
         (n,) coordinates of the points.
 
@@ -235,7 +235,7 @@ def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
 
 
 class _TrustTest:
-    """The pixels to test and the state of their reruns."""
+    """The pixels to test and the state of their reruns, in units of the well."""
 
     def __init__(
         self,
@@ -244,7 +244,9 @@ class _TrustTest:
         cancel: threading.Event | None,
         executor: Executor | None,
     ) -> None:
-        self._spec, self._on_frame, self._cancel = escape_map.spec, on_frame, cancel
+        self._given_spec, self._on_frame, self._cancel = escape_map.spec, on_frame, cancel
+        escape_map = escape_map.in_well_units()
+        self._spec = escape_map.spec
         self._execution: dict[str, Any] = {"cancel": cancel, "executor": executor}
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         uncertified = _find_uncertified(escape_map)
@@ -345,4 +347,4 @@ class _TrustTest:
 
     def result(self) -> TrustMap:
         """The result so far."""
-        return TrustMap(self._spec, *self._codes.snapshot())
+        return TrustMap(self._given_spec, *self._codes.snapshot())
