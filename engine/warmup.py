@@ -26,7 +26,7 @@ from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.trajectories.trajectory import integrate_orbit
 
-# Integration time of the calls that trigger compilation.
+# Integration time, in units of the well, of the calls that trigger compilation.
 _T_MAX = 10.0
 
 # Compiles in the calling thread, since the threads of pools have low priority.
@@ -85,7 +85,7 @@ _for_maps = _Compilations()
 
 def _expected_seconds(potential: Potential) -> float:
     """Time to compile the kernels of maps that are not compiled yet."""
-    kernels = kernels_of(potential)
+    kernels = kernels_of(potential.in_well_units)
     left = {name: getattr(kernels, name) for name in _MAP_KERNELS if not getattr(kernels, name).signatures}
     return sum(
         _SECONDS[name] if name in _SECONDS else _SECONDS_PER_OPERATION[name] * float(kernel.function.operations)
@@ -95,7 +95,7 @@ def _expected_seconds(potential: Potential) -> float:
 
 def is_ready_for_maps(potential: Potential) -> bool:
     """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
-    kernels = kernels_of(potential)
+    kernels = kernels_of(potential.in_well_units)
     return all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
@@ -137,10 +137,10 @@ def prepare_for_certificates(potential: Potential) -> None:
     potential
         Any `Potential` with an exit.
     """
-    start = _bounded_start(potential)
+    well, start = potential.in_well_units, _bounded_start(potential) / potential.units.state
     _make_in_turn(
-        lambda: count_agreeing_digits(potential, start, _T_MAX, executor=_EXECUTOR),
-        lambda: find_section_points(potential, start, 1, _T_MAX, executor=_EXECUTOR),
+        lambda: count_agreeing_digits(well, start, _T_MAX, executor=_EXECUTOR),
+        lambda: find_section_points(well, start, 1, _T_MAX, executor=_EXECUTOR),
     )
 
 
@@ -155,7 +155,7 @@ def prepare_kernels(potential: Potential) -> None:
     prepare_for_maps(potential)
     prepare_for_certificates(potential)
     _make_in_turn(
-        lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX),
+        lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX * potential.units.time),
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
         lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), executor=_EXECUTOR),
         lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1, executor=_EXECUTOR),
@@ -163,7 +163,7 @@ def prepare_kernels(potential: Potential) -> None:
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
-    return compute_map(MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX), executor=_EXECUTOR)
+    return compute_map(MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX * potential.units.time), executor=_EXECUTOR)
 
 
 def _bounded_start(potential: Potential) -> np.ndarray:

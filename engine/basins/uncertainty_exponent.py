@@ -16,7 +16,7 @@ from engine.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent,
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.dynamics.planes import Plane
 from engine.execution import raise_if_cancelled
 from engine.maps.spec import MapSpec
@@ -25,17 +25,17 @@ from engine.validation import checked_count, short_repr
 __all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]
 
 HORIZON = 1e4
-"""Longest integration time of the pairs, dimensionless.
+"""Longest integration time of the pairs, in units of the well.
 
 Continuing to t = 1e5 moved the exponents of I (h = 0.15), II (0.17) and III (0.45) within their intervals only. Stopping at t =
 1000 made the exponent of I at h = 0.15 too large by 0.02: a slowly leaking chaotic sea looks like an island.
 """
 
 MIN_SEPARATION = 1e-10
-"""Smallest distance of two starts, except in deep zooms, where pixels themselves are small."""
+"""Smallest distance of two starts in units of the well, except in deep zooms, where pixels themselves are small."""
 
 WORK = 1.5e8
-"""Default limit of the total integration time of all orbits, dimensionless: a few seconds of computation."""
+"""Default limit of the total integration time of all orbits, in units of the well: a few seconds of computation."""
 
 # In a deep zoom the smallest separation is this many decades below a pixel, but not below `_MIN_ZOOM_SEPARATION`, a few hundred
 # units in the last place of coordinates of order 1.
@@ -83,13 +83,15 @@ def compute_uncertainty_exponent(
     ----------
     spec
         Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel of its resolution. The
-        smallest ε is 1e-10 or, in a deep zoom, four decades below a pixel, but not below 1e-13.
+        smallest ε is 1e-10 length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units.
+        On (x, px) ε is measured with momenta in units in which the well's time unit is 1.
     pairs
         Initial number of pairs at each separation, 10 to 100 000.
     separations
         Number of values of ε, evenly spaced on a logarithmic scale, 5 to 100.
     work
-        Limit of the total integration time of all orbits, above 0, dimensionless. The initial pairs are integrated in any case.
+        Limit of the total integration time of all orbits, above 0, in time units of the well. The initial pairs are integrated in
+        any case.
     seed
         Seed of the random numbers, 0 or more. The same seed gives a bit-identical result.
     on_progress
@@ -125,7 +127,8 @@ def compute_uncertainty_exponent(
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:
-    """(count,) ε, decreasing from the side of a pixel."""
+    """(count,) ε in units of the well, decreasing from the side of a pixel."""
+    given_window, spec = spec.window, spec.in_well_units()
     window, (columns, rows) = spec.window, spec.resolution
     pixel = (window.x_high - window.x_low) / columns
     if spec.plane is not Plane.X_H:
@@ -133,13 +136,14 @@ def _separations(spec: MapSpec, count: int) -> np.ndarray:
     smallest = max(min(MIN_SEPARATION, pixel * 10.0**-_DECADES_BELOW_PIXEL), _MIN_ZOOM_SEPARATION)
     if pixel < 100.0 * smallest:
         raise ValueError(
-            f"window={window}: pixels of {pixel:.0e} are too small for double precision; must be {100.0 * smallest:.0e} or more"
+            f"window={given_window}: pixels of {pixel:.0e} units of the well are too small for double precision; "
+            f"must be {100.0 * smallest:.0e} or more"
         )
     return np.geomspace(pixel, smallest, count)
 
 
 class _PairSampler:
-    """Draws and integrates pairs of starts, and counts their outcomes for each separation (m,)."""
+    """Draws and integrates pairs of starts, and counts their outcomes for each separation (m,), all in units of the well."""
 
     def __init__(
         self,
@@ -149,6 +153,7 @@ class _PairSampler:
         executor: Executor | None,
         cancel: threading.Event | None,
     ) -> None:
+        self.given_potential, spec = spec.potential, spec.in_well_units()
         self.spec, self.separations = spec, separations
         self.executor, self.cancel = executor, cancel
         self.horizon = min(spec.t_max, HORIZON)
@@ -164,7 +169,8 @@ class _PairSampler:
         curves = np.repeat(closed_channel_curves(self.spec.potential)[None], self.row_energy.size, axis=0)
         for row in np.flatnonzero(self.is_open):
             raise_if_cancelled(self.cancel)
-            curves[row] = exit_curves(self.spec.potential, float(self.row_energy[row]))
+            energy = float(self.row_energy[row]) * self.given_potential.units.energy
+            curves[row] = exit_curves_in_well_units(self.given_potential, energy)
         return curves
 
     def plan_more_pairs(self, work: float) -> np.ndarray:
@@ -268,10 +274,13 @@ class _PairSampler:
         return np.concatenate([[x, ordinate], [x + shift[0], ordinate + shift[1]]], axis=1), rows
 
     def fit(self) -> UncertaintyExponent:
-        """Exponent from all pairs so far."""
+        """Exponent from all pairs so far, with separations and horizon in the units of the given potential."""
+        units = self.given_potential.units
         fit = fit_uncertainty(self.separations, self.pairs, self.uncertain)
-        one_inside, both_inside = read_only(self.one_inside), read_only(self.both_inside)
-        return replace(fit, one_inside=one_inside, both_inside=both_inside, horizon=self.horizon)
+        return replace(
+            fit, separations=read_only(units.length * fit.separations), amplitude=fit.amplitude / units.length**fit.exponent,
+            one_inside=read_only(self.one_inside), both_inside=read_only(self.both_inside), horizon=units.time * self.horizon,
+        )  # fmt: skip
 
 
 def _report_chunk(report: Callable[[float], None], done: int, chunks: int, share: float) -> None:

@@ -11,7 +11,7 @@ from itertools import islice
 import numpy as np
 
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.compiled import kernels_of, step_tolerance
+from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import exit_gates
 from engine.execution import count_workers, default_executor, is_cancelled
@@ -166,7 +166,7 @@ def _advance_tile(
     todo = np.flatnonzero(tile.active)
     b = tile.batch
     kernels.propagate(
-        todo, horizon, final, step_tolerance(potential, tolerance), STEP_BUDGET, LANES, Exits(gates, curves, b.curve_row),
+        todo, horizon, final, tolerance, STEP_BUDGET, LANES, Exits(gates, curves, b.curve_row),
         Orbits(b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active),
     )  # fmt: skip
     return tile
@@ -201,12 +201,13 @@ def propagate_batch(
 ) -> bool:
     """Integrate the undecided orbits among `which` until they escape or reach `horizon`; the batch is changed in place.
 
-    The result of each orbit is bit-identical for every executor and for every pattern of interruptions.
+    The result of each orbit is bit-identical for every executor and for every pattern of interruptions. All quantities are in
+    units of the well.
 
     Parameters
     ----------
     potential
-        The potential.
+        The potential in units of its well, `Potential.in_well_units`.
     curves
         (energies, channels, columns) exit curves, see `exit_curves`.
     batch
@@ -224,7 +225,7 @@ def propagate_batch(
     on_progress
         Called after each group of completed tiles.
     tolerance
-        Tolerance of the Taylor steps, for a well of size 1.
+        Tolerance of the Taylor steps.
 
     Returns
     -------

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import threading
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import exit_curves
+from engine.dynamics.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.potential import Potential
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
 
 ENERGY_TOLERANCE = 1e-9
-"""Largest difference between the energy of a start and the given energy, for a well of size 1."""
+"""Largest difference between the energy of a start and the given energy, in units of the well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Outcomes:
 
 
 def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
-    """The outcomes of a batch in its current state; `energy` (n,) is the reference for the energy errors."""
+    """The outcomes of a batch in its current state and its units; `energy` (n,) is the reference for the energy errors."""
     orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
     crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
     error = np.abs(potential.energy(batch.state) - energy) / np.maximum(np.abs(energy), np.finfo(float).tiny)
@@ -69,7 +69,7 @@ def classify_orbits(
     energy
         h, finite, at most 1e9 in magnitude, dimensionless.
     states
-        (n, 4) x, y, px, py; finite, with that energy to within 1e-9 `Potential.length`².
+        (n, 4) x, y, px, py; finite, with that energy to within 1e-9 in units of the well.
     t_max
         Largest integration time, 0 < t_max ≤ 1e8, dimensionless.
     executor
@@ -84,12 +84,14 @@ def classify_orbits(
     """
     states = _checked_states(potential, energy, states)
     t_max = checked_t_max(t_max)
-    curves = exit_curves(potential, energy)[None]
-    batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
+    units, scaled = potential.units, potential.in_well_units
+    curves = exit_curves_in_well_units(potential, energy)[None]
+    batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
     batch.mark_outside(every_orbit, curves)
-    propagate_batch(potential, curves, batch, every_orbit, t_max, final=True, executor=executor, cancel=cancel)
-    return collect_outcomes(potential, np.full(len(states), float(energy)), batch)
+    propagate_batch(scaled, curves, batch, every_orbit, t_max / units.time, final=True, executor=executor, cancel=cancel)
+    outcomes = collect_outcomes(scaled, np.full(len(states), energy / units.energy), batch)
+    return replace(outcomes, escape_time=outcomes.escape_time * units.time)
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:
@@ -102,7 +104,7 @@ def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndar
         row = int(np.argmin(legal))
         raise ValueError(f"states: row {row} has a number that is not finite or larger than {LARGEST_NUMBER:g} in magnitude")
     difference = np.abs(potential.energy(array) - energy)
-    if np.any(difference > ENERGY_TOLERANCE * potential.length**2):
+    if np.any(difference > ENERGY_TOLERANCE * potential.units.energy):
         row = int(np.argmax(difference))
         row_energy = float(potential.energy(array[row]))
         raise ValueError(f"states: row {row} has energy {row_energy!r}; must be energy={energy} to within {ENERGY_TOLERANCE:g}")

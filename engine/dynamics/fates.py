@@ -12,7 +12,7 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit that can be called regular without a certificate: weak chaos takes this long to appear."""
+"""Shortest orbit, in units of the well, that can be called regular without a certificate: weak chaos takes this long to appear."""
 
 
 class Fate(IntEnum):
@@ -41,8 +41,8 @@ class Trust(IntEnum):
     """Whether the outcome of a pixel is robust against small changes.
 
     ``NOT_APPLICABLE``: forbidden, outside or failed. ``LIKE_NEIGHBOURS``: not tested because all neighbours have the same
-    outcome. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate or its number of crossings before the escape changed.
-    ``NOT_TESTED``: not computed yet.
+    outcome, and the orbit escapes or has a certificate. ``CONFIRMED``: tested and unchanged. ``DOUBTFUL``: its fate, its number
+    of crossings before the escape or its escape time changed, or it is bounded only by chance. ``NOT_TESTED``: not computed yet.
     """
 
     NOT_APPLICABLE = 0

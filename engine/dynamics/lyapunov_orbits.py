@@ -20,6 +20,7 @@ from scipy import optimize
 from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.taylor.kernels import events
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 from engine.validation import checked_number
@@ -100,7 +101,12 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
         If `energy` is not finite, or so high that a Lyapunov orbit is not found or not a graph across its channel, or that
         exits meet.
     """
-    return _cached_orbits(potential, checked_number("energy", energy))
+    energy, units = checked_number("energy", energy), potential.units
+    try:
+        orbits = _find_orbits(potential.in_well_units, energy / units.energy)
+    except _SearchError as error:
+        raise ValueError(f"energy={energy}: {error} (potential {potential.name})") from None
+    return orbits if units == WellUnits() else tuple(_rescaled(orbit, units) for orbit in orbits)
 
 
 class _SearchError(Exception):
@@ -108,38 +114,27 @@ class _SearchError(Exception):
 
 
 @functools.lru_cache(maxsize=4096)
-def _cached_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """The orbits, computed in units of the potential's length, as the tolerances of the search are for wells of size 1."""
-    length = potential.length
-    try:
-        if length == 1.0:
-            orbits = _find_orbits(potential, energy)
-        else:
-            scaled = _find_orbits(potential.in_units(length), energy / length**2)
-            orbits = tuple(_rescaled(orbit, length) for orbit in scaled)
-        _check_exits_apart(potential, orbits)
-    except _SearchError as error:
-        raise ValueError(f"energy={energy}: {error} (potential {potential.name})") from None
-    return orbits
-
-
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """The orbits of a potential of length 1; those of mirror channels are exact mirror images."""
+    """The orbits of a potential in units of its well; those of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
     for channel in potential.open_channels(energy):
         image = int(potential.mirror_channels[channel]) if potential.mirror_in_x else channel
         found[channel] = _mirrored(found[image], channel) if image in found else _find_orbit(potential, energy, channel)
         if image == channel and potential.mirror_in_x:
             found[channel] = _symmetrized(found[channel])
-    return tuple(found.values())
+    orbits = tuple(found.values())
+    _check_exits_apart(potential, orbits)
+    return orbits
 
 
-def _rescaled(orbit: LyapunovOrbit, length: float) -> LyapunovOrbit:
-    """An orbit in units of `length`, a power of 2, converted to the units of its potential without rounding."""
+def _rescaled(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
+    """An orbit in units of the well, converted to the units of its potential without rounding."""
+    length = units.length
     curve = orbit.curve * length
     directions = slice(events.OUTWARD_X, events.BEARING_Y + 1)
     curve[directions] = orbit.curve[directions]
-    return LyapunovOrbit(orbit.channel, orbit.energy * length**2, orbit.period, orbit.x * length, orbit.y * length, curve)
+    energy, period = orbit.energy * units.energy, orbit.period * units.time
+    return LyapunovOrbit(orbit.channel, energy, period, orbit.x * length, orbit.y * length, curve)
 
 
 def _check_exits_apart(potential: Potential, orbits: tuple[LyapunovOrbit, ...]) -> None:
@@ -275,6 +270,12 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
     return curves
 
 
+def exit_curves_in_well_units(potential: Potential, energy: float) -> np.ndarray:
+    """(channels, columns) exit curves in units of the well, at an energy in the potential's own units, which errors name."""
+    find_lyapunov_orbits(potential, energy)
+    return exit_curves(potential.in_well_units, energy / potential.units.energy)
+
+
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """int8, shaped like x and y: the channel beyond whose Lyapunov orbit each point lies, 0 if it lies inside."""
     row = np.zeros(x.size, np.int64)
@@ -293,6 +294,6 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
     lowest = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))
     outward = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
     saddles = rows[0, :, events.SADDLE_X : events.SADDLE_Y + 1]
-    length = 2.0 ** np.round(np.log2(np.hypot(*saddles.T)))
+    length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*saddles.T).tolist()])
     offset = np.sum(outward * saddles, axis=1) + lowest - _GATE_MARGIN * length
     return np.column_stack([outward, offset])

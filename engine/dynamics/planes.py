@@ -19,12 +19,13 @@ import numpy as np
 
 from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits, find_outside_channels
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import WellUnits
 from engine.validation import checked_number, short_repr
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
 _SCAN_POINTS = 801
-# The interior is searched up to this distance from the origin: in units of the potential's length, and of the distance of the
+# The interior is searched up to this distance from the origin: in units of the well, and of the distance of the
 # outermost exit saddle.
 _SEARCH_LENGTHS = 4.0
 _SEARCH_SADDLE_DISTANCES = 2.0
@@ -43,6 +44,10 @@ class Plane(Enum):
     def ordinate(self) -> str:
         """Name of the vertical coordinate."""
         return {Plane.X_Y: "y", Plane.X_PX: "px", Plane.X_H: "h"}[self]
+
+    def ordinate_unit(self, units: WellUnits) -> float:
+        """The unit of the vertical coordinate in which it is a number of the size of the well."""
+        return {Plane.X_Y: units.length, Plane.X_PX: units.momentum, Plane.X_H: units.energy}[self]
 
     @classmethod
     def _missing_(cls, value: object) -> Never:
@@ -69,6 +74,11 @@ class Window:
             edges = [checked_number(f"window {name} edge", edge) for edge in (low, high)]
             if not edges[0] < edges[1]:
                 raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
+
+    def scaled(self, x_factor: float, ordinate_factor: float) -> Window:
+        """The window with its edges multiplied by two factors."""
+        x, ordinate = (self.x_low, self.x_high), (self.ordinate_low, self.ordinate_high)
+        return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
 
     def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres; they are exactly symmetric if the window is."""
@@ -189,23 +199,33 @@ def default_window(potential: Potential, plane: Plane, energy: float | tuple[flo
 
     Returns
     -------
-    The window; for (x, y) and (x, px) it is a square.
+    The window; for (x, y) and (x, px) it is a square in units of the well.
 
     Raises
     ------
     ValueError
         If an energy is out of range, or there is no interior at this energy.
     """
-    highest = _checked_highest_energy(energy)
-    if Plane(plane) is Plane.X_Y:
-        return _square_window(*_interior_box(potential, highest))
-    x_low, x_high = _interior_interval(potential, highest)
+    highest, plane, units = _checked_highest_energy(energy), Plane(plane), potential.units
+    # An error about the exits is to name the energy as it is given.
+    find_lyapunov_orbits(potential, highest)
+    well, well_energy = potential.in_well_units, highest / units.energy
+    x, y = _interior_points(well, well_energy) if plane is Plane.X_Y else (_interior_interval(well, well_energy), np.empty(0))
+    if x.size == 0 or not x.min() < x.max():
+        raise ValueError(f"energy={highest}: the interior is empty; must be at least about 1e-5 above the minimum of the well")
+    x_low, x_high = _rounded_range(x)
     if isinstance(energy, tuple):
         margin = _MARGIN * (x_high - x_low)
-        return Window(x_low - margin, x_high + margin, *energy)
+        return Window(units.length * (x_low - margin), units.length * (x_high + margin), *energy)
+    ordinates = _rounded_range(y) if plane is Plane.X_Y else _momentum_range(well, well_energy, x_low, x_high)
+    return _square_window(x_low, x_high, *ordinates).scaled(units.length, plane.ordinate_unit(units))
+
+
+def _momentum_range(potential: Potential, energy: float, x_low: float, x_high: float) -> tuple[float, float]:
+    """The range of px of the starts on the axis y = 0 between two x."""
     x = np.linspace(x_low, x_high, _SCAN_POINTS)
-    px = np.sqrt(2.0 * max(highest - np.min(potential.value(x, np.zeros_like(x))), 0.0))
-    return _square_window(x_low, x_high, -float(px), float(px))
+    px = float(np.sqrt(2.0 * max(energy - np.min(potential.value(x, np.zeros_like(x))), 0.0)))
+    return -px, px
 
 
 def _checked_highest_energy(energy: float | tuple[float, float]) -> float:
@@ -232,44 +252,35 @@ def _run_around_middle(allowed: np.ndarray) -> slice:
     return slice(low, high)
 
 
-def _interior_interval(potential: Potential, energy: float) -> tuple[float, float]:
-    """The range of x of the interior on the axis y = 0, with a resolution of about a thousandth."""
+def _interior_interval(potential: Potential, energy: float) -> np.ndarray:
+    """(n,) x of the interior on the axis y = 0, with a resolution of about a thousandth."""
     radius = _search_radius(potential)
     x = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     zero = np.zeros_like(x)
     outside = find_outside_channels(potential, energy, x, zero)
-    interior = x[_run_around_middle((potential.value(x, zero) <= energy) & (outside == 0))]
-    _check_interior(energy, interior)
-    return _rounded(interior[0], potential), _rounded(interior[-1], potential)
+    return x[_run_around_middle((potential.value(x, zero) <= energy) & (outside == 0))]
 
 
 def _search_radius(potential: Potential) -> float:
     """A radius that contains the interior, unless the energy is many times the escape energy."""
     outermost = float(np.hypot(*potential.saddles.T).max(initial=0.0))
-    return max(_SEARCH_LENGTHS * potential.length, _SEARCH_SADDLE_DISTANCES * outermost)
+    return max(_SEARCH_LENGTHS, _SEARCH_SADDLE_DISTANCES * outermost)
 
 
-def _interior_box(potential: Potential, energy: float) -> tuple[float, float, float, float]:
-    """The bounding box of the interior of the (x, y) plane, from rays that start at the origin and from the exits."""
+def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) x and y of points of the interior of the (x, y) plane, on rays that start at the origin, and of the exits."""
     angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
     radius = np.linspace(0.0, _search_radius(potential), _SCAN_POINTS // 2)
     x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
     outside = find_outside_channels(potential, energy, x, y)
     inside = np.logical_and.accumulate((potential.value(x, y) <= energy) & (outside == 0), axis=1)
     x, y = x[inside], y[inside]
-    _check_interior(energy, x)
-    for orbit in find_lyapunov_orbits(potential, energy):
-        x, y = np.append(x, orbit.x), np.append(y, orbit.y)
-    x_low, x_high, y_low, y_high = (_rounded(edge, potential) for edge in (x.min(), x.max(), y.min(), y.max()))
-    return x_low, x_high, y_low, y_high
-
-
-def _check_interior(energy: float, x: np.ndarray) -> None:
-    """Raise ValueError unless the interior has more than one x."""
     if x.size == 0 or not x.min() < x.max():
-        raise ValueError(f"energy={energy}: the interior is empty; must be at least about 1e-5 above the minimum of the well")
+        return np.empty(0), np.empty(0)
+    orbits = find_lyapunov_orbits(potential, energy)
+    return np.concatenate([x, *(orbit.x for orbit in orbits)]), np.concatenate([y, *(orbit.y for orbit in orbits)])
 
 
-def _rounded(edge: float, potential: Potential) -> float:
-    """Round to 12 decimals in units of the potential's length, so that the window of a symmetric interior is symmetric."""
-    return round(float(edge) / potential.length, 12) * potential.length
+def _rounded_range(coordinate: np.ndarray) -> tuple[float, float]:
+    """The smallest and the largest value, to 12 decimals, so that the window of a symmetric interior is symmetric."""
+    return round(float(coordinate.min()), 12), round(float(coordinate.max()), 12)

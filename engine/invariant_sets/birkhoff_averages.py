@@ -33,7 +33,6 @@ Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits
 
 # Shape parameter β of the Kaiser window. A larger one has smaller values at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
-# In units of the squared length of the potential.
 _ENERGY_TOLERANCE = 1e-9
 _MOST_DIGITS = 16.0
 
@@ -51,9 +50,9 @@ def count_agreeing_digits(
     Parameters
     ----------
     potential
-        The `Potential`.
+        The `Potential` in units of its well.
     states
-        (n, 4) x, y, px, py at the start of the first window; finite, dimensionless.
+        (n, 4) x, y, px, py at the start of the first window; finite, in units of the well.
     window
         Length T of each window, dimensionless, at least 10.
     executor
@@ -77,7 +76,7 @@ def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> n
     with np.errstate(all="ignore"):
         difference = np.abs(averages[1] - averages[0]) / np.abs(averages).max(axis=0)
         digits = -np.log10(np.maximum(difference.max(axis=0), 10.0**-_MOST_DIGITS))
-        conserved = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE * potential.length**2
+        conserved = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE
     agreeing: np.ndarray = np.where(conserved & np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
     return agreeing
 

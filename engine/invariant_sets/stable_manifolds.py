@@ -23,6 +23,7 @@ from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.dynamics.planes import Plane, Window, default_window
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import WellUnits
 from engine.validation import checked_count
 
 MOST_IMAGES = 6
@@ -146,17 +147,27 @@ def find_stable_manifolds(
     Tubes and their role in escapes: Contopoulos 1990, Astron. Astrophys. 231, 41; Koon, Lo, Marsden & Ross 2000, Chaos 10, 427.
     """
     images = checked_count("images", images, 1, MOST_IMAGES)
+    given, given_energy, units = potential, float(energy), potential.units
+    whole = default_window(potential, Plane.X_PX, energy)
+    potential, energy = potential.in_well_units, energy / units.energy
+    factors = 1.0 / units.length, 1.0 / units.momentum
     arcs: dict[int, list[ManifoldArc]] = {}
     truncated = False
-    spacing = _PointSpacing.for_window(default_window(potential, Plane.X_PX, energy), window)
+    spacing = _PointSpacing.for_window(whole.scaled(*factors), window.scaled(*factors) if window is not None else None)
     for orbit in find_lyapunov_orbits(potential, energy):
         mirror_channel = int(potential.mirror_channels[orbit.channel]) if potential.mirror_in_x else orbit.channel
         if mirror_channel in arcs and window is None:
             arcs[orbit.channel] = [_mirrored(arc, orbit.channel) for arc in arcs[mirror_channel]]
             continue
-        arcs[orbit.channel], unfinished = _find_arcs(potential, orbit, images, spacing, executor, cancel)
+        arcs[orbit.channel], unfinished = _find_arcs(potential, orbit, given_energy, images, spacing, executor, cancel)
         truncated = truncated or unfinished
-    return StableManifolds(potential, float(energy), tuple(arc for found in arcs.values() for arc in found), images, truncated)
+    found = tuple(_scaled(arc, units) for channel_arcs in arcs.values() for arc in channel_arcs)
+    return StableManifolds(given, given_energy, found, images, truncated)
+
+
+def _scaled(arc: ManifoldArc, units: WellUnits) -> ManifoldArc:
+    """An arc in units of the well, converted to the units of its potential."""
+    return ManifoldArc(arc.channel, arc.image, read_only(units.length * arc.x), read_only(units.momentum * arc.px))
 
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
@@ -167,13 +178,17 @@ def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
 def _find_arcs(
     potential: Potential,
     orbit: LyapunovOrbit,
+    energy: float,
     images: int,
     spacing: _PointSpacing,
     executor: Executor | None,
     cancel: threading.Event | None,
 ) -> tuple[list[ManifoldArc], bool]:
-    """The arcs of one channel, and whether any of them is incomplete."""
-    tube = UnstableManifold.from_orbit(potential, orbit)
+    """The arcs of one channel, and whether any of them is incomplete; `energy` is the one that an error names."""
+    try:
+        tube = UnstableManifold.from_orbit(potential, orbit)
+    except ValueError as error:
+        raise ValueError(f"energy={energy}: {error}") from None
     count = tube.near_passages + images
     passages = _refine(
         lambda phases: tube.find_passages(phases, count, executor, cancel), count, spacing, images * ORBITS_PER_IMAGE

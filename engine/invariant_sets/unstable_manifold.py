@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.compiled import kernels_of, step_tolerance
+from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.dynamics.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
 from engine.execution import raise_if_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
+from engine.taylor.source.recurrence import TOLERANCE
 
 # Largest displacement from the Lyapunov orbit at which orbits of the tube start. The distance of such a start from the manifold,
 # by the time the tube has grown to the size of the well, scales with its third power: 4e-8 for 1e-2, 3e-11 for 1e-3, so 3e-13.
@@ -40,7 +41,7 @@ class UnstableManifold:
     Attributes
     ----------
     potential, orbit
-        The `Potential` and its Lyapunov orbit.
+        The `Potential` in units of its well, and its Lyapunov orbit.
     direction
         (4,) unit vector in phase space at the orbit's first point, where it is at rest: the unstable direction, inward.
     multiplier
@@ -72,7 +73,7 @@ class UnstableManifold:
         multiplier, direction = _leading_eigenvector(monodromy)
         if not multiplier > _MIN_MULTIPLIER:
             raise ValueError(
-                f"energy={orbit.energy}: the Lyapunov orbit of channel {orbit.channel} is not unstable; "
+                f"the Lyapunov orbit of channel {orbit.channel} is not unstable; "
                 f"its multiplier {multiplier:.3g} must be above {_MIN_MULTIPLIER:g}"
             )
         if direction[:2] @ potential.outward_directions[orbit.channel - 1] > 0.0:
@@ -94,7 +95,7 @@ class UnstableManifold:
         """
         kernels = kernels_of(self.potential)
         (start,) = self.start_states(np.array([self.min_displacement]))
-        steps = trace_steps(kernels, start, self.orbit.period, self.potential.channels, tolerance=step_tolerance(self.potential))
+        steps = trace_steps(kernels, start, self.orbit.period, self.potential.channels)
         target = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
         displacement = self.max_displacement
         for _ in range(3):
@@ -166,7 +167,7 @@ def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
     """(4, 4) linearised flow over one period from the orbit's point of rest."""
     kernels = kernels_of(potential)
     start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
-    steps = trace_steps(kernels, start, orbit.period, potential.channels, tolerance=step_tolerance(potential))
+    steps = trace_steps(kernels, start, orbit.period, potential.channels)
     durations = np.diff(steps[:, 4], append=orbit.period)
     columns = np.eye(4)
     for state, duration in zip(steps[:, :4], durations, strict=True):
@@ -180,5 +181,5 @@ def _passages(
     """(lanes, count, 3) passages of the orbits in a tile (4, lanes)."""
     passages = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
-    kernels_of(potential).find_section_passages(step_tolerance(potential), duration, gates, curves, tile, passages, found)
+    kernels_of(potential).find_section_passages(TOLERANCE, duration, gates, curves, tile, passages, found)
     return passages

@@ -18,13 +18,15 @@ PREVIEW_SIDE = 75
 """Largest number of columns or rows of a preview."""
 
 PREVIEW_TIME = 100.0
-"""Longest integration time of a preview, dimensionless."""
+"""Longest integration time of a preview, in units of the well."""
 
 
 def preview_spec(spec: MapSpec) -> MapSpec:
     """The request for a preview of a map: the same plane, energy and window, coarser and shorter."""
     columns, rows = (min(side, PREVIEW_SIDE) for side in spec.resolution)
-    return replace(spec, resolution=(columns, rows), t_max=min(spec.t_max, PREVIEW_TIME), certify=False)
+    return replace(
+        spec, resolution=(columns, rows), t_max=min(spec.t_max, PREVIEW_TIME * spec.potential.units.time), certify=False
+    )
 
 
 def compute_preview(spec: MapSpec, executor: Executor | None = None, cancel: threading.Event | None = None) -> EscapeMap:

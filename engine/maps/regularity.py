@@ -46,7 +46,7 @@ class RegularityMap(PixelAnalysis):
     @property
     def is_too_short(self) -> bool:
         """Whether t_max is too short to call an orbit regular: then the code only says that it is not chaotic until t_max."""
-        return self.spec.t_max < MIN_REGULAR_TIME
+        return self.spec.t_max < MIN_REGULAR_TIME * self.spec.potential.units.time
 
     @property
     def chaotic_share(self) -> float:
@@ -95,10 +95,12 @@ def compute_regularity(
 
 
 class _RegularityClassification:
-    """The orbits not judged yet, with their deviation vectors, and the time they have reached."""
+    """The orbits not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, cancel: threading.Event | None, executor: Executor | None) -> None:
-        self._spec, self._cancel = escape_map.spec, cancel
+        self._given_spec, self._cancel = escape_map.spec, cancel
+        escape_map = escape_map.in_well_units()
+        self._spec = escape_map.spec
         self._execution: dict[str, Any] = {"cancel": cancel, "executor": executor}
         codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
         codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
@@ -143,4 +145,4 @@ class _RegularityClassification:
 
     def result(self) -> RegularityMap:
         """The result so far."""
-        return RegularityMap(self._spec, *self._codes.snapshot())
+        return RegularityMap(self._given_spec, *self._codes.snapshot())

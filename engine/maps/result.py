@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
@@ -57,7 +57,7 @@ class EscapeMap:
     started
         bool, the pixels whose orbits have been started.
     batch
-        Integration state for ``resume``; None in frames.
+        Integration state for ``resume``, in units of the well; None in frames.
     trust
         (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
     """
@@ -106,6 +106,14 @@ class EscapeMap:
         """Raise ValueError, with `name` as the parameter, unless the map is complete."""
         if not self.complete:
             raise ValueError(f"{name}: the map is not complete, its progress is {self.progress:.1%}; must be a complete map")
+
+    def in_well_units(self) -> EscapeMap:
+        """The same map with coordinates, energies and times in units of the well, in which its `batch` always is."""
+        units, spec = self.spec.potential.units, self.spec.in_well_units()
+        return replace(
+            self, spec=spec, x=self.x / units.length, ordinate=self.ordinate / spec.plane.ordinate_unit(units),
+            escape_time=self.escape_time / units.time, horizon=self.horizon / units.time,
+        )  # fmt: skip
 
     def coordinates(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(n,) x and (n,) ordinate of the centres of pixels (n,), which are numbered row by row from 0."""

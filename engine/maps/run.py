@@ -15,7 +15,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
@@ -27,7 +27,7 @@ COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""
 
 CERTIFIED_FROM = 1000.0
-"""Time from which undecided orbits are tested for certificates; most escapes happen earlier."""
+"""Time in units of the well from which undecided orbits are tested for certificates; most escapes happen earlier."""
 
 _FIRST_HORIZON = 100.0
 _HORIZON_FACTOR = 10.0
@@ -65,16 +65,20 @@ class MapRun:
 
     Attributes
     ----------
+    given_spec, spec
+        The request, and the same in units of the well.
     stride, horizon
-        Those of the current stage, see `EscapeMap`.
+        Those of the current stage, see `EscapeMap`; the horizon is in units of the well.
     """
 
     def __init__(
         self, spec: MapSpec, resume: EscapeMap | None = None, rows: np.ndarray | None = None, *, coarse_first: bool = True
     ) -> None:
-        self.spec = spec
-        self.x, self.ordinate = spec.pixel_centres()
+        # All quantities but those of frames are in units of the well.
+        self.given_spec, self.spec = spec, spec.in_well_units()
+        self.x, self.ordinate = self.spec.pixel_centres()
         self.ordinate = self.ordinate if rows is None else self.ordinate[rows]
+        spec = self.spec
         self.shape = (self.ordinate.size, self.x.size)
         self.stride = _coarsest_stride(self.shape) if coarse_first else 1
         self.horizon = min(_FIRST_HORIZON, spec.t_max)
@@ -136,7 +140,8 @@ class MapRun:
         self.stride, self.horizon = stride, horizon
         for row in self._rows_without_exits.intersection(np.unique(self._curve_row[pixels]).tolist()):
             energy = float(self.ordinate[row]) if self.spec.plane is Plane.X_H else float(self._energy[0])
-            self._curves[row] = exit_curves(self.spec.potential, energy)
+            potential = self.given_spec.potential
+            self._curves[row] = exit_curves_in_well_units(potential, energy * potential.units.energy)
             self._rows_without_exits.discard(row)
         fresh = pixels[~self._started[pixels]]
         self._batch.mark_outside(fresh, self._curves)
@@ -172,10 +177,12 @@ class MapRun:
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
         arrays |= {"certificate": self._batch.certificates()}
         arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
+        spec, units = self.given_spec, self.given_spec.potential.units
+        arrays["escape_time"] = units.time * arrays["escape_time"]
         pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
         return EscapeMap(
-            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate), stride=self.stride, horizon=self.horizon,
-            progress=self._progress(), complete=complete, **pixel_arrays,
+            spec=spec, x=read_only(units.length * self.x), ordinate=read_only(spec.plane.ordinate_unit(units) * self.ordinate),
+            stride=self.stride, horizon=units.time * self.horizon, progress=self._progress(), complete=complete, **pixel_arrays,
         )  # fmt: skip
 
     def _outcomes(self) -> Outcomes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import operator
 from dataclasses import dataclass
 from importlib import metadata
@@ -11,6 +12,7 @@ import numpy as np
 
 from engine.dynamics.planes import Plane, Window, default_window, start_states
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import WellUnits
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max, short_repr
 
@@ -18,7 +20,7 @@ LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
 
 FINEST_PIXEL = 1e-15
-"""Smallest distance of neighbouring pixels, a few units in the last place of coordinates of order 1."""
+"""Smallest distance of neighbouring pixels in units of the well: a few units in the last place of coordinates of order 1."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,28 @@ class MapSpec:
         window: Any = self.window
         if window is None:
             window = default_window(self.potential, plane, energy)
-        object.__setattr__(self, "window", _checked_window(window, self.resolution))
+        object.__setattr__(self, "window", _checked_window(window))
+        _check_pixels(self)
+
+    def in_well_units(self) -> MapSpec:
+        """The same map in units of the well; the request itself if these are 1.
+
+        The legal range of t_max and of energies does not apply to it.
+        """
+        units = self.potential.units
+        if units == WellUnits():
+            return self
+        low, high = self.energy if isinstance(self.energy, tuple) else (self.energy, self.energy)
+        energies = low / units.energy, high / units.energy
+        scaled = copy.copy(self)
+        for name, value in (
+            ("potential", self.potential.in_well_units),
+            ("energy", energies if isinstance(self.energy, tuple) else energies[0]),
+            ("window", self.window.scaled(1.0 / units.length, 1.0 / self.plane.ordinate_unit(units))),
+            ("t_max", self.t_max / units.time),
+        ):
+            object.__setattr__(scaled, name, value)
+        return scaled
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres."""
@@ -123,12 +146,17 @@ def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
     return float(values[0]), float(values[1])
 
 
-def _checked_window(window: Any, resolution: tuple[int, int]) -> Window:
-    checked = window if isinstance(window, Window) else _window_from_edges(window)
-    for centres in checked.pixel_centres(*resolution):
-        if centres.size > 1 and np.min(np.diff(centres)) < FINEST_PIXEL * max(1.0, float(np.max(np.abs(centres)))):
-            raise ValueError(f"window={checked}: double precision ends here; pixels must be at least {FINEST_PIXEL:g} apart")
-    return checked
+def _checked_window(window: Any) -> Window:
+    return window if isinstance(window, Window) else _window_from_edges(window)
+
+
+def _check_pixels(spec: MapSpec) -> None:
+    """Raise ValueError if neighbouring pixels are too close for double precision."""
+    units = spec.potential.units
+    for centres, unit in zip(spec.pixel_centres(), (units.length, spec.plane.ordinate_unit(units)), strict=True):
+        finest = FINEST_PIXEL * max(unit, float(np.max(np.abs(centres))))
+        if centres.size > 1 and np.min(np.diff(centres)) < finest:
+            raise ValueError(f"window={spec.window}: double precision ends here; pixels must be at least {finest:.2g} apart")
 
 
 def _window_from_edges(edges: Any) -> Window:

@@ -137,6 +137,8 @@ def find_super_sticky_orbits(
         range.
     """
     _check(escape_map, regularity, t_max)
+    given_spec, units = escape_map.spec, escape_map.spec.potential.units
+    escape_map = escape_map.in_well_units()
     spec = escape_map.spec
     pixels = np.flatnonzero(regularity.character.ravel() == Regularity.CHAOTIC)
     x, ordinate = escape_map.coordinates(pixels)
@@ -144,19 +146,19 @@ def find_super_sticky_orbits(
     mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
     partner = mirror.partner[pixels]
     batch = OrbitBatch.from_starts(states, np.zeros(pixels.size, np.int64))
-    _propagate(spec, batch, np.flatnonzero(pixels <= partner), float(t_max), executor, cancel, on_progress)
+    _propagate(spec, batch, np.flatnonzero(pixels <= partner), t_max / units.time, executor, cancel, on_progress)
     if mirror.symmetric:
         firsts = np.flatnonzero(pixels < partner)
         batch.copy_to_images(firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_channels)
     outcomes = collect_outcomes(spec.potential, np.full(pixels.size, spec.energy), batch)
     return SuperStickySearch(
-        spec,
+        given_spec,
         int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)),
-        read_only(x),
-        read_only(ordinate),
-        read_only(states),
+        read_only(x * units.length),
+        read_only(ordinate * spec.plane.ordinate_unit(units)),
+        read_only(states * units.state),
         read_only(outcomes.fate),
-        read_only(outcomes.escape_time),
+        read_only(outcomes.escape_time * units.time),
         read_only(outcomes.crossings),
         images=2 if mirror.symmetric else 1,
         t_max=float(t_max),

@@ -12,7 +12,8 @@ import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.fates import Fate, Trust
+from engine.dynamics.compiled import kernels_of
+from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
 from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled
@@ -21,16 +22,31 @@ from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
+from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE
 
 SHIFT = 1e-11
-"""Shift of a start along x and along the ordinate: far above rounding errors, far below a pixel of a whole map."""
+"""Shift of a start along x and along the ordinate in units of the well: far above rounding errors, far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
 """Largest shift as a share of the pixel, which limits it in deep zooms."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
 """Tolerance of the second rerun: steps are a sixth longer, so that their errors are independent of the map's."""
+
+APART = SHIFT / CHAOS_THRESHOLD
+"""Distance of two reruns in phase space, in units of the well, from which a bounded orbit counts as chaotic.
+
+Along a chaotic orbit SALI falls as exp(−λt) while a shift grows as exp(λt): the shift reaches this distance when SALI reaches its
+threshold. Along a regular orbit a shift grows like t, to about 1e-6 at t = 1e5.
+"""
+
+LARGEST_DELAY = 0.01
+"""Largest change of an escape time by a rerun, in units of the well.
+
+The escape time tends to infinity at the boundary of a basin, like the logarithm of the distance. A shift by the share d of that
+distance changes it by about d, so that at this limit shifts of the same size in other directions keep within the basin.
+"""
 
 # Horizons are doubled in each stage, so that few orbits are integrated longer than needed; one of them is CERTIFIED_FROM.
 _FIRST_HORIZON = CERTIFIED_FROM / 8.0
@@ -89,11 +105,14 @@ def compute_trust(
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
-    A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings. Its orbit is
-    integrated twice more: from a start shifted by `SHIFT` towards 0 in x and in the ordinate (see `shifted_starts`), and from
-    the same start with tolerance `SECOND_TOLERANCE`. The pixel is doubtful if its fate or its crossings before the escape change
-    in either rerun. Crossings of bounded orbits are not compared, as certified ones are not integrated to t_max. Of two pixels
-    that are mirror images only the first is tested.
+    A pixel is tested if one of its eight neighbours has another fate or, both having escaped, other crossings, and also if it is
+    bounded without a certificate. Its orbit is integrated twice more, from two starts shifted in different directions by `SHIFT`
+    (see `shifted_starts`), the second time with tolerance `SECOND_TOLERANCE`. The pixel is doubtful if in either rerun its fate
+    changes, or its crossings before the escape, or its escape time by more than `LARGEST_DELAY`. Crossings of bounded orbits are
+    not compared, as certified ones are not integrated to t_max.
+
+    A pixel that is bounded without a certificate is also doubtful if the two reruns come to differ by `APART`. Such an orbit is
+    chaotic, and only chance keeps it inside until t_max. Of two pixels that are mirror images only the first is tested.
 
     Parameters
     ----------
@@ -112,8 +131,8 @@ def compute_trust(
         When the map is not complete.
     """
     escape_map.check_complete("escape_map")
-    spec, reached = escape_map.spec, 0.0
     test = _TrustTest(escape_map, on_frame, cancel, executor)
+    spec, reached = escape_map.spec.in_well_units(), 0.0
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
             break
@@ -149,28 +168,30 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     return unlike & interior
 
 
-def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Shift points of the plane towards 0, so that they stay inside and mirror images stay mirror images.
+def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
-    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. On
-    (x, h) only x is shifted, so that the energy and its exits do not change.
+    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
+    first direction is towards 0 in both coordinates, so that the points stay inside, and the second in x alone. On (x, h) only x
+    is shifted, towards 0 and away from it, so that the energy and its exits do not change.
 
     Parameters
     ----------
     spec
-        The map.
+        The map in units of its well.
     x, ordinate
         (n,) coordinates of the points.
 
     Returns
     -------
-    (n,) x and (n,) ordinate of the shifted points.
+    For each direction (n,) x and (n,) ordinate of the shifted points.
     """
     window, (columns, rows) = spec.window, spec.resolution
     shifted_x = _shifted_towards_zero(x, (window.x_high - window.x_low) / columns)
     if spec.plane is Plane.X_H:
-        return shifted_x, ordinate
-    return shifted_x, _shifted_towards_zero(ordinate, (window.ordinate_high - window.ordinate_low) / rows)
+        return (shifted_x, ordinate), (x + (x - shifted_x), ordinate)
+    shifted_ordinate = _shifted_towards_zero(ordinate, (window.ordinate_high - window.ordinate_low) / rows)
+    return (shifted_x, shifted_ordinate), (shifted_x, ordinate)
 
 
 def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
@@ -182,12 +203,13 @@ def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class _Rerun:
-    """The orbits (n,) of the tested pixels, integrated once more, with their fates and crossings on the map."""
+    """The orbits (n,) of the tested pixels, integrated once more, with their outcomes on the map."""
 
     batch: OrbitBatch
     tolerance: float
     fate: np.ndarray
     crossings: np.ndarray
+    escape_time: np.ndarray
 
     def is_decided(self) -> np.ndarray:
         """(n,) bool: the orbit has a fate."""
@@ -199,12 +221,21 @@ class _Rerun:
         batch, escaped = self.batch, self.fate >= 1
         other_fate = self.is_decided() & (batch.fate != self.fate)
         other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
-        changed: np.ndarray = other_fate | escaped & (other_crossings | (batch.crossings > self.crossings))
+        delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > LARGEST_DELAY)
+        changed: np.ndarray = other_fate | escaped & (other_crossings | delayed | (batch.crossings > self.crossings))
         return changed
 
 
+def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
+    """(rows, columns) bool: bounded pixels above the escape energy that have no certificate."""
+    spec = escape_map.spec
+    energy = escape_map.ordinate[:, None] if isinstance(spec.energy, tuple) else np.float64(spec.energy)
+    uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & (energy > spec.potential.escape_energy)
+    return uncertified
+
+
 class _TrustTest:
-    """The pixels to test and the state of their reruns."""
+    """The pixels to test and the state of their reruns, in units of the well."""
 
     def __init__(
         self,
@@ -213,20 +244,30 @@ class _TrustTest:
         cancel: threading.Event | None,
         executor: Executor | None,
     ) -> None:
-        self._spec, self._on_frame, self._cancel = escape_map.spec, on_frame, cancel
+        self._given_spec, self._on_frame, self._cancel = escape_map.spec, on_frame, cancel
+        escape_map = escape_map.in_well_units()
+        self._spec = escape_map.spec
         self._execution: dict[str, Any] = {"cancel": cancel, "executor": executor}
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
-        codes[find_unlike_neighbours(escape_map.fate, escape_map.crossings)] = Trust.NOT_TESTED
+        uncertified = _find_uncertified(escape_map)
+        codes[uncertified | find_unlike_neighbours(escape_map.fate, escape_map.crossings)] = Trust.NOT_TESTED
         self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
+        # Of the tested pixels: those whose reruns must stay together, and those whose reruns did not; the time up to which both
+        # reruns have been compared.
+        self._uncertified = uncertified.ravel()[self._codes.pixels]
+        self._chaotic = np.zeros(self._codes.pixels.size, bool)
+        self._compared = 0.0
         # Positions in the arrays of the reruns whose pixels are undecided.
         self._undecided = np.arange(self._codes.pixels.size)
         self._curves, self._reruns = self._prepare_reruns(escape_map)
 
     def _prepare_reruns(self, escape_map: EscapeMap) -> tuple[np.ndarray, list[_Rerun]]:
-        """The exit curves of each energy, and the reruns at t = 0: with shifted starts, and with another tolerance."""
+        """The exit curves of each energy, and the reruns at t = 0."""
         spec, potential, pixels = self._spec, self._spec.potential, self._codes.pixels
         x, ordinate = escape_map.coordinates(pixels)
-        on_map = escape_map.fate.ravel()[pixels], escape_map.crossings.ravel()[pixels]
+        fate, crossings, escape_time = (
+            getattr(escape_map, name).ravel()[pixels] for name in ("fate", "crossings", "escape_time")
+        )
         energies, curve_row = np.unique(
             ordinate if spec.plane is Plane.X_H else np.full(x.size, spec.energy), return_inverse=True
         )
@@ -235,11 +276,11 @@ class _TrustTest:
             curves[k] = exit_curves(potential, float(energy))
         closed = np.flatnonzero(energies[curve_row] <= potential.escape_energy)
         reruns = []
-        for start, tolerance in ((shifted_starts(spec, x, ordinate), TOLERANCE), ((x, ordinate), SECOND_TOLERANCE)):
+        for start, tolerance in zip(shifted_starts(spec, x, ordinate), (TOLERANCE, SECOND_TOLERANCE), strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
             batch.mark_outside(self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
-            reruns.append(_Rerun(batch, tolerance, *on_map))
+            reruns.append(_Rerun(batch, tolerance, fate, crossings, escape_time))
         return curves, reruns
 
     def is_finished(self) -> bool:
@@ -254,21 +295,33 @@ class _TrustTest:
                 final=horizon == self._spec.t_max, tolerance=rerun.tolerance, **self._execution,
             )  # fmt: skip
             self._update_codes()
+        if not is_cancelled(self._cancel):
+            self._find_chaotic(horizon)
+            self._update_codes()
+
+    def _find_chaotic(self, time: float) -> None:
+        """Find the pixels bounded without a certificate whose reruns, both integrated to `time`, are `APART`."""
+        tested = self._undecided[self._uncertified[self._undecided]]
+        kernels = kernels_of(self._spec.potential)
+        batches = [rerun.batch for rerun in self._reruns]
+        first, second = (advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches)
+        self._chaotic[tested] = np.linalg.norm(first - second, axis=1) > APART
+        self._compared = time
 
     def certify(self, reached: float) -> None:
         """Mark reruns of pixels bounded on the map as bounded if they have a certificate, from their states at t = `reached`.
 
-        The certificates of the shifted orbits hold for both reruns: the difference that the tolerance has made to a regular
-        orbit is far below the digits that certificates compare.
+        The certificates of the first rerun hold for both: the difference between them on a regular orbit is far below the digits
+        that certificates compare.
         """
-        shifted, undecided = self._reruns[0], self._undecided
-        tested = undecided[(shifted.fate[undecided] == Fate.BOUNDED) & ~shifted.is_decided()[undecided]]
+        first, undecided = self._reruns[0], self._undecided
+        tested = undecided[(first.fate[undecided] == Fate.BOUNDED) & ~first.is_decided()[undecided]]
         if not tested.size:
             return
         energy = None if isinstance(self._spec.energy, tuple) else self._spec.energy
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
         certifier = BoundednessCertifier(
-            self._spec.potential, energy, shifted.batch.state[tested], grid_indices, self._spec.t_max - reached, **self._execution
+            self._spec.potential, energy, first.batch.state[tested], grid_indices, self._spec.t_max - reached, **self._execution
         )
 
         def mark_certified() -> None:
@@ -281,8 +334,11 @@ class _TrustTest:
 
     def _update_codes(self) -> None:
         """Record which pixels are decided, and publish."""
-        changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
         finished = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
+        changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
+        changed |= self._chaotic
+        if self._compared < self._spec.t_max:
+            finished &= ~self._uncertified | (self._reruns[0].batch.certificate != Certificate.NONE)
         self._codes.assign(self._codes.pixels[finished], Trust.CONFIRMED)
         self._codes.assign(self._codes.pixels[changed], Trust.DOUBTFUL)
         self._undecided = np.flatnonzero(~finished & ~changed)
@@ -291,4 +347,4 @@ class _TrustTest:
 
     def result(self) -> TrustMap:
         """The result so far."""
-        return TrustMap(self._spec, *self._codes.snapshot())
+        return TrustMap(self._given_spec, *self._codes.snapshot())

@@ -61,6 +61,8 @@ class _Descent:
         hessians = np.moveaxis(np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)]), 0, -1)
         curvatures = [np.abs(np.linalg.eigvalsh([[a, b], [b, c]])) for a, b, c in hessians]
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
+        # About the largest slope within the well.
+        self.largest_slope = self.length * float(np.max(curvatures[int(np.argmin(distance))]))
         self.duration = _DURATION / max(float(np.min(curvatures)), 1e-6 * float(np.max(curvatures)))
 
     def find_ends(self, saddle: int, side: float) -> set[int]:
@@ -87,7 +89,7 @@ class _Descent:
         def downhill(_t: float, place: np.ndarray) -> np.ndarray:
             slope = np.array(self.gradient(*place))
             # The speed is bounded, as otherwise a polynomial can reach minus infinity in finite time.
-            velocity: np.ndarray = -slope / (1.0 + np.hypot(*slope) / self.length)
+            velocity: np.ndarray = -slope / (1.0 + np.hypot(*slope) / self.largest_slope)
             return velocity
 
         def near_critical_point(_t: float, place: np.ndarray) -> float:

@@ -17,13 +17,14 @@ from engine.arrays import read_only
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms
 from engine.potentials.critical_points import characteristic_length, find_critical_points
 from engine.potentials.exit_saddles import leads_out_of_well
+from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.taylor.source.cauchy_products import derivative
 from engine.validation import checked_count, checked_number, short_repr
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
-"""Saddles whose energies differ by less count as equally high; in units of the square of the potential's length."""
+"""Saddles whose energies differ by less count as equally high; in units of the well's energy."""
 
-# Coordinates below this, in units of the potential's length, are rounding errors of zero: on the +x axis the sign of such an
+# Coordinates below this, in units of the characteristic length, are rounding errors of zero: on the +x axis the sign of such an
 # error would change the channel numbers.
 _ROUNDING = 1e-13
 # A critical point this close to the origin, in units of the characteristic length, is the origin.
@@ -138,14 +139,18 @@ class Potential:
         return read_only(points)
 
     @cached_property
-    def length(self) -> float:
-        """The size of the well: the distance of the nearest exit saddle as a power of 2; 1 for the cases of Zotos (2014).
+    def units(self) -> WellUnits:
+        """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
 
-        It is the unit of all tolerances that are lengths. As a power of 2 it scales numbers exactly.
+        The unit of length is the distance of the nearest exit saddle, the unit of time 1/ω of the fastest small oscillation in
+        the well. Without an exit, the unit of length is the one in which the largest coefficients of the lowest and the
+        highest degree are about equal.
         """
+        frequency = self.fastest_frequency
+        time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
         if not self.channels:
-            return characteristic_length(self.coefficients)
-        return float(2.0 ** np.round(np.log2(np.hypot(*self.saddles.T).min())))
+            return WellUnits(characteristic_length(self.coefficients), time)
+        return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
 
     @cached_property
     def fastest_frequency(self) -> float:
@@ -153,13 +158,20 @@ class Potential:
         with np.errstate(invalid="ignore"):
             return float(np.sqrt(np.linalg.eigvalsh(self.hessian_matrix(0.0, 0.0))[-1]))
 
-    def in_units(self, length: float) -> Potential:
-        """The same system with x, y, px, py in units of `length`, energies in units of length², and unchanged times.
+    @cached_property
+    def in_well_units(self) -> Potential:
+        """The same system in units of the well: V(L x, L y) / E, for units L of length and E of energy.
 
-        The scaled potential is V(length · x, length · y) / length².
+        The potential itself if both are 1.
         """
-        scaled = Potential(self.name, tuple((i, j, c * length ** (i + j - 2)) for i, j, c in self.terms))
-        scaled.__dict__["saddles"] = self.saddles / length
+        units = self.units
+        if units == WellUnits():
+            return self
+        # Not through __init__: the legal range of the coefficients is for the potential's own units.
+        scaled = object.__new__(Potential)
+        terms = tuple((i, j, c * units.length ** (i + j) / units.energy) for i, j, c in self.terms)
+        derived = {"units": WellUnits(), "saddles": self.saddles / units.length, "outward_directions": self.outward_directions}
+        scaled.__dict__.update(derived, name=self.name, terms=terms, in_well_units=scaled)
         return scaled
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
@@ -230,7 +242,9 @@ class Potential:
 
     def open_channels(self, energy: float) -> tuple[int, ...]:
         """Numbers of the channels whose saddle lies below `energy`; empty at or below the escape energy."""
-        return tuple(int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - EQUAL_ENERGY_TOLERANCE * self.length**2))
+        return tuple(
+            int(k) + 1 for k in np.flatnonzero(self.saddle_energies < energy - EQUAL_ENERGY_TOLERANCE * self.units.energy)
+        )
 
 
 def _parameter_factor(i: int, j: int, omega_1: float, omega_2: float, epsilon: float) -> float:

@@ -160,7 +160,7 @@ def _kind(potential: Potential, x: float, y: float) -> PointKind:
 
 
 def _channel(potential: Potential, x: float, y: float) -> int:
-    near = np.flatnonzero(np.hypot(*(potential.saddles - [x, y]).T) < 1e-6 * potential.length)
+    near = np.flatnonzero(np.hypot(*(potential.saddles - [x, y]).T) < 1e-6 * potential.units.length)
     return int(near[0]) + 1 if near.size else 0
 
 
@@ -220,14 +220,14 @@ def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> 
             )
     outermost = max(np.hypot(point.x, point.y) for point in points)
     saddles = sum(point.kind is PointKind.SADDLE for point in points)
-    radius = _CIRCLE_RADIUS * (outermost if outermost > 0.0 else potential.length)
+    radius = _CIRCLE_RADIUS * (outermost if outermost > 0.0 else potential.units.length)
     if winding_number(potential.derivative(1, 0), potential.derivative(0, 1), radius) != len(points) - 2 * saddles:
         return "Not all critical points were found: the sum of their indices is wrong (Poincaré–Hopf theorem)."
     return None
 
 
 def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
-    outermost = max(np.hypot(point.x, point.y) for point in points) or potential.length
+    outermost = max(np.hypot(point.x, point.y) for point in points) or potential.units.length
     if not potential.channels:
         return _no_exit_refusal(potential, points, outermost)
     if potential.channels > MOST_CHANNELS:
@@ -247,7 +247,7 @@ def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> s
 
 
 def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...], outermost: float) -> str:
-    energy_range = max(abs(point.energy - points[0].energy) for point in points) or potential.length**2
+    energy_range = max(abs(point.energy - points[0].energy) for point in points) or potential.units.energy
     if is_open_below(potential, points[0].energy + _OPEN_ENERGY_FACTOR * energy_range, outermost):
         return "The well is open without a saddle, so its exits and its escape energy are not defined."
     return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."
@@ -256,14 +256,14 @@ def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...], ou
 def _highest_energy(potential: Potential, points: tuple[CriticalPoint, ...]) -> float:
     if not points:
         return float("inf")
-    lowest = potential.escape_energy + EQUAL_ENERGY_TOLERANCE * potential.length**2
+    lowest = potential.escape_energy + EQUAL_ENERGY_TOLERANCE * potential.units.energy
     return min((point.energy for point in points if not point.channel and point.energy > lowest), default=float("inf"))
 
 
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
     remarks = []
     energies = potential.saddle_energies
-    if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.length**2:
+    if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
         order = np.argsort(energies, kind="stable")
         listed = ", ".join(f"{k + 1} above {energies[k]:.6g}" for k in order)
         remarks.append(f"The channels open at different energies: {listed}.")

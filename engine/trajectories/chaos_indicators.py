@@ -27,7 +27,10 @@ from engine.validation import checked_state, checked_t_max
 from engine.wording import format_time
 
 MIN_GROWTH_TIME = 100.0
-"""Shortest orbit judged by the growth of a deviation vector: on tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30."""
+"""Shortest orbit judged by the growth of a deviation vector, in units of the well.
+
+On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
+"""
 
 REGULAR_SALI = 1e-5
 """A SALI above this is regular. Few tori lie between this and `CHAOS_THRESHOLD`, together with orbits that turn chaotic later."""
@@ -62,10 +65,13 @@ class BirkhoffDigits:
         (m,) increasing window lengths T, dimensionless, with the orbit bounded for 2T. Empty for a shorter orbit.
     digits
         (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `CERTIFIED_DIGITS` or more.
+    time_unit
+        Unit of time of the well, of which the windows are multiples.
     """
 
     windows: np.ndarray
     digits: np.ndarray
+    time_unit: float = 1.0
 
     @property
     def nbytes(self) -> int:
@@ -118,8 +124,8 @@ def compute_birkhoff_digits(
 
     Returns
     -------
-    The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000, as long as the orbit is bounded for 2T ≤ t_max. They end early if
-    the averages cannot be compared: on an orbit along an axis one coordinate is 0 throughout.
+    The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for
+    2T ≤ t_max. They end early if the averages cannot be compared: on an orbit along an axis one coordinate is 0 throughout.
 
     Raises
     ------
@@ -128,8 +134,9 @@ def compute_birkhoff_digits(
     ValueError
         If `state` is not four finite numbers or `t_max` is out of range.
     """
-    start = checked_state("state", state)
-    t_max = checked_t_max(t_max)
+    units, potential = potential.units, potential.in_well_units
+    start = checked_state("state", state) / units.state
+    t_max = checked_t_max(t_max) / units.time
     digits: list[float] = []
     for window in WINDOWS:
         if 2.0 * window > t_max or not _is_bounded(potential, start, 2.0 * window, cancel):
@@ -141,7 +148,8 @@ def compute_birkhoff_digits(
         digits.append(float(found))
         if found >= CERTIFIED_DIGITS:
             break
-    return BirkhoffDigits(read_only(np.array(WINDOWS[: len(digits)])), read_only(np.array(digits)))
+    windows = units.time * np.array(WINDOWS[: len(digits)])
+    return BirkhoffDigits(read_only(windows), read_only(np.array(digits)), units.time)
 
 
 def _is_bounded(potential: Potential, start: np.ndarray, t_end: float, cancel: threading.Event | None) -> bool:
@@ -196,7 +204,7 @@ def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
     value, t_end = float(orbit.sali[-1]), float(orbit.t[-1])
     if judge_regularity(value) is Regularity.CHAOTIC:
         verdict, reason = Verdict.CHAOTIC, f"{CHAOS_THRESHOLD:g} or below: the two deviation vectors are aligned"
-    elif t_end < MIN_REGULAR_TIME:
+    elif t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
     elif value > REGULAR_SALI:
         verdict, reason = Verdict.REGULAR, f"above {REGULAR_SALI:g}: the deviation vectors stay apart, as on a torus"
@@ -208,19 +216,19 @@ def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
 def _judge_exponent(orbit: Orbit) -> tuple[Verdict, str]:
     t_end = float(orbit.t[-1])
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
-    if t_end < MIN_GROWTH_TIME:
+    if t_end < MIN_GROWTH_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
     else:
-        verdict, reason = _judge_growth(log_growth, _fit_growth_power(orbit), t_end)
+        verdict, reason = _judge_growth(log_growth, _fit_growth_power(orbit), t_end, orbit.time_unit)
     return verdict, f"A deviation vector grew by e^{log_growth:.3g}, {reason}."
 
 
-def _judge_growth(log_growth: float, power: float, t_end: float) -> tuple[Verdict, str]:
+def _judge_growth(log_growth: float, power: float, t_end: float, time_unit: float) -> tuple[Verdict, str]:
     """Verdict and reason from the logarithm of the growth until `t_end` and the recent growth as a power of t."""
-    limit = CHAOTIC_POWER * float(np.log(t_end))
+    limit = CHAOTIC_POWER * float(np.log(t_end / time_unit))
     if log_growth > limit:
         return Verdict.CHAOTIC, f"more than t^{CHAOTIC_POWER:g} = e^{limit:.3g}, which no torus reaches"
-    if t_end < MIN_REGULAR_TIME:
+    if t_end < MIN_REGULAR_TIME * time_unit:
         return _undecided_too_short(t_end)
     if power <= REGULAR_POWER:
         reason = f"recently like t^{power:.2f}, on a torus like t; an exponent above {limit / t_end:.2g} would be detected"
@@ -245,7 +253,7 @@ def _judge_digits(digits: BirkhoffDigits) -> tuple[Verdict, str]:
     if not digits.digits.size:
         return Verdict.UNDECIDED, "No windows to compare: the orbit is too short or runs along an axis."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
-    chaotic = CHAOTIC_DIGITS[window]
+    chaotic = CHAOTIC_DIGITS[window / digits.time_unit]
     if value >= CERTIFIED_DIGITS:
         verdict, reason = Verdict.REGULAR, f"{CERTIFIED_DIGITS:g} or more, as on a torus"
     elif value < chaotic:

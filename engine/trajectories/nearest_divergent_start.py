@@ -5,18 +5,19 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
+from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
 from engine.dynamics.planes import Plane, start_states
 from engine.execution import raise_if_cancelled
 from engine.potentials.potential import Potential
 from engine.validation import checked_number, checked_t_max
 
-# A few hundred units in the last place of coordinates of order 1.
+# Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
 _MIN_DISTANCE = 1e-13
 _DIRECTIONS = 16
 _STARTS_PER_DECADE = 80
@@ -40,7 +41,7 @@ class DivergentStart:
     x, ordinate
         Position in the plane of initial conditions.
     distance
-        Distance from the given start in that plane.
+        Distance from the given start in that plane, with momenta in units in which the well's time unit is 1.
     fate
         Channel through which this orbit escapes, k ≥ 1.
     reference_fate
@@ -62,7 +63,7 @@ def find_divergent_start(
     ordinate: float,
     t_max: float = 1e5,
     *,
-    furthest: float = 1.0,
+    furthest: float | None = None,
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> DivergentStart | None:
@@ -84,11 +85,11 @@ def find_divergent_start(
     x, ordinate
         The start, dimensionless; neither forbidden nor outside.
     t_max
-        Integration time of the given start, 0 < t_max ≤ 1e8, dimensionless. Neighbours are integrated for 1000 or, if the start
-        escapes, for three times its escape time, whichever is longer, and never beyond t_max. Neighbours bounded until then are
-        not divergent.
+        Integration time of the given start, 0 < t_max ≤ 1e8, dimensionless. Neighbours are integrated for 1000 time units of the
+        well or, if the start escapes, for three times its escape time, whichever is longer, and never beyond t_max. Neighbours
+        bounded until then are not divergent.
     furthest
-        Largest distance to search, finite, above 1e-13, dimensionless.
+        Largest distance to search, finite, above 1e-13 length units of the well, dimensionless; None for one such unit.
     executor
         Any `concurrent.futures.Executor`; None for the shared pool of this process.
     cancel
@@ -96,8 +97,8 @@ def find_divergent_start(
 
     Returns
     -------
-    The `DivergentStart`, or None if no neighbour within `furthest` is divergent. A distance of 1e-13 is an upper bound: the
-    search does not look any closer.
+    The `DivergentStart`, or None if no neighbour within `furthest` is divergent. A distance of 1e-13 length units is an upper
+    bound: the search does not look any closer.
 
     Raises
     ------
@@ -106,19 +107,28 @@ def find_divergent_start(
     ValueError
         If a parameter is out of range, or the start is forbidden or outside.
     """
-    t_max = checked_t_max(t_max)
-    if not checked_number("furthest", furthest, f"a finite number above {_MIN_DISTANCE:g}") > _MIN_DISTANCE:
-        raise ValueError(f"furthest={furthest}: must be a finite number above {_MIN_DISTANCE:g}")
+    t_max, units = checked_t_max(t_max), potential.units
+    nearest = _MIN_DISTANCE * units.length
+    furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
+    if not furthest > nearest:
+        raise ValueError(f"furthest={furthest}: must be a finite number above {nearest:g}")
     plane = Plane(plane)
     h = _checked_energy(plane, energy, x, ordinate)
-    search = _Search(potential, plane, h, np.array([x, ordinate], dtype=float), executor, cancel)
-    search.classify_centre(t_max)
+    # An error about the exits is to name the energy as it is given.
+    find_lyapunov_orbits(potential, h)
+    scale = np.array([units.length, plane.ordinate_unit(units)])
+    search = _Search(potential.in_well_units, plane, h / units.energy, np.array([x, ordinate]) / scale, executor, cancel)
+    search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
         raise ValueError(
             f"x={x}, {plane.ordinate}={ordinate}: {Fate(search.centre_fate).name.lower()} on {plane.value} at h={h}; "
             f"must have V + px²/2 ≤ h and lie inside every Lyapunov orbit"
         )
-    return search.find_nearest(furthest)
+    found = search.find_nearest(furthest / units.length)
+    if found is None:
+        return None
+    x, ordinate = (scale * [found.x, found.ordinate]).tolist()
+    return replace(found, x=x, ordinate=ordinate, distance=units.length * found.distance)
 
 
 def _checked_energy(plane: Plane, energy: float | tuple[float, float], x: float, ordinate: float) -> float:
@@ -144,7 +154,7 @@ class _Bracket:
 
 
 class _Search:
-    """Search around the start `centre` (2,) = x, ordinate, at energy `h`."""
+    """Search around the start `centre` (2,) = x, ordinate, at energy `h`, in units of the well."""
 
     def __init__(
         self,

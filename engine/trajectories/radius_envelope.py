@@ -15,7 +15,7 @@ import numpy as np
 
 from engine.arrays import read_only
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.compiled import kernels_of, step_tolerance
+from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.potentials.potential import Potential
@@ -25,7 +25,7 @@ from engine.validation import checked_count, checked_state, checked_t_max, short
 MAX_INTERVALS = 100_000
 """Largest number of intervals: more than any screen or page can show."""
 
-# R² oscillates with a period of about π and changes by less than 0.1 % of its range between samples.
+# In units of the well R² oscillates with a period of about π and changes by less than 0.1 % of its range between samples.
 _SAMPLE_INTERVAL = 0.05
 
 
@@ -90,21 +90,26 @@ def compute_radius_envelope(
         raise ValueError(f"state={short_repr(state)}: lies beyond a Lyapunov orbit; must lie inside")
     t = np.linspace(0.0, escape_time if fate >= 1 else t_max, intervals + 1)
     low, high = np.full(intervals, np.inf), np.full(intervals, -np.inf)
-    for times, r2 in _sample_r2(potential, start, float(t[-1]), t, cancel):
+    units = potential.units
+    for times, r2 in _sample_r2(potential.in_well_units, start / units.state, t / units.time, cancel):
         # A boundary belongs to the intervals on both sides.
         for side in ("left", "right"):
-            interval = np.clip(np.searchsorted(t, times, side=side) - 1, 0, intervals - 1)
+            interval = np.clip(np.searchsorted(t, units.time * times, side=side) - 1, 0, intervals - 1)
             np.minimum.at(low, interval, r2)
             np.maximum.at(high, interval, r2)
+    low, high = units.length**2 * low, units.length**2 * high
     return RadiusEnvelope(read_only(t), read_only(low), read_only(high), fate, escape_time)
 
 
 def _sample_r2(
-    potential: Potential, start: np.ndarray, t_end: float, boundaries: np.ndarray, cancel: threading.Event | None
+    potential: Potential, start: np.ndarray, boundaries: np.ndarray, cancel: threading.Event | None
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Sample times and R² for successive parts of the orbit: at most `_SAMPLE_INTERVAL` apart, and at every boundary."""
+    """Sample times and R² for successive parts of the orbit: at most `_SAMPLE_INTERVAL` apart, and at every boundary.
+
+    All quantities are in units of the well.
+    """
     kernels = kernels_of(potential)
-    for steps, until in trace_pieces(kernels, start, t_end, potential.channels, cancel, step_tolerance(potential)):
+    for steps, until in trace_pieces(kernels, start, float(boundaries[-1]), potential.channels, cancel):
         begin = steps[0, 4]
         even = np.linspace(begin, until, int(np.ceil((until - begin) / _SAMPLE_INTERVAL)) + 1)
         times = np.union1d(even, boundaries[(boundaries >= begin) & (boundaries <= until)])

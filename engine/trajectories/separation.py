@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.compiled import kernels_of, step_tolerance
+from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max
 
 LONGEST_SEPARATION = 2000.0
-"""Longest time over which two orbits are compared: neighbours in a chaotic sea separate fully long before."""
+"""Longest time over which two orbits are compared, in units of the well: neighbours in a chaotic sea separate long before."""
 
 _SAMPLES = 2000
 
@@ -29,7 +29,8 @@ class Separation:
     t
         (n,) times, evenly spaced from 0.
     distance
-        (n,) √(Δx² + Δy² + Δpx² + Δpy²); 0 where both states are equal to the last digit.
+        (n,) √(Δx² + Δy² + Δpx² + Δpy²), with momenta in units in which the well's time unit is 1; 0 where both states are equal
+        to the last digit.
     """
 
     t: np.ndarray
@@ -68,11 +69,13 @@ def compute_separation(
     ValueError
         If a state is not four finite numbers or `t_end` is out of range.
     """
-    times = np.linspace(0.0, min(checked_t_max(t_end), LONGEST_SEPARATION), _SAMPLES)
+    units, potential = potential.units, potential.in_well_units
+    times = np.linspace(0.0, min(checked_t_max(t_end) / units.time, LONGEST_SEPARATION), _SAMPLES)
     kernels = kernels_of(potential)
     paths = []
     for name, state in (("first", first), ("second", second)):
-        start = checked_state(name, state)
-        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, cancel, step_tolerance(potential))
+        start = checked_state(name, state) / units.state
+        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, cancel)
         paths.append(sample_path(kernels, steps, times, cancel))
-    return Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0)))
+    distance = units.length * np.linalg.norm(paths[1] - paths[0], axis=0)
+    return Separation(read_only(units.time * times), read_only(distance))

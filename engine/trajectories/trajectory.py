@@ -11,7 +11,7 @@ import numpy as np
 from engine.arrays import read_only
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.compiled import kernels_of, step_tolerance
+from engine.dynamics.compiled import kernels_of
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
@@ -22,6 +22,7 @@ from engine.validation import checked_state, checked_t_max
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, whose samples then take 3 GB."""
 
+# In units of the well.
 _SAMPLE_INTERVAL = 0.02
 _MIN_SAMPLES = 400
 _MAX_SAMPLES = 500_000
@@ -36,7 +37,7 @@ class Orbit:
     t, x, y, px, py
         (n,) times and states.
     sali
-        (n,) smaller alignment index min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, 0 to √2.
+        (n,) smaller alignment index min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, 0 to √2; in units of the well.
     lyapunov_exponent
         (n,) finite-time maximal Lyapunov exponent (1/t) ln(|w1(t)|/|w1(0)|) of the first deviation vector, per unit of time; NaN
         at t = 0. It decays like ln t / t along regular orbits and converges to a positive value along chaotic ones.
@@ -54,6 +55,8 @@ class Orbit:
         h of the initial state.
     certificate
         ``CLOSED`` if its energy is below every saddle, ``INTEGRATED`` if it is bounded until t_max, ``NONE`` if not bounded.
+    time_unit
+        Unit of time of the well, in which the chaos indicators measure the length of an orbit.
     """
 
     t: np.ndarray
@@ -70,6 +73,7 @@ class Orbit:
     energy_error: float
     energy: float
     certificate: Certificate
+    time_unit: float = 1.0
 
     @property
     def nbytes(self) -> int:
@@ -112,15 +116,16 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     raise_if_cancelled(cancel)
     fate = int(outcome.fate[0])
     t_end = 0.0 if fate == Fate.OUTSIDE else float(outcome.escape_time[0]) if fate >= 1 else t_max
-    times, path, sali, exponent = _sample_orbit(potential, start, t_end, cancel)
-    x, y, px, py = path
+    units = potential.units
+    times, path, sali, exponent = _sample_orbit(potential.in_well_units, start / units.state, t_end / units.time, cancel)
+    x, y, px, py = units.state[:, None] * path
+    times, exponent = units.time * times, exponent / units.time
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         read_only(array)
-    return Orbit(
-        *arrays, fate, float(outcome.escape_time[0]), int(outcome.crossings[0]), float(outcome.energy_error[0]), energy,
-        _certificate(potential, energy, fate),
-    )  # fmt: skip
+    escape_time, energy_error = float(outcome.escape_time[0]), float(outcome.energy_error[0])
+    certificate = _certificate(potential, energy, fate)
+    return Orbit(*arrays, fate, escape_time, int(outcome.crossings[0]), energy_error, energy, certificate, units.time)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
@@ -132,11 +137,11 @@ def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
 def _sample_orbit(
     potential: Potential, start: np.ndarray, t_end: float, cancel: threading.Event | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to `t_end`."""
+    """Times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to `t_end`, all in units of the well."""
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = kernels_of(potential)
-    steps = trace_steps(kernels, start, t_end, potential.channels, cancel, step_tolerance(potential))
+    steps = trace_steps(kernels, start, t_end, potential.channels, cancel)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     path = sample_path(kernels, steps, times, cancel)
     sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)

@@ -25,7 +25,7 @@ def energy_of(potential: Potential, factor: float) -> float:
 def starts(potential: Potential, energy: float, count: int, seed: int = 0) -> np.ndarray:
     """(count, 4) states of one energy near the minimum of the well, with random directions."""
     rng = np.random.default_rng(seed)
-    place = 0.3 * potential.length * rng.uniform(-1.0, 1.0, (20 * count, 2))
+    place = 0.3 * potential.units.length * rng.uniform(-1.0, 1.0, (20 * count, 2))
     place = place[potential.value(*place.T) < energy][:count]
     speed = np.sqrt(2.0 * (energy - potential.value(*place.T)))
     angle = rng.uniform(0.0, 2.0 * np.pi, count)
@@ -49,7 +49,7 @@ def test_lyapunov_orbits_are_periodic_and_unstable(potential: Potential) -> None
         start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
         half = solve_ivp(equations(potential), (0.0, 0.5 * orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15)
         arrival = [orbit.x[100], orbit.y[100], 0.0, 0.0]
-        np.testing.assert_allclose(half.y[:, -1], arrival, rtol=0.0, atol=1e-9 * potential.length)
+        np.testing.assert_allclose(half.y[:, -1], arrival, rtol=0.0, atol=1e-9 * potential.units.length)
         assert abs(trace_of_monodromy(potential, start, orbit.period)) > 2.0
 
 

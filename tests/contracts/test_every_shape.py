@@ -32,7 +32,7 @@ def test_derivatives_agree_with_sympy(potential: Potential) -> None:
 def test_force_vanishes_at_critical_points(potential: Potential) -> None:
     points = potential.critical_points
     slopes = np.array(potential.gradient(*points.T))
-    stiffness = np.abs(potential.hessian(*points.T)).max() * potential.length
+    stiffness = np.abs(potential.hessian(*points.T)).max() * potential.units.length
     np.testing.assert_allclose(slopes, 0.0, atol=1e-12 * stiffness)
 
 
@@ -45,7 +45,7 @@ def test_channels_lead_over_saddles(potential: Potential) -> None:
 @each_potential
 def test_descent_from_a_saddle_reaches_the_origin_on_one_side_only(potential: Potential) -> None:
     # Gradient descent with a fixed step length, independent of the implementation in the engine.
-    stride = 0.01 * potential.length
+    stride = 0.01 * potential.units.length
     for channel, saddle in enumerate(potential.saddles, start=1):
         ends = []
         for side in (-3.0, 3.0):
@@ -53,7 +53,7 @@ def test_descent_from_a_saddle_reaches_the_origin_on_one_side_only(potential: Po
             for _ in range(400):
                 slope = np.array(potential.gradient(*place))
                 place = place - stride * slope / np.hypot(*slope)
-            ends.append(np.hypot(*place) < 0.05 * potential.length)
+            ends.append(np.hypot(*place) < 0.05 * potential.units.length)
         assert ends == [True, False]
 
 

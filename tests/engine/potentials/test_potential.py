@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine import CASES, Potential
+from engine.potentials.well_units import WellUnits
 
 X, Y = sympy.symbols("x y")
 R = np.sqrt(0.5)
@@ -164,18 +165,25 @@ def test_parameters_out_of_range_are_refused(parameter: str, value: float) -> No
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_cases_have_unit_length(name: str) -> None:
-    assert CASES[name].length == 1.0
+def test_the_cases_are_given_in_units_of_the_well(name: str) -> None:
+    assert CASES[name].units == WellUnits()
+    assert CASES[name].in_well_units is CASES[name]
 
 
 @pytest.mark.parametrize(("epsilon", "length"), [(1 / 64, 64.0), (1.0, 1.0), (64.0, 1 / 64)])
 def test_length_of_a_cubic_well_depends_on_its_strength(epsilon: float, length: float) -> None:
-    assert CASES["II"].with_parameters(epsilon=epsilon).length == length
+    assert CASES["II"].with_parameters(epsilon=epsilon).units == WellUnits(length, 1.0)
 
 
-def test_in_units_of_its_length_case_2_is_unchanged() -> None:
-    potential = CASES["II"].with_parameters(epsilon=1 / 64)
-    assert potential.in_units(64.0) == CASES["II"]
+def test_unit_of_time_is_that_of_the_fastest_small_oscillation() -> None:
+    assert CASES["III"].with_parameters(omega_1=4.0, omega_2=1.0).units.time == 0.25
+
+
+@pytest.mark.parametrize(("length", "energy"), [(64.0, 4096.0), (0.25, 16.0), (1.0, 0.0625)])
+def test_in_well_units_a_scaled_case_is_unchanged(length: float, energy: float) -> None:
+    scaled = Potential("", tuple((i, j, c * energy / length ** (i + j)) for i, j, c in CASES["II"].terms))
+    assert scaled.in_well_units == CASES["II"]
+    assert scaled.units == WellUnits(length, length / energy**0.5)
 
 
 @given(polynomials, places, places)
