@@ -62,17 +62,9 @@ def zoom(explorer: ExplorerPage, share: float) -> None:
 
 def zoom_box(explorer: ExplorerPage, share: float) -> None:
     """Zoom to a box."""
-    explorer.page.evaluate(
-        """() => {
-            for (const tool of Bokeh.documents[0].get_model_by_name('basins').toolbar.tools)
-                if (tool.type == 'BoxZoomTool') tool.active = true
-        }"""
-    )
+    explorer.set_drag("Zoom")
     side = 0.2 + 0.3 * share
-    explorer.page.mouse.move(*explorer.point("basins", -side, 0.4 + side / 2))
-    explorer.page.mouse.down()
-    explorer.page.mouse.move(*explorer.point("basins", 0.0, 0.4 - side / 2), steps=3)
-    explorer.page.mouse.up()
+    explorer.drag("basins", (-side, 0.4 + side / 2), (0.0, 0.4 - side / 2))
 
 
 OPENINGS = 11

@@ -246,9 +246,10 @@ class SimulatedSession:
     def _on_patch(self, content: str) -> None:
         for event in json.loads(content)["events"]:
             model = event.get("model", {}).get("id")
-            if event.get("attr") == "search":
+            if event.get("attr") == "address":
                 # The address changes when the server accepts the action; earlier pixels belong to an earlier map.
-                self._accepted |= self._parameters.items() <= dict(parse_qsl(event["new"].removeprefix("?"))).items()
+                link = dict(event["new"]["entries"])["link"]
+                self._accepted |= self._parameters.items() <= dict(parse_qsl(link.removeprefix("?"))).items()
             if event.get("attr") != "data":
                 # Sections and sliders are rebuilt while the page is open.
                 self._models |= dict(_named_models(event))

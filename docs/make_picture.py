@@ -19,6 +19,8 @@ from tests.browser.served_app import served_app
 HERE = Path(__file__).parent
 SWEPT = "?case=III&plane=x_y&h=0.28&t_max=1000"
 FRAMES, FRAME_MS, WIDTH = 36, 250, 1000
+# The maps with their legend, and the controls.
+HEIGHT = 510
 
 
 def open_page(browser: Browser, link: str, height: int) -> ExplorerPage:
@@ -33,22 +35,13 @@ def open_page(browser: Browser, link: str, height: int) -> ExplorerPage:
 
 def take_animation(browser: Browser, address: str) -> None:
     """Animation of case III: the energy played upward from just above the escape energy."""
-    explorer = open_page(browser, address + SWEPT, 800)
+    explorer = open_page(browser, address + SWEPT, HEIGHT)
     page = explorer.page
     explorer.press("▶ Play")
-    box = page.evaluate(
-        """() => {
-            const names = ['curves', 'basins', 'times', 'crossings']
-            const views = [...Bokeh.index.all_views()].filter(v => names.includes(v.model.name))
-            const boxes = views.map(v => v.el.getBoundingClientRect())
-            const top = Math.min(...boxes.map(b => b.top)), bottom = Math.max(...boxes.map(b => b.bottom))
-            return {x: 0, y: 50, width: 1600, height: bottom - 50}
-        }"""
-    )
     frames = []
     for _ in range(FRAMES):
         page.wait_for_timeout(FRAME_MS)
-        frame = Image.open(io.BytesIO(page.screenshot(clip=box))).convert("RGB")
+        frame = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
         frames.append(frame.resize((WIDTH, round(WIDTH * frame.height / frame.width)), Image.Resampling.LANCZOS))
     frames[0].save(
         HERE / "explorer.webp", save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0, quality=55, method=6

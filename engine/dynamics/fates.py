@@ -12,7 +12,7 @@ CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
 
 MIN_REGULAR_TIME = 1000.0
-"""Shortest orbit, in units of the well, that can be called regular without a certificate: weak chaos takes this long to appear."""
+"""Shortest orbit that can be called regular without a certificate, in units of the well: weak chaos takes this long."""
 
 
 class Fate(IntEnum):

@@ -21,6 +21,7 @@ from engine import CASES, Plane
 
 LOCK = "Lock colour scale"
 PLAY, STOP = "▶ Play", "■ Stop"
+_MOST_DECIMALS = 12
 # Space beside the rail of a slider, half the width of its thumb, see theme.css.
 _THUMB = "9px"
 _TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
@@ -171,11 +172,12 @@ class Controls:
         """The slider moves; a move to the energy of the state is the end of a drag, or follows the state."""
         if self._following:
             return
-        if event.new == self._slider_energy():
+        energy = _without_noise(event.new)
+        if energy == _without_noise(self._slider_energy()):
             self._settle()
         else:
             self._previewed = True
-            self._actions.preview(event.new)
+            self._actions.preview(energy)
 
     def _settle(self) -> None:
         """Show the map again after previews of other energies."""
@@ -200,11 +202,12 @@ class Controls:
 
     def _take_slider_energy(self, event: Any) -> None:
         # An energy beyond the slider, which can be typed, stays when the slider is released at its end.
-        if not self._following and event.new != self._slider_energy():
+        energy = _without_noise(event.new)
+        if not self._following and energy != _without_noise(self._slider_energy()):
             self._previewed = False
-            # All that follows makes one message. The browser sends multiples of the step with rounding errors.
+            # All that follows makes one message.
             with pn.io.hold():
-                self.state.energy = round(event.new, self.state.system.energies.decimals)
+                self.state.energy = energy
 
     def _slider_energy(self) -> float:
         """The position of the slider for the energy of the state."""
@@ -253,6 +256,11 @@ class Controls:
         self.energy.param.update(value=shown, disabled=on_h, label="Energy is the vertical axis here" if on_h else label)
         self.exact_energy.param.update(value=state.energy, disabled=on_h)
         self.play.disabled = on_h
+
+
+def _without_noise(energy: float) -> float:
+    """An energy without the rounding error of the browser, which sends multiples of the slider's step."""
+    return round(energy, _MOST_DECIMALS)
 
 
 def _slider_format(energy: float, energies: EnergyRange) -> str:

@@ -59,6 +59,13 @@ def test_releasing_the_slider_sets_the_energy_without_another_preview(page: Page
     assert page.previews == [0.2]
 
 
+def test_an_energy_of_the_slider_has_no_rounding_error(page: Page) -> None:
+    page.drag_over(0.21000000000000002)
+    page.release_at(0.45999999999999996)
+    assert page.state.energy == 0.46
+    assert page.previews == [0.21]
+
+
 def test_dragging_back_shows_the_map_again(page: Page) -> None:
     page.drag_over(0.2)
     page.drag_over(0.19)
