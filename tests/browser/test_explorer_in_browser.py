@@ -186,6 +186,7 @@ def test_escape_stops_the_map(explorer: ExplorerPage) -> None:
 
 def test_the_address_opens_the_same_view(explorer: ExplorerPage, open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer.pick("III")
+    explorer.wait_for_view("case=III&")
     explorer.type_number("Exact h", "0.4567")
     explorer.wait_for_view("h=0.4567")
     explorer.click("basins", 0.1, 0.2)

@@ -62,6 +62,15 @@ def test_the_browser_goes_back_over_each_kind_of_action(explorer: ExplorerPage) 
     explorer.wait_for_view(HOME)
 
 
+def test_an_action_can_be_repeated_after_it_was_undone(explorer: ExplorerPage) -> None:
+    for _ in range(2):
+        explorer.pick("II")
+        explorer.wait_for_view("case=II&")
+        explorer.press("← Back")
+        explorer.wait_for_view("case=I&")
+        expect(explorer.button("← Back")).to_be_hidden()
+
+
 def test_all_steps_of_the_wheel_are_one_entry(explorer: ExplorerPage) -> None:
     explorer.turn_wheel("basins", 0.1, 0.1, -100)
     for _ in range(2):

@@ -83,6 +83,7 @@ def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], 
     broken, other = ExplorerPage(open_page()), ExplorerPage(open_page())
     for explorer in (broken, other):
         explorer.wait_until_complete()
+    broken.open_fold("Quality and colours")
     assert broken.page.evaluate(_SEND_INVALID_VALUE, "t_max")
     wait_for(lambda: "not-an-option" in log.read_text(), 30)
     for explorer, energy in ((other, "0.21"), (broken, "0.22")):

@@ -14,6 +14,8 @@ from app.views.components.widgets import button
 from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
 
 STOP, CONTINUE = "Stop", "Continue"
+# Styles: a change of `visible` would have the browser lay out the page, figures included, twice for each map.
+_SHOWN, _HIDDEN = {"visibility": "visible"}, {"visibility": "hidden"}
 
 
 class ProgressView:
@@ -32,7 +34,7 @@ class ProgressView:
         self._last_stage: tuple[float, float] | None = None
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
         self.text = pn.pane.HTML("", name="progress", margin=0, css_classes=["status"])
-        self.button = button(STOP, self._press, margin=0, visible=False)
+        self.button = button(STOP, self._press, margin=0, styles=_HIDDEN)
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """The text and the button that stand in one line."""
@@ -61,7 +63,7 @@ class ProgressView:
     def stop(self) -> None:
         """The map is stopped and can be continued."""
         self._set(running=False, label=CONTINUE, text=f"Stopped: {self.text.object}")
-        self.button.visible = True
+        self.button.styles = _SHOWN
 
     def fail(self) -> None:
         """There is no map; the last picture stays."""
@@ -87,9 +89,8 @@ class ProgressView:
 
     def _set(self, *, running: bool, label: str, text: str) -> None:
         self._running = running
-        # Unlike `visible`, this does not move the maps below.
         self.bar.styles = {"opacity": "1" if running else "0"}
-        self.button.param.update(label=label, visible=running)
+        self.button.param.update(label=label, styles=_SHOWN if running else _HIDDEN)
         self.text.object = text
 
 

@@ -67,4 +67,6 @@ class MapToolbar:
             self.forward: history.can_go_forward,
             self.home: zoomed,
         }
-        self._row.objects = [*self._before, *(one for one, is_needed in needed.items() if is_needed), self.drag]
+        parts = [*self._before, *(one for one, is_needed in needed.items() if is_needed), self.drag]
+        if parts != self._row.objects:
+            self._row.objects = parts

@@ -133,7 +133,7 @@ class BrowserListener(JSComponent):
     """The browser side: it sends {key}, {link, entry}, {dark}, {touch}, {first_visit} or {copied}."""
 
     keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, and number of its entry in the browser's history")
+    address = param.Dict(default={}, doc="link of the view, number of its entry in the history; number, see `command`")
     command = param.Dict(default={}, doc="name: back, forward or copy; and a number that makes repeats differ")
 
     _esm = _LISTENER
@@ -186,7 +186,7 @@ class BrowserEvents:
 
     def write_link(self, link: str, entry: int) -> None:
         """Show a link as the address of the page, as this entry of the browser's history."""
-        self._listener.address = {"link": link, "entry": entry}
+        self._listener.address = {"link": link, "entry": entry, "number": next(self._numbers)}
 
     def go_back(self) -> None:
         """Do what the browser's Back does."""

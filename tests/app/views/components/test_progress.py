@@ -24,7 +24,7 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(escape_map)
     assert view.text.object.startswith("Done, t = 1 000. Interior starts: channel 1 ")
-    assert (view.bar.styles["opacity"], view.button.visible) == ("0", False)
+    assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
@@ -36,12 +36,12 @@ def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap)
 
 def test_the_button_stops_and_continues() -> None:
     view, calls = make_view()
-    assert not view.button.visible
+    assert view.button.styles["visibility"] == "hidden"
     view.start()
-    assert (view.button.label, view.button.visible) == (STOP, True)
+    assert (view.button.label, view.button.styles["visibility"]) == (STOP, "visible")
     view.button.clicks += 1
     view.stop()
-    assert (view.button.label, view.button.visible) == (CONTINUE, True)
+    assert (view.button.label, view.button.styles["visibility"]) == (CONTINUE, "visible")
     view.button.clicks += 1
     assert calls == ["cancel", "resume"]
 
@@ -50,4 +50,4 @@ def test_without_a_map_there_is_neither_text_nor_button() -> None:
     view, _ = make_view()
     view.start()
     view.fail()
-    assert (view.text.object, view.button.visible, view.bar.styles["opacity"]) == ("", False, "0")
+    assert (view.text.object, view.button.styles["visibility"], view.bar.styles["opacity"]) == ("", "hidden", "0")

@@ -54,3 +54,11 @@ def test_other_messages_are_ignored(events: BrowserEvents, calls: list[tuple[Any
 
 def test_every_key_is_in_the_list_of_keys() -> None:
     assert all(action in key_legend() for action in KEYS.values())
+
+
+def test_the_same_link_twice_is_two_changes(events: BrowserEvents) -> None:
+    written: list[Any] = []
+    events.layout().param.watch(lambda event: written.append(event.new), "address")
+    for _ in range(2):
+        events.write_link("?case=II", 1)
+    assert [(address["link"], address["entry"]) for address in written] == [("?case=II", 1)] * 2
