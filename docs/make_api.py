@@ -60,6 +60,7 @@ def make_site(folder: Path) -> None:
         _write(folder / f"{stem}.html", _to_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
     for picture in (path for pattern in PICTURES for path in HERE.glob(pattern)):
         shutil.copy(picture, folder)
+    shutil.copytree(HERE / "screenshots", folder / "screenshots", dirs_exist_ok=True)
     for file in {file for path in sources.values() for file in LINKED_FILES.findall(path.read_text(encoding="utf-8"))}:
         (folder / file).parent.mkdir(exist_ok=True)
         shutil.copy(ROOT / file, folder / file)

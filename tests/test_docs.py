@@ -50,7 +50,7 @@ def test_every_public_name_is_in_the_pages(site: Path) -> None:
 
 
 def test_pages_contain_no_private_modules(site: Path) -> None:
-    assert {path.name for path in site.rglob("*") if path.is_dir()} == {"deploy", "examples"}
+    assert {path.name for path in site.rglob("*") if path.is_dir()} == {"deploy", "examples", "screenshots"}
 
 
 def test_links_between_pages_are_valid(site: Path) -> None:
