@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 from bokeh.models import Range1d
@@ -40,6 +42,14 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot.css_classes = [name]
     plot.elements = [HTML(html=title_with_help(title, name))]
     return plot
+
+
+@contextmanager
+def batched_additions(plots: Sequence[figure]) -> Iterator[None]:
+    """Add any number of models to the figures of a page; Bokeh searches all models of the page once instead of for each."""
+    document = plots[0].document if plots else None
+    with document.models.freeze() if document is not None else nullcontext():
+        yield
 
 
 def set_range(edges: Range1d, low: float, high: float) -> None:
