@@ -60,7 +60,8 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "r2": (
             "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits. On an "
             "escaping orbit it ends at its value at the exit. A sticky orbit looks bounded for a long time; then its range "
-            "widens and it escapes."
+            "widens and it escapes. Drag over this curve, or over SALI or the Lyapunov exponent, to choose an interval of time: "
+            "path, curves and player show it in full detail. A double click shows the whole orbit again."
         ),
         "separation": (
             "The distance of two orbits in position and momentum, on a logarithmic scale. In a chaotic region neighbours "

@@ -18,7 +18,7 @@ _BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28,
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
-    """A square figure with a title, a help text and a toolbar that is shown while the mouse is over it.
+    """A square figure with a title and a help text, without tools.
 
     Parameters
     ----------
@@ -29,10 +29,8 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     **options
         Of `bokeh.plotting.figure`.
     """
-    defaults = {"toolbar_location": "above", "toolbar_inner": True}
+    defaults = {"tools": "", "toolbar_location": None}
     plot = figure(name=name, title=None, sizing_mode="scale_width", aspect_ratio=1, **_BORDERS, **(defaults | options))
-    plot.toolbar.autohide = True
-    plot.toolbar.logo = None
     plot.center = []
     # `plot.axis` would search all models of the figure for each attribute.
     for axis in (*plot.below, *plot.left):

@@ -305,9 +305,7 @@ class MapsView:
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
         x, y = self._ranges
-        plot = self.figures[name] = square_figure(
-            name, TITLES[name], x_range=x, y_range=y, x_axis_label="x", tools="", toolbar_location=None
-        )
+        plot = self.figures[name] = square_figure(name, TITLES[name], x_range=x, y_range=y, x_axis_label="x")
         plot.toolbar = self._toolbar
         self._paint(name)
         # Two quick clicks, even at two places, are one tap and one double tap.
