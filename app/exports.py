@@ -10,7 +10,7 @@ from importlib import metadata
 from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
 from app.rendering.palette import Palette
 from app.state.system import TYPED, System
-from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, judge_orbit
+from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, default_window, judge_orbit
 
 MOST_ROWS = 100_000
 """Default number of rows that a table of orbits has at most."""
@@ -162,7 +162,28 @@ def _numbers(numbers: Sequence[float]) -> str:
 
 
 def file_stem(spec: MapSpec, case: str) -> str:
-    """File name for a map, without an ending: letters, digits and ``_ . + -`` only."""
+    """File name for a map, without an ending: letters, digits and ``_ . + -`` only.
+
+    It has the case, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    """
     energies = spec.energy if isinstance(spec.energy, tuple) else (spec.energy,)
-    stem = f"escapes-{case}-{spec.plane.name.lower()}-h{'-'.join(repr(float(energy)) for energy in energies)}"
+    energy = "-".join(repr(float(energy)) for energy in energies)
+    stem = f"escapes-{case}-{spec.plane.name.lower()}-h{energy}-t{spec.t_max:g}"
+    window = spec.window
+    if window != default_window(spec.potential, spec.plane, spec.energy):
+        x, ordinate = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+        stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
+
+
+def curves_csv(curves: EnergyCurves) -> str:
+    """CSV table of curves against energy, one row per energy: h, a share per fate, and all other measures."""
+    dataset = curves.to_xarray()
+    names = ["share_bounded", *(f"share_channel_{k}" for k in range(1, curves.shares.shape[1]))]
+    columns = {"h": curves.energies} | dict(zip(names, curves.shares.T, strict=True))
+    columns |= {str(name): dataset[name].to_numpy() for name in dataset.data_vars if name != "share"}
+    lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
+    lines += [f"# {name}: {value}" for name, value in dataset.attrs.items()]
+    lines.append(",".join(columns))
+    lines += [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns.values()), strict=True)]
+    return "\n".join(lines) + "\n"

@@ -69,7 +69,9 @@ class Explorer:
         jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session)
         on_disconnect(document, self._client.close)
         self.potential = PotentialPresenter(self.state, jobs, self._locked)
-        self.analyses = AnalysisPresenter(self.state, jobs, self.maps, self.downloads.show_analyses, self._locked)
+        self.analyses = AnalysisPresenter(
+            self.state, jobs, self.maps, self.downloads.show_analyses, self.downloads.show_curves, self._locked
+        )
         load_policy = LoadPolicy(process.is_overloaded, lambda call: document.add_timeout_callback(call, _RETRY_MS))
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), load_policy)
         self.orbits: OrbitPresenter = OrbitPresenter(
@@ -104,7 +106,7 @@ class Explorer:
             locked(lambda: state.param.update(window=None)),
             locked(self.maps.set_drag),
         )
-        self.statistics = StatisticsView(locked(lambda: self._count_in(None)))
+        self.statistics = StatisticsView(locked(lambda: self._count_in(None)), lambda text: self.browser.copy(text))
         self.accessible_table = AccessibleTable(state)
         self.browser = BrowserEvents(
             BrowserActions(
@@ -116,7 +118,7 @@ class Explorer:
                 copied=locked(self._copied),
             )
         )
-        self.downloads: Downloads = Downloads(state, self.browser.copy_link)
+        self.downloads: Downloads = Downloads(state, self._copy_link)
         self.notice = Notice()
         self.gallery = Gallery(locked(self._show_preset))
         self.tour: Tour = Tour(locked(self._act))
@@ -273,7 +275,10 @@ class Explorer:
         self.state.param.update(chosen=0, **(asdict(System(preset.case)) | preset.values()))
 
     def _copied(self, success: bool) -> None:
-        self.notice.show("Link copied." if success else "The browser does not allow it: copy the page's address instead.")
+        self.notice.show("Copied." if success else "The browser does not allow copying.")
+
+    def _copy_link(self) -> None:
+        self.browser.copy(None)
 
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""

@@ -58,10 +58,9 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "the time in which an error grows by a factor of e."
         ),
         "r2": (
-            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits. On an "
-            "escaping orbit it ends at its value at the exit. A sticky orbit looks bounded for a long time; then its range "
-            "widens and it escapes. Drag over this curve, or over SALI or the Lyapunov exponent, to choose an interval of time: "
-            "path, curves and player show it in full detail. A double click shows the whole orbit again."
+            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits; a "
+            "sticky orbit looks like that for a long time, until its range widens and it escapes. Drag over this curve, SALI "
+            "or the Lyapunov exponent to see an interval of time in full detail; a double click shows the whole orbit again."
         ),
         "separation": (
             "The distance of two orbits in position and momentum, on a logarithmic scale. In a chaotic region neighbours "
@@ -81,7 +80,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "uncertainty": (
             "Random pairs of starts at a given distance: the share of pairs with different fates, against the distance. Near "
             "a smooth boundary the share is proportional to the distance. Near a fractal boundary it decreases more slowly, "
-            "as the distance to the power α, so a more accurate start helps little. The dimension of the boundary is 2 − α."
+            "as the distance to the power α, and the dimension of the boundary is 2 − α. Bars are 95 % intervals of the shares."
         ),
         "survival": (
             "The share of the interior starts that have not escaped by time t. For fully chaotic motion it decreases "

@@ -36,7 +36,7 @@ def download_file(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
 
 def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
     name, data = download_file(small, "Picture (PNG)")
-    assert name == "escapes-III-x_px-h0.45.png"
+    assert name == "escapes-III-x_px-h0.45-t1000.png"
     picture = Image.open(io.BytesIO(data))
     assert picture.width > 3 * 600
     assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
@@ -67,7 +67,7 @@ def test_a_script_that_computes_the_map(small: ExplorerPage) -> None:
 
 def test_the_link_is_copied(small: ExplorerPage) -> None:
     small.press("Copy link")
-    expect(small.text("Link copied.")).to_be_visible()
+    expect(small.text("Copied.")).to_be_visible()
     assert small.page.evaluate("() => navigator.clipboard.readText()") == small.page.url
 
 

@@ -118,8 +118,8 @@ export function render({model, el}) {
   })
   if (document.documentElement.dataset.theme === "dark") tell_theme()
   model.on("command", async () => {
-    const {name} = model.command
-    if (name === "copy") model.send_msg({copied: await copy(window.location.href)})
+    const {name, text} = model.command
+    if (name === "copy") model.send_msg({copied: await copy(text ?? window.location.href)})
     else history.go(name === "back" ? -1 : 1)
   })
   if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
@@ -134,7 +134,7 @@ class BrowserListener(JSComponent):
 
     keys = param.List(default=list(KEYS))
     address = param.Dict(default={}, doc="link of the view, number of its entry in the history; number, see `command`")
-    command = param.Dict(default={}, doc="name: back, forward or copy; and a number that makes repeats differ")
+    command = param.Dict(default={}, doc="name: back, forward or copy; text to copy; number that makes repeats differ")
 
     _esm = _LISTENER
 
@@ -156,7 +156,7 @@ class BrowserActions:
     first_visit
         Called if this browser opens the page for the first time.
     copied
-        Called with the success of `copy_link`.
+        Called with the success of `copy`.
     """
 
     key: Callable[[str], None]
@@ -180,9 +180,9 @@ class BrowserEvents:
         """An invisible component that must be on the page."""
         return self._listener
 
-    def copy_link(self) -> None:
-        """Copy the page's address to the clipboard; browsers allow it only soon after a click or a key."""
-        self._command("copy")
+    def copy(self, text: str | None) -> None:
+        """Copy a text, or with None the page's address; browsers allow it only soon after a click or a key."""
+        self._command("copy", text=text)
 
     def write_link(self, link: str, entry: int) -> None:
         """Show a link as the address of the page, as this entry of the browser's history."""
@@ -196,8 +196,8 @@ class BrowserEvents:
         """Do what the browser's Forward does."""
         self._command("forward")
 
-    def _command(self, name: str) -> None:
-        self._listener.command = {"name": name, "number": next(self._numbers)}
+    def _command(self, name: str, **details: Any) -> None:
+        self._listener.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
         # Messages come from a browser: ignore what is not expected.

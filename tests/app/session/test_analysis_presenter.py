@@ -26,7 +26,7 @@ class Session:
         self.problems: list[str] = []
         self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=113, t_max=1e3, **chosen), Jobs()
         self.maps = MapsView(lambda x, y: None, lambda window: None, lambda: None, lambda box: None)
-        self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, self.locked)
+        self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, lambda curves: None, self.locked)
         self.follow_ups = FollowUpRequests(self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, self.locked)
 
     def locked(self, function: Callable[..., None]) -> Callable[..., None]:
