@@ -23,7 +23,7 @@ SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
 # Pixels are on the screen at the second animation frame after a change of the source. `begin` is called at the start of each
-# action; previews have 75 pixels per side.
+# action; previews have 76 pixels per side.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
     window.painted = {}
@@ -34,7 +34,7 @@ WATCH = """() => {
             window.painted.first ??= performance.now()
             if (data.complete[0]) window.painted.whole ??= performance.now()
         }))
-        if (data.fate[0].shape[0] == 75) window.previews.push(now)
+        if (data.fate[0].shape[0] == 76) window.previews.push(now)
     }
     source.connect(source.properties.data.change, paint)
     window.begin = () => { window.painted = {begun: performance.now()} }
@@ -221,7 +221,7 @@ def report_bytes(browser: Browser, address: str) -> None:
     received.clear()
     release(explorer, 0.6)
     wait_for_map(explorer)
-    print(f"\nBytes for one full update at 225 × 225, III: {sum(received) / 1e6:.2f} MB", flush=True)
+    print(f"\nBytes for one full update at 224 × 224, III: {sum(received) / 1e6:.2f} MB", flush=True)
     context.close()
 
 

@@ -17,7 +17,7 @@ EXAMPLES = """Examples:
 
 escape-explorer curves I --low 0.13 --high 0.5 --count 38 --output curves-I
 
-escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 225
+escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 224
 """
 
 
@@ -27,7 +27,7 @@ def draw_curves(
     high: Annotated[float, typer.Option("--high", help="Highest h.")],
     count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced energies.")],
     plane: options.Plane = PlaneName.X_PX,
-    resolution: options.Resolution = "113",
+    resolution: options.Resolution = "112",
     t_max: options.TMax = 1e5,
     exponent: Annotated[
         bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")

@@ -245,18 +245,18 @@ def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: n
 
 
 def _straight_curve(saddle: np.ndarray, outward: np.ndarray) -> np.ndarray:
-    """(columns,) the curve f = 0: a straight line across the saddle."""
+    """(columns,) the curve f = 0 of infinite half-width: a straight line across the saddle."""
     curve = np.zeros(events.CURVE_COLUMNS)
     curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curve[events.HALF_WIDTH] = 1.0
+    curve[events.HALF_WIDTH] = np.inf
     return curve
 
 
 def closed_channel_curves(potential: Potential) -> np.ndarray:
     """(channels, columns) exit curves for closed channels: straight lines across the saddles.
 
-    No orbit with an energy below the saddle reaches such a line from inside; starts beyond it are outside.
+    No orbit with an energy below the saddle reaches such a line from inside.
     """
     rows = [_straight_curve(*row) for row in zip(potential.saddles, potential.outward_directions, strict=True)]
     return np.array(rows).reshape(potential.channels, events.CURVE_COLUMNS)
@@ -274,13 +274,6 @@ def exit_curves_in_well_units(potential: Potential, energy: float) -> np.ndarray
     """(channels, columns) exit curves in units of the well, at an energy in the potential's own units, which errors name."""
     find_lyapunov_orbits(potential, energy)
     return exit_curves(potential.in_well_units, energy / potential.units.energy)
-
-
-def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """int8, shaped like x and y: the channel beyond whose Lyapunov orbit each point lies, 0 if it lies inside."""
-    row = np.zeros(x.size, np.int64)
-    outside: np.ndarray = events.find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row)
-    return outside.reshape(x.shape)
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:

@@ -23,8 +23,8 @@ from engine import (
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-VIEW = "?case=III&h=0.28&resolution=113&t_max=1000"
-SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (113, 113), t_max=1e3)
+VIEW = "?case=III&h=0.28&resolution=112&t_max=1000"
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (112, 112), t_max=1e3)
 _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue

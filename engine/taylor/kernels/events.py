@@ -3,14 +3,14 @@
 An exit curve is a row of numbers. In coordinates from its saddle, u outward along the unstable direction and q across (90°
 counterclockwise from u), the Lyapunov orbit is the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond
 its ends, which lie on the zero-velocity curve, it is continued by straight lines through the forbidden region. A closed channel
-has f = 0.
+is the straight line u = 0, of infinite half-width; no orbit escapes through it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from engine.taylor.jit.decorator import kernel, subroutine
+from engine.taylor.jit.decorator import subroutine
 
 # Columns of an exit curve.
 SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(
@@ -50,7 +50,7 @@ def exit_distance(x, y, curve):
     return u - (f + beyond)
 
 
-@kernel
+@subroutine
 def outside_channel(x, y, curves):
     """The channel beyond whose exit curve (x, y) lies, 0 for inside; only the saddle nearest in direction is considered."""
     nearest = -1
@@ -63,15 +63,6 @@ def outside_channel(x, y, curves):
     if nearest >= 0 and exit_distance(x, y, curves[nearest]) > 0.0:
         return nearest + 1
     return 0
-
-
-@kernel
-def find_outside(x, y, curves, curve_row):
-    """(n,) the channel beyond which each point lies, 0 for inside; curves (rows, channels, columns), curve_row (n,)."""
-    channels = np.empty(x.shape[0], np.int8)
-    for i in range(x.shape[0]):
-        channels[i] = outside_channel(x[i], y[i], curves[curve_row[i]])
-    return channels
 
 
 @subroutine

@@ -18,6 +18,7 @@ from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import (
     BOUNDED,
     FAILED,
+    HALF_WIDTH,
     NOT_COMPUTED,
     count_upward_crossings,
     find_exit_time,
@@ -232,7 +233,8 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[j, 1] = series_value(y_jet, i, tau)
         orbits.state[j, 2] = series_slope(x_jet, i, tau)
         orbits.state[j, 3] = series_slope(y_jet, i, tau)
-        orbits.fate[j] = channel
+        # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
+        orbits.fate[j] = BOUNDED if np.isinf(curves[channel - 1, HALF_WIDTH]) else channel
 
 
 @kernel

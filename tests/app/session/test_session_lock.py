@@ -34,7 +34,7 @@ CHANGES: list[Callable[[Explorer], Any]] = [
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
     # As the lists do.
     lambda explorer: explorer.state.param.update(t_max=1e3),
-    lambda explorer: explorer.state.param.update(resolution=113),
+    lambda explorer: explorer.state.param.update(resolution=112),
     lambda explorer: explorer.state.param.update(palette="safe"),
     lambda explorer: explorer.controls.layers.switches.param.update(value=list(LAYERS)),
     lambda explorer: explorer.controls.layers.switches.param.update(value=[]),

@@ -14,6 +14,7 @@ from engine import (
     EnergyCurvesSpec,
     EnergyPoint,
     EnergyPointSpec,
+    Fate,
     MapSpec,
     Plane,
     compute_energy_curves,
@@ -48,6 +49,11 @@ def test_below_the_escape_energy_all_orbits_are_bounded(curves: EnergyCurves) ->
     np.testing.assert_array_equal(curves.shares[0], [1.0, 0.0, 0.0, 0.0])
     assert curves.curve("s_b")[0] == 0.0
     assert np.isnan(curves.curve("mean_escape_time")[0])
+
+
+def test_orbits_that_stay_on_a_symmetry_line_have_no_share() -> None:
+    curves = compute_energy_curves(EnergyCurvesSpec(CASES["III"], Plane.X_Y, (0.6, 1.0), t_max=1e4, exponent=False))
+    np.testing.assert_array_equal(curves.shares[:, Fate.BOUNDED], 0.0)
 
 
 def test_median_escape_time_decreases_with_energy(curves: EnergyCurves) -> None:
