@@ -20,6 +20,7 @@ from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust, desc
 from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.dynamics.planes import Plane, Window, default_window, start_states, trace_equipotentials, trace_zero_velocity_curve
 from engine.execution import count_cores
+from engine.file_lock import hold_lock
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc, StableManifolds, find_stable_manifolds
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
 from engine.jobs.context import JobRequest
@@ -224,6 +225,7 @@ __all__ = [
     "format_number",
     "format_time",
     "format_whole",
+    "hold_lock",
     "integrate_orbit",
     "is_ready_for_maps",
     "join_origin_fates",

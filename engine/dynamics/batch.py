@@ -15,7 +15,7 @@ from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
 from engine.dynamics.interior import find_outside_starts
 from engine.dynamics.lyapunov_orbits import exit_gates
-from engine.execution import count_workers, default_executor, is_cancelled
+from engine.execution import collect_result, count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import TOLERANCE
@@ -257,9 +257,9 @@ def propagate_batch(
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
-            # After cancellation the executor may cancel calls that have not started.
-            if not future.cancelled():
-                store_and_continue(future.result())
+            propagated = collect_result(future, cancel)
+            if propagated is not None:
+                store_and_continue(propagated)
         if on_progress is not None and not is_cancelled(cancel):
             on_progress()
     return not is_cancelled(cancel)
