@@ -49,7 +49,8 @@ from engine import (
 SWEPT_ENERGIES = 33
 """Energies of the curves against energy."""
 
-# Attribute of `MapAnalyses` that each layer controls.
+# Column of `map_columns` and attribute of `MapAnalyses` that each layer controls.
+_COLUMN_OF = {"judge": "character", "origins": "passage"}
 _RESULT_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
 
 
@@ -152,6 +153,8 @@ class AnalysisPresenter:
 
     def _remove(self, name: str) -> None:
         """Remove the results of an analysis."""
+        if name in _COLUMN_OF:
+            self._maps.remove_layer(_COLUMN_OF[name])
         if name == "trust":
             self._maps.overlays.show_trust(None)
         if name == "manifolds":

@@ -181,8 +181,9 @@ class Explorer:
     def _follow_history(self) -> None:
         self.toolbar.follow(self.history, zoomed=self.state.window is not None)
 
-    def _navigate(self, link: str, entry: int) -> None:
+    def _navigate(self, link: str, entry: int, steps: int) -> None:
         """Show the state of a link in the browser's history."""
+        self.browser.follow_steps(steps)
         values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
         shown = ViewState(**values)
         self.history.move_to(entry)

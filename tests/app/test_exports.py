@@ -133,7 +133,9 @@ def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
 
 
 def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
-    curves = compute_energy_curves(EnergyCurvesSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), resolution=(20, 20), t_max=100.0))
+    curves = compute_energy_curves(
+        EnergyCurvesSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), resolution=(20, 20), t_max=100.0, exponent=False)
+    )
     comments, rows = table(curves_csv(curves))
     assert "# t_max: 100.0" in comments
     assert [float(row["h"]) for row in rows] == [0.13, 0.2]

@@ -178,8 +178,12 @@ def test_a_map_can_be_stopped_and_continued(explorer: ExplorerPage) -> None:
     expect(explorer.button("Stop").or_(explorer.text("Done, t ="))).to_be_visible()
 
 
-def test_escape_stops_the_map(explorer: ExplorerPage) -> None:
+def test_escape_closes_a_help_text_and_then_stops_the_map(explorer: ExplorerPage) -> None:
     begin_a_long_map(explorer)
+    explorer.press("About: Basins of escape")
+    explorer.page.keyboard.press("Escape")
+    expect(explorer.page.locator(".help-text:popover-open")).to_have_count(0)
+    expect(explorer.button("Stop")).to_be_visible()
     explorer.page.keyboard.press("Escape")
     expect(explorer.text("Stopped:")).to_be_visible()
 

@@ -27,7 +27,7 @@ from bokeh.models import (
 )  # fmt: skip
 from bokeh.plotting import figure
 
-from app.rendering.image_columns import character_column, longest_typical_time, passage_column
+from app.rendering.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
 from app.rendering.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
 from app.rendering.palette import PAPER, Palette
 from app.views.components.curve_layers import CurveLayers
@@ -178,6 +178,11 @@ class MapsView:
         self.source.data = {**self.source.data, **character_column(frame, regularity)}
         self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
         self._show_legend()
+
+    def remove_layer(self, column: str) -> None:
+        """Remove the column of a layer, ``character`` or ``passage``, which the hover text would still describe."""
+        if self.source.data[column][0].size > 1:
+            self.source.data = {**self.source.data, column: NO_LAYER}
 
     def set_palette(self, palette: Palette) -> None:
         """Set all colours."""
