@@ -176,6 +176,7 @@ def _frame() -> dict[str, Any]:
 def _simplify(plot: Any, _element: Any) -> None:
     """Remove background and ticks, as in `square_figure`."""
     plot.state.min_border_top = 28
+    plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
     plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
 
