@@ -3,8 +3,8 @@
 Along a quasi-periodic orbit the average of a smooth observable, weighted by a window function that vanishes smoothly at both
 ends, converges fast with the window length T; along a chaotic orbit it converges no faster than 1/√T. The averages over two
 consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander & Yorke
-2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On an orbit that is only weakly chaotic two averages can
-agree by chance, so a third window, which overlaps half of each, must agree as well. The observables are x² and y², sampled at a
+2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree by
+chance, so a third one over a window that overlaps half of each must agree as well. The observables are x² and y², sampled at a
 fixed time step.
 
 The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Eight digits are enough here, and
@@ -63,7 +63,7 @@ def count_agreeing_digits(
 
     Returns
     -------
-    (n,) −log10 of the largest relative difference of the three averages, from 0 to 16; 0 for an orbit that escapes or whose energy
+    (n,) −log10 of the largest relative difference of the averages, from 0 to 16; 0 for an orbit that escapes or whose energy
     is not conserved. An orbit with `CERTIFIED_DIGITS` or more counts as quasi-periodic.
     """
     return map_tiles(_agreeing_digits, potential, states, window, executor=executor, cancel=cancel)
