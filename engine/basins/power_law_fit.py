@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy import special
 
 from engine.arrays import read_only
 from engine.validation import checked_array, checked_integers, short_repr
@@ -98,6 +97,8 @@ class UncertaintyExponent:
     @property
     def probability(self) -> float:
         """Probability of at least this scatter about the fitted line by chance alone; NaN without a fitted line."""
+        from scipy import special
+
         freedom = int(np.count_nonzero(self.used)) - 2
         return float(special.chdtrc(freedom, self.misfit * freedom)) if np.isfinite(self.misfit) else float("nan")
 
@@ -245,6 +246,8 @@ def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndar
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
     """Power law fitted to the separations `used`; None if they are too few or cover too short a range."""
+    from scipy import special
+
     if used.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < MIN_DECADES:
         return None
     x, n, k = np.log(epsilon[used]), n[used], k[used]

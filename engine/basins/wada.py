@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from engine.arrays import read_only
 from engine.basins.labels import checked_labels
@@ -116,6 +115,8 @@ def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
 
 def _largest_distances(labels: np.ndarray, valid: np.ndarray, basins: tuple[int, ...], boundary: np.ndarray) -> np.ndarray:
     """Distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has none."""
+    from scipy import ndimage
+
     distances = np.zeros(np.count_nonzero(boundary))
     for basin in basins:
         slim = _slim_boundary(labels == basin, valid)

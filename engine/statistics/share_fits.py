@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy import optimize, special
 
 from engine.arrays import read_only
 from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
@@ -130,6 +129,8 @@ def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
     ValueError
         If a parameter is out of range.
     """
+    from scipy import optimize
+
     energies, shares = _checked_shares(h, "escaped", escaped, starts, parameters=2)
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), energies, shares)
@@ -219,6 +220,8 @@ def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray, transform: np
 
     The covariance of the latter is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
     """
+    from scipy import special
+
     (count, parameters), (q, r) = jacobian.shape, np.linalg.qr(jacobian)
     leverage = np.sum(q * q, axis=1)
     if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameters:

@@ -32,6 +32,7 @@ from typing import Any
 import platformdirs
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 CACHE_VARIABLE = "ESCAPE_EXPLORER_CACHE"
@@ -68,7 +69,8 @@ class KernelCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The code for arguments of some types; None if there is no valid file."""
-        target_context.refresh()
+        # Running machine code needs Numba's memory management only; loading all that it can compile takes a second.
+        rtsys.initialize(target_context)  # type: ignore[no-untyped-call]
         path = self._path(sig, target_context.codegen())
         try:
             content = path.read_bytes()
