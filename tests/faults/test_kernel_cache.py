@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 
 import engine.taylor
-from engine.taylor.jit import disk_cache
+from engine.taylor.jit import disk_cache, kernel_files
 from engine.taylor.jit.decorator import kernel
-from engine.taylor.jit.disk_cache import CACHE_VARIABLE, SUFFIX
+from engine.taylor.jit.kernel_files import CACHE_VARIABLE, SUFFIX
 from tests.forked import Finished, fork_context, run
 
 
@@ -35,7 +35,7 @@ def fresh_kernel() -> Callable[[float], float]:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
-    disk_cache._warn_once.cache_clear()
+    kernel_files._warn_once.cache_clear()
     return tmp_path / "cache" / "kernels"
 
 
@@ -102,7 +102,7 @@ def test_kernels_work_without_a_cache_folder(
     obstacle = tmp_path / "file"
     obstacle.write_text("")
     monkeypatch.setenv(CACHE_VARIABLE, str(obstacle))
-    disk_cache._warn_once.cache_clear()
+    kernel_files._warn_once.cache_clear()
     assert [fresh_kernel()(2.0), fresh_kernel()(2.0)] == [6.0, 6.0]
     assert len([message for message in warnings(caplog) if "cannot be stored" in message]) == 1
     assert obstacle.read_text() == ""
@@ -115,7 +115,7 @@ def test_kernels_work_when_files_cannot_be_written(
     def refuse(*arguments: Any) -> None:
         raise OSError(reason, os.strerror(reason))
 
-    monkeypatch.setattr(disk_cache.os, "replace", refuse)
+    monkeypatch.setattr(kernel_files.os, "replace", refuse)
     assert fresh_kernel()(2.0) == 6.0
     (message,) = warnings(caplog)
     assert os.strerror(reason) in message
@@ -124,7 +124,7 @@ def test_kernels_work_when_files_cannot_be_written(
 
 def test_a_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh_kernel()(2.0)
-    monkeypatch.setattr(disk_cache.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
+    monkeypatch.setattr(kernel_files.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1
@@ -158,6 +158,82 @@ def test_an_edited_function_has_another_file(folder: Path) -> None:
     scaled.py_func.__qualname__ = fresh_kernel().py_func.__qualname__  # type: ignore[attr-defined]
     assert scaled(2.0) == 8.0
     assert len(list(folder.iterdir())) == 2
+
+
+def refuse_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder.chmod(0o777)
+
+
+def change_user(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = os.geteuid() + 1
+    monkeypatch.setattr(kernel_files.os, "geteuid", lambda: other)
+    monkeypatch.setattr(kernel_files, "_SUPERUSER", None)
+
+
+@pytest.mark.parametrize(
+    ("refuse", "reason"), [(refuse_folder, "other users may write to it"), (change_user, f"user {os.geteuid()} owns it")]
+)
+def test_a_folder_of_other_users_is_neither_read_nor_written(
+    refuse: Callable[..., None],
+    reason: str,
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    fresh_kernel()(2.0)
+    (file,) = folder.iterdir()
+    before = file.stat().st_mtime_ns
+    refuse(folder, monkeypatch)
+    again = fresh_kernel()
+    assert again(2.0) == 6.0
+    assert hits(again) == 0
+    assert file.stat().st_mtime_ns == before
+    (message,) = warnings(caplog)
+    assert str(folder) in message
+    assert reason in message
+
+
+def test_a_file_that_others_may_write_is_replaced(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
+    fresh_kernel()(2.0)
+    (file,) = folder.iterdir()
+    file.chmod(0o620)
+    again = fresh_kernel()
+    assert again(2.0) == 6.0
+    assert hits(again) == 0
+    (message,) = warnings(caplog)
+    assert str(file) in message
+    assert "chmod go-w" in message
+    assert file.stat().st_mode & 0o077 == 0
+
+
+def test_a_new_folder_is_private_with_any_umask(folder: Path) -> None:
+    before = os.umask(0)
+    try:
+        fresh_kernel()(2.0)
+    finally:
+        os.umask(before)
+    assert folder.stat().st_mode & 0o077 == 0
+
+
+def test_the_least_recently_used_files_are_deleted(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept, removed, new = (folder / f"{name}{SUFFIX}" for name in ("kept", "removed", "new"))
+    for path in (kept, removed):
+        kernel_files.write_kernel(path, bytes(1000))
+    for n, path in enumerate((kept, removed)):
+        os.utime(path, ns=(n, n))
+    assert kernel_files.read_kernel(kept) == bytes(1000)
+    monkeypatch.setattr(kernel_files, "LARGEST_SIZE", 2500)
+    kernel_files.write_kernel(new, bytes(1000))
+    assert {*folder.iterdir()} == {kept, new}
+
+
+def test_incomplete_files_of_killed_processes_count_towards_the_limit(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder.mkdir(parents=True)
+    (folder / "killed.part").write_bytes(bytes(1000))
+    os.utime(folder / "killed.part", ns=(0, 0))
+    monkeypatch.setattr(kernel_files, "LARGEST_SIZE", 1500)
+    kernel_files.write_kernel(folder / f"new{SUFFIX}", bytes(1000))
+    assert [path.name for path in folder.iterdir()] == [f"new{SUFFIX}"]
 
 
 @pytest.mark.parametrize("path", ["constants.py", "kernels/events.py", "source/deep/er.py"])

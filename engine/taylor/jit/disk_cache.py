@@ -1,8 +1,8 @@
-"""Compiled kernels on disk: each in a file that is written atomically and verified when it is read.
+"""Compiled kernels on disk, each in a file (`engine.taylor.jit.kernel_files`).
 
 Numba's own cache loads whatever it finds: a truncated file ends the program, an altered one may compute anything, and two
 processes that compile at once can load each other's code. Here the name of a file contains a hash of everything its code depends
-on, the file is moved into place when complete, and it starts with a hash of its content.
+on.
 
 Numba has no public interface for caches, so this module uses internal names of numba 0.68, which may change with any version:
 
@@ -20,36 +20,23 @@ from __future__ import annotations
 import functools
 import hashlib
 import logging
-import os
 import pickle
 import sys
-import tempfile
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-import platformdirs
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
-CACHE_VARIABLE = "ESCAPE_EXPLORER_CACHE"
-"""Environment variable with the folder for compiled kernels, instead of the user's cache folder."""
-
-SUFFIX = ".kernel"
-"""Suffix of the files."""
+from engine.taylor.jit.kernel_files import SUFFIX, cache_folder, delete_kernels, read_kernel, write_kernel
 
 _PACKAGE = Path(__file__).parents[1]
-_HASH_BYTES = hashlib.sha256().digest_size
 
 log = logging.getLogger(__name__)
-
-
-def cache_folder() -> Path:
-    """The folder for compiled kernels, which may not exist yet."""
-    return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("escape-explorer")) / "kernels"
 
 
 class KernelCache(_Cache):
@@ -73,13 +60,10 @@ class KernelCache(_Cache):
         rtsys.initialize(target_context)  # type: ignore[no-untyped-call]
         path = self._path(sig, target_context.codegen())
         try:
-            content = path.read_bytes()
-            payload = content[_HASH_BYTES:]
-            if hashlib.sha256(payload).digest() != content[:_HASH_BYTES]:
-                raise ValueError("its hash does not match")
+            payload = read_kernel(path)
+            if payload is None:
+                return None
             return CompileResult._rebuild(target_context, *pickle.loads(payload))  # type: ignore[no-untyped-call]
-        except FileNotFoundError:
-            return None
         except Exception as error:
             log.warning("invalid compiled kernel %s: %s; compiling it again", path, error)
             return None
@@ -89,12 +73,7 @@ class KernelCache(_Cache):
         if data.library.has_dynamic_globals:
             return
         payload: bytes = dumps(data._reduce())  # type: ignore[no-untyped-call]
-        path = self._path(sig, data.codegen)
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            _write_atomically(path, hashlib.sha256(payload).digest() + payload)
-        except OSError as error:
-            _warn_once(f"compiled kernels cannot be stored in {path.parent} and are compiled at every start: {error.strerror}")
+        write_kernel(self._path(sig, data.codegen), payload)
 
     def enable(self) -> None:
         """Does nothing: the cache is always enabled."""
@@ -104,8 +83,7 @@ class KernelCache(_Cache):
 
     def flush(self) -> None:
         """Delete the function's files."""
-        for path in cache_folder().glob(f"{self._name}.*{SUFFIX}"):
-            path.unlink(missing_ok=True)
+        delete_kernels(self._name)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         """Named after argument types, processor, source and versions, so that the content of a file never changes."""
@@ -129,19 +107,3 @@ def _hash_package(folder: Path) -> str:
 @functools.cache
 def _versions() -> tuple[str, ...]:
     return (sys.version, *(metadata.version(package) for package in ("numba", "llvmlite", "numpy")))
-
-
-@functools.cache
-def _warn_once(message: str) -> None:
-    log.warning(message)
-
-
-def _write_atomically(path: Path, content: bytes) -> None:
-    handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.replace(part, path)
-    except BaseException:
-        Path(part).unlink(missing_ok=True)
-        raise

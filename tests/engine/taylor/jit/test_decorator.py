@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from engine.taylor.jit.decorator import kernel, subroutine
-from engine.taylor.jit.disk_cache import CACHE_VARIABLE
+from engine.taylor.jit.kernel_files import CACHE_VARIABLE
 
 
 @subroutine

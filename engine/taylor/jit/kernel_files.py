@@ -1,0 +1,150 @@
+"""Files of compiled kernels in a private folder of limited size: verified when they are read, written atomically.
+
+The content of a file is a pickle with machine code. The hash at its start detects accidents, such as an incomplete copy, and no
+attack: whoever can write a file can also write its hash. A file is therefore read only if no other user can have written it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import hashlib
+import logging
+import os
+import stat
+import tempfile
+import time
+from pathlib import Path
+
+import platformdirs
+
+CACHE_VARIABLE = "ESCAPE_EXPLORER_CACHE"
+"""Environment variable with the folder for compiled kernels, instead of the user's cache folder."""
+
+SUFFIX = ".kernel"
+"""Suffix of the files."""
+
+LARGEST_SIZE = 256 * 2**20
+"""Size limit of all files together, in bytes; the kernels of one potential take about 0.2 MB."""
+
+_PART = ".part"
+_HASH_BYTES = hashlib.sha256().digest_size
+_SUPERUSER = 0
+
+log = logging.getLogger(__name__)
+
+
+def cache_folder() -> Path:
+    """The folder for compiled kernels, which may not exist yet."""
+    return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("escape-explorer")) / "kernels"
+
+
+def read_kernel(path: Path) -> bytes | None:
+    """The content of a file, without its hash, which makes it the most recently used.
+
+    Returns
+    -------
+    None if there is no file, or if another user owns or may write the file or its folder. A warning is logged then.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be read.
+    ValueError
+        When the content does not match its hash.
+    """
+    if not _is_private_folder(path.parent):
+        return None
+    try:
+        with path.open("rb") as file:
+            if problem := _find_other_user(os.fstat(file.fileno())):
+                log.warning("the compiled kernel %s is ignored: %s", path, problem)
+                return None
+            content = file.read()
+    except FileNotFoundError:
+        return None
+    payload = content[_HASH_BYTES:]
+    if hashlib.sha256(payload).digest() != content[:_HASH_BYTES]:
+        raise ValueError("its hash does not match")
+    _mark_used(path)
+    return payload
+
+
+def write_kernel(path: Path, payload: bytes) -> None:
+    """Write a file if possible, and delete the least recently used ones beyond the size limit; otherwise log a warning."""
+    folder = path.parent
+    try:
+        # Files of the folder belong to this user only.
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=stat.S_IRWXU, exist_ok=True)
+        if _is_private_folder(folder):
+            _write_atomically(path, hashlib.sha256(payload).digest() + payload)
+            _delete_least_recently_used(folder)
+    except OSError as error:
+        _warn_once(f"compiled kernels cannot be stored in {folder} and are compiled at every start: {error.strerror}")
+
+
+def delete_kernels(name: str) -> None:
+    """Delete the files whose names start with `name` and a dot."""
+    for path in cache_folder().glob(f"{name}.*{SUFFIX}"):
+        path.unlink(missing_ok=True)
+
+
+def _is_private_folder(folder: Path) -> bool:
+    """Whether only this user may write to a folder, or it is missing; logs a warning otherwise."""
+    try:
+        problem = _find_other_user(folder.stat())
+    except OSError:
+        return True
+    if problem:
+        _warn_once(f"compiled kernels in {folder} are neither used nor stored: {problem}")
+    return not problem
+
+
+def _find_other_user(status: os.stat_result) -> str:
+    """Who else may have written a file or folder, and what to do; empty if nobody, or on systems without such permissions."""
+    if os.name != "posix":
+        return ""
+    if status.st_uid not in (os.geteuid(), _SUPERUSER):
+        return f"user {status.st_uid} owns it; choose a folder of user {os.geteuid()} in {CACHE_VARIABLE}"
+    if status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return f"other users may write to it; take that permission away (chmod go-w) or choose another folder in {CACHE_VARIABLE}"
+    return ""
+
+
+def _mark_used(path: Path) -> None:
+    """Set the access time, which file systems often do not."""
+    with contextlib.suppress(OSError):
+        os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
+
+
+def _delete_least_recently_used(folder: Path) -> None:
+    """Keep the files within the size limit; incomplete files of killed processes count too."""
+    files = []
+    for path in folder.iterdir():
+        # Another process may delete it first.
+        with contextlib.suppress(FileNotFoundError):
+            if path.suffix in (SUFFIX, _PART):
+                files.append((path.stat().st_atime_ns, path.stat().st_size, path))
+    excess = sum(size for _, size, _ in files) - LARGEST_SIZE
+    for _, size, path in sorted(files):
+        if excess <= 0:
+            break
+        path.unlink(missing_ok=True)
+        excess -= size
+
+
+def _write_atomically(path: Path, content: bytes) -> None:
+    handle, part = tempfile.mkstemp(dir=path.parent, suffix=_PART)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.replace(part, path)
+    except BaseException:
+        Path(part).unlink(missing_ok=True)
+        raise
+
+
+@functools.cache
+def _warn_once(message: str) -> None:
+    log.warning(message)
