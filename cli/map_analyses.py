@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
-from app.rendering.map_analyses import MapAnalyses
 from cli.run_context import RunContext
 from engine import (
     MOST_IMAGES,
@@ -20,6 +19,7 @@ from engine import (
     find_stable_manifolds,
     join_origin_fates,
 )
+from plots.map_analyses import MapAnalyses
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.exports import netcdf_bytes, png_bytes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_images import LARGEST_PICTURE, SMALLEST_PICTURE, TITLES
-from app.rendering.palette import Palette
 from cli.arguments import find_palette
 from cli.files import Content, add_ending
 from engine import EscapeMap, StableManifolds
+from plots.map_analyses import MapAnalyses
+from plots.map_images import LARGEST_PICTURE, SMALLEST_PICTURE, TITLES
+from plots.palette import Palette
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import textwrap
 import numpy as np
 from matplotlib.axes import Axes
 
-from app.rendering.figure_axes import SMALL, label_axes, name_panel, new_figure, save_figure, software, style_axes
-from app.rendering.map_figure import draw_curve, draw_limits, draw_pixels, show_window
-from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, initial_state
-from app.rendering.palette import LIGHT, Palette
 from engine import CHAOS_THRESHOLD, Orbit, Plane, Potential
+from plots.figure_axes import SMALL, label_axes, name_panel, new_figure, save_figure, software, style_axes
+from plots.map_figure import draw_curve, draw_limits, draw_pixels, show_window
+from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, initial_state
+from plots.palette import LIGHT, Palette
 
 _LARGEST_SALI, _EARLIEST_TIME = 10.0**0.5, 0.01
 _LINE_LENGTH = 160

@@ -14,11 +14,6 @@ from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from app.rendering.manifold_strokes import manifold_strokes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import draw_curve, draw_pixels
-from app.rendering.map_images import picture_pixels
-from app.rendering.palette import LIGHT, PAPER, PATCH_EDGE
 from app.state.presets import PRESETS, Preset
 from app.state.view_state import ViewState
 from engine import (
@@ -34,6 +29,11 @@ from engine import (
     start_states,
     trace_equipotentials,
 )
+from plots.manifold_strokes import manifold_strokes
+from plots.map_analyses import MapAnalyses
+from plots.map_figure import draw_curve, draw_pixels
+from plots.map_images import picture_pixels
+from plots.palette import LIGHT, PAPER, PATCH_EDGE
 
 FOLDER = Path(__file__).parents[1] / "app" / "static" / "gallery"
 SIDE = 160

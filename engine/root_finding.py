@@ -60,9 +60,11 @@ def find_root(function: Callable[[float], float], low: float, high: float, *, ab
 
 
 def _interpolate(before: tuple[float, float], here: tuple[float, float], across: tuple[float, float]) -> float:
-    """The step to the root of the line through two points, or of the inverse parabola through three."""
+    """The step to the root of the line through two points, or of the inverse parabola through three; infinite if undefined."""
     (x0, f0), (x, f), (x1, f1) = before, here, across
     if x0 == x1:
         return -f * (x - x0) / (f - f0)
     slope, other = (f0 - f) / (x0 - x), (f1 - f) / (x1 - x)
-    return -f * (f1 * other - f0 * slope) / (other * slope * (f1 - f0))
+    divisor = other * slope * (f1 - f0)
+    # The product of small values can underflow.
+    return -f * (f1 * other - f0 * slope) / divisor if divisor else math.inf

@@ -6,8 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import label_axes, name_panels, new_figure, style_axes
-from app.rendering.palette import LIGHT, PAPER
 from engine import (
     CASES,
     LyapunovOrbit,
@@ -20,6 +18,8 @@ from engine import (
     trace_equipotentials,
     trace_zero_velocity_curve,
 )
+from plots.figure_axes import label_axes, name_panels, new_figure, style_axes
+from plots.palette import LIGHT, PAPER
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import ORDINATES
 from reproduction.paper_ranges import CHANNEL_ENERGIES

@@ -8,9 +8,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
-from app.rendering.palette import PAPER
 from engine import CASES, Fate, Plane, Potential
+from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.palette import PAPER
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
 

@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
-from app.rendering.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares, tabulate_crossing_statistics
+from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
 from reproduction.paper_ranges import nine_energies

@@ -8,7 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import (
+from engine import Plane, RadiusEnvelope, SuperStickySearch, compute_radius_envelope, find_lyapunov_orbits
+from plots.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
@@ -17,9 +18,8 @@ from app.rendering.figure_axes import (
     patches,
     style_axes,
 )
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.palette import MEASURED, PAPER, THRESHOLD
-from engine import Plane, RadiusEnvelope, SuperStickySearch, compute_radius_envelope, find_lyapunov_orbits
+from plots.map_analyses import MapAnalyses
+from plots.palette import MEASURED, PAPER, THRESHOLD
 from reproduction.map_figures import draw_map_panel
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
-from app.rendering.palette import LAW_COLOURS, MEASURED
 from engine import DecayLaws, LawFit, Plane, compute_statistics, fit_decay_laws
+from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.palette import LAW_COLOURS, MEASURED
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
 from reproduction.paper_ranges import three_energies

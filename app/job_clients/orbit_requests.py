@@ -8,7 +8,6 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
-from app.rendering.orbit_curves import OrbitCurves, compute_orbit_curves
 from app.state.system import SYSTEM
 from app.state.view_state import Start, ViewState
 from engine import (
@@ -22,6 +21,7 @@ from engine import (
     describe_fate,
     judge_orbit,
 )
+from plots.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
 @dataclass(frozen=True)

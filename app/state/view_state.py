@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import param
 
-from app.rendering.palette import MOST_ORBITS, PALETTES, Palette
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import ENERGIES
 from app.state.system import SYSTEM, TYPED, System
@@ -25,6 +24,7 @@ from engine import (
     Window,
     start_states,
 )
+from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:

@@ -16,7 +16,6 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from engine.arrays import read_only
 from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
@@ -241,6 +240,8 @@ class _PointSpacing:
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
         """The (m, 2) lines of a piece within the window, without points that their neighbours imply."""
+        import shapely
+
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
         if self.low is not None and self.high is not None:
             line = shapely.clip_by_rect(line, *self.low, *self.high)

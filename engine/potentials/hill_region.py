@@ -53,8 +53,8 @@ def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
     allowed[0] = True
     connected, count = np.zeros_like(allowed), 0
     connected[0] = True
-    while np.count_nonzero(connected) > count:
-        count = np.count_nonzero(connected)
+    while int(connected.sum()) > count:
+        count = int(connected.sum())
         for view in (np.s_[:], np.s_[::-1]):
             for axis in (0, 1):
                 cells, open_cells = (np.moveaxis(grid, axis, 0)[view] for grid in (connected, allowed))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from app.rendering.palette import PAPER
 from engine import (
     CASES,
     MapSpec,
@@ -20,6 +19,7 @@ from engine import (
     describe_certificate,
     find_stable_manifolds,
 )
+from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]

@@ -14,8 +14,6 @@ import xarray as xr
 from PIL import Image
 
 from app.exports import png_bytes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
 from engine import (
     CASES,
     MapSpec,
@@ -26,6 +24,8 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.map_analyses import MapAnalyses
+from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 Run = Callable[..., tuple[int, str, str]]
 

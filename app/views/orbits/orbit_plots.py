@@ -10,11 +10,11 @@ import panel as pn
 from bokeh.models import BasicTickFormatter, ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter, Span
 from bokeh.plotting import figure
 
-from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
-from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.plots import set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
+from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
+from plots.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 
 TITLES = {
     "path": "The orbits",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.rendering.manifold_strokes import manifold_strokes, select_image
 from engine import CASES, StableManifolds, find_stable_manifolds
+from plots.manifold_strokes import manifold_strokes, select_image
 
 
 @pytest.fixture(scope="module")

@@ -24,7 +24,18 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
-from app.rendering.figure_axes import (
+from engine import (
+    CASES,
+    EscapeMap,
+    Fate,
+    Plane,
+    Potential,
+    StableManifolds,
+    Window,
+    find_lyapunov_orbits,
+    trace_zero_velocity_curve,
+)
+from plots.figure_axes import (
     LETTER,
     POINTS_PER_INCH,
     SMALL,
@@ -38,10 +49,10 @@ from app.rendering.figure_axes import (
     size_in_points,
     style_axes,
 )
-from app.rendering.image_columns import longest_typical_time
-from app.rendering.manifold_strokes import Stroke, manifold_strokes
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_images import (
+from plots.image_columns import longest_typical_time
+from plots.manifold_strokes import Stroke, manifold_strokes
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.map_images import (
     CROSSED_BY_MANIFOLDS,
     DOUBTED,
     LARGEST_PICTURE,
@@ -50,18 +61,7 @@ from app.rendering.map_images import (
     TITLES,
     picture_pixels,
 )
-from app.rendering.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
-from engine import (
-    CASES,
-    EscapeMap,
-    Fate,
-    Plane,
-    Potential,
-    StableManifolds,
-    Window,
-    find_lyapunov_orbits,
-    trace_zero_velocity_curve,
-)
+from plots.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
 
 # Letters have a fixed size in points. Pixels per inch grow with the side of a map, so that letters grow with it, and are never
 # fewer than these, so that letters stay legible.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.rendering.orbit_curves import MOST_LINE_POINTS, TRAIL, OrbitCurves, compute_orbit_curves, envelope, moment
 from engine import CASES, Plane, integrate_orbit, start_states
+from plots.orbit_curves import MOST_LINE_POINTS, TRAIL, OrbitCurves, compute_orbit_curves, envelope, moment
 
 
 def curves_of(t_max: float) -> OrbitCurves:

@@ -13,11 +13,6 @@ from matplotlib.colors import to_hex
 from matplotlib.font_manager import FontProperties, findfont
 from PIL import Image, ImageColor
 
-from app.rendering.figure_axes import label_axis, save_figure
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import draw_map_figure, provenance_line
-from app.rendering.map_images import TITLES, picture_pixels
-from app.rendering.palette import DOUBT, PALETTES, PAPER, Palette
 from engine import (
     CASES,
     EscapeMap,
@@ -31,6 +26,11 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.figure_axes import label_axis, save_figure
+from plots.map_analyses import MapAnalyses
+from plots.map_figure import draw_map_figure, provenance_line
+from plots.map_images import TITLES, picture_pixels
+from plots.palette import DOUBT, PALETTES, PAPER, Palette
 
 SIDE = 240
 
