@@ -59,6 +59,7 @@ from engine.potentials.catalogue import POTENTIALS, PotentialEntry, channel_fami
 from engine.potentials.formula_parser import LONGEST_TEXT, parse_formula, write_formula
 from engine.potentials.potential import CASES, FREQUENCIES, STRENGTHS, Potential
 from engine.potentials.validation_report import CriticalPoint, PointKind, PotentialReview, review_potential
+from engine.representation import Result
 from engine.statistics.decay_law_fits import fit_decay_laws
 from engine.statistics.decay_laws import DecayLaw, DecayLaws, LawFit
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
@@ -168,6 +169,7 @@ __all__ = [
     "Regularity",
     "RegularityMap",
     "RegularityRequest",
+    "Result",
     "Separation",
     "SeparationRequest",
     "ShareFit",

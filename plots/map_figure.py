@@ -129,7 +129,7 @@ def draw_map_figure(
     left = 0.0
     for picture in pictures:
         axes = figure.add_axes((left, 0.0, side / dpi, side / dpi))
-        _draw_picture(axes, frame, picture, palette, analyses, longest)
+        draw_picture(axes, frame, picture, palette, analyses, longest)
         mark_starts(axes, starts, palette, frame.spec.window)
         _explain_picture(axes, frame, picture, palette, analyses, longest)
         width = max(side / dpi, _LEGEND_INCHES) + _width_of_labels(axes) + _PANEL_GAP
@@ -137,13 +137,20 @@ def draw_map_figure(
     return figure
 
 
-def _draw_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses, longest: float) -> None:
-    """Title, pixels, curves and axes."""
+def draw_picture(
+    axes: Axes,
+    frame: EscapeMap,
+    picture: str,
+    palette: Palette,
+    analyses: MapAnalyses = NO_ANALYSES,
+    longest: float | None = None,
+) -> None:
+    """Title, pixels, curves and axes of one of `TITLES`; `longest` as for `picture_pixels`."""
     spec = frame.spec
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, longest), spec.window, spec.window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
     if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
-        _draw_manifolds(axes, analyses.manifolds, spec.window, palette)
+        draw_manifolds(axes, analyses.manifolds, spec.window, palette)
     show_window(axes, spec.window, "x", spec.plane.ordinate)
     name_panel(axes, TITLES[picture])
 
@@ -210,7 +217,7 @@ def draw_limits(
         draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.channel}", halo=True, **style)
 
 
-def _draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
+def draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
     """Draw the manifolds in the colours of their channels."""
     strokes = manifold_strokes(manifolds)
     for stroke in strokes:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from engine.basins.labels import checked_labels
+from engine.representation import Result
 from engine.validation import checked_count
 from engine.wording import format_count
 
@@ -20,7 +21,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class BasinEntropy:
+class BasinEntropy(Result):
     """Basin entropies of a labelled image, in nats (dimensionless).
 
     Attributes

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
+from engine.representation import Result
 from engine.validation import checked_array, checked_integers, short_repr
 from engine.wording import format_count, format_decimals
 
@@ -45,7 +46,7 @@ def _empty_counts() -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class UncertaintyExponent:
+class UncertaintyExponent(Result):
     """Share of uncertain pairs against their separation, and the fitted power law; dimensionless, arrays are read-only.
 
     Attributes

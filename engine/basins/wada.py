@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from engine.arrays import read_only
 from engine.basins.labels import checked_labels
+from engine.representation import Result
 from engine.wording import format_count
 
 MIN_BASINS = 3
@@ -21,7 +23,7 @@ _NUMBER_WORDS = ("none", "one", "two")
 
 
 @dataclass(frozen=True, eq=False)
-class WadaTest:
+class WadaTest(Result):
     """Distances between the boundaries of the basins of an image, in pixels; arrays are read-only.
 
     Attributes
@@ -45,6 +47,10 @@ class WadaTest:
     radius_99: float
     boundary_pixels: int
     shares: np.ndarray = field(repr=False)
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """The share of the boundary pixels within each distance."""
+        return {"distance": np.arange(self.shares.size), "share": self.shares}
 
     @property
     def is_applicable(self) -> bool:

@@ -20,6 +20,7 @@ from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.representation import Result
 from engine.root_finding import find_root
 from engine.taylor.kernels import events
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
@@ -46,7 +47,7 @@ _CHEBYSHEV_TO_POWER = np.column_stack(
 
 
 @dataclass(frozen=True, eq=False)
-class LyapunovOrbit:
+class LyapunovOrbit(Result):
     """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
 
     Attributes

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -23,6 +23,7 @@ from engine.dynamics.planes import Plane, Window, default_window
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
+from engine.representation import Result
 from engine.validation import checked_count
 
 MOST_IMAGES = 6
@@ -69,7 +70,7 @@ class ManifoldArc:
 
 
 @dataclass(frozen=True, eq=False)
-class StableManifolds:
+class StableManifolds(Result):
     """Intersections of the stable manifolds of all Lyapunov orbits of one energy with y = 0, py > 0.
 
     Attributes
@@ -89,6 +90,14 @@ class StableManifolds:
     arcs: tuple[ManifoldArc, ...]
     images: int
     truncated: bool
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """All points, with the number of their arc from 1, its channel and its image."""
+        labels = [(number, arc.channel, arc.image) for number, arc in enumerate(self.arcs, 1)]
+        sizes = [arc.x.size for arc in self.arcs]
+        points = (np.concatenate([np.empty(0), *(getattr(arc, name) for arc in self.arcs)]) for name in ("x", "px"))
+        codes = np.repeat(np.array(labels, int).reshape(-1, 3), sizes, axis=0).T
+        return dict(zip(("arc", "channel", "image", "x", "px"), (*codes, *points), strict=True))
 
     @property
     def nbytes(self) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -42,6 +42,7 @@ class RegularityMap(PixelAnalysis):
 
     character: np.ndarray
     complete: bool
+    codes: ClassVar = Regularity
 
     @property
     def is_too_short(self) -> bool:

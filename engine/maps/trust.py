@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -72,6 +72,7 @@ class TrustMap(PixelAnalysis):
 
     trust: np.ndarray
     complete: bool
+    codes: ClassVar = Trust
 
     @property
     def doubtful_share(self) -> float:

@@ -19,6 +19,7 @@ from engine.potentials.critical_points import characteristic_length, find_critic
 from engine.potentials.exit_saddles import leads_out_of_well
 from engine.potentials.stored_points import stored_points
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.representation import Result
 from engine.taylor.source.cauchy_products import derivative
 from engine.validation import checked_count, checked_number, short_repr
 
@@ -39,7 +40,7 @@ STRENGTHS = (0.01, 100.0)
 
 
 @dataclass(frozen=True)
-class Potential:
+class Potential(Result):
     """V(x, y) = Σ c x^i y^j, dimensionless, for a unit mass: H = (px² + py²)/2 + V.
 
     Parameters
@@ -66,6 +67,15 @@ class Potential:
         if len({term[:2] for term in terms}) != len(terms):
             raise ValueError(f"terms={short_repr(terms)}: each pair of exponents must occur only once")
         object.__setattr__(self, "terms", terms)
+
+    def numbers(self) -> dict[str, Any]:
+        """The name, the escape energy and the number of channels."""
+        return {"name": self.name, "escape_energy": self.escape_energy, "channels": self.channels}
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Number, place and energy of each exit saddle."""
+        x, y = self.saddles.T
+        return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.saddle_energies}
 
     @property
     def coefficients(self) -> dict[Powers, float]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
+from engine.representation import Result
 from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
 from engine.validation import checked_array, checked_count, checked_integers, short_repr
 from engine.wording import format_number
@@ -60,7 +61,7 @@ class Deviation:
 
 
 @dataclass(frozen=True, eq=False)
-class ShareFit:
+class ShareFit(Result):
     """A curve fitted to shares against energy; arrays are read-only.
 
     Attributes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -20,6 +20,7 @@ from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_grid import checked_sweep
@@ -133,11 +134,16 @@ _CURVES = tuple(field.name for field in fields(EnergyPoint) if field.name not in
 
 
 @dataclass(frozen=True, eq=False)
-class EnergyCurves:
+class EnergyCurves(Result):
     """The points of a sweep measured so far, by ascending energy."""
 
     spec: EnergyCurvesSpec
     points: tuple[EnergyPoint, ...]
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """All curves by name, the energy h first; the share of bounded orbits is ``share_0``."""
+        shares = {f"share_{code}": share for code, share in enumerate(self.shares.T)}
+        return {"h": self.energies, **shares, **{name: self.curve(name) for name in _CURVES}}
 
     @property
     def complete(self) -> bool:
