@@ -7,7 +7,7 @@ R² oscillates twice per revolution along a bounded orbit and grows beyond the L
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
