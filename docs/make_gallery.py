@@ -27,8 +27,8 @@ from engine import (
     find_stable_manifolds,
     integrate_orbit,
     start_states,
-    trace_equipotentials,
 )
+from engine.service import trace_equipotentials
 from plots.manifold_strokes import manifold_strokes
 from plots.map_analyses import MapAnalyses
 from plots.map_figure import draw_curve, draw_pixels
@@ -79,7 +79,7 @@ def _analyse(frame: EscapeMap, preset: Preset) -> MapAnalyses:
         regularity=compute_regularity(frame) if preset.judge else None,
         trust=compute_trust(frame) if preset.trust else None,
         origins=compute_origin_fates(spec) if preset.origins else None,
-        manifolds=find_stable_manifolds(spec.potential, preset.energy, 2) if preset.manifolds else None,
+        manifolds=find_stable_manifolds(spec.potential, preset.energy, images=2) if preset.manifolds else None,
     )
 
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from engine import DecayLaws, Fate, LawFit, Potential
+from engine import DecayLaws, Fate, Potential
+from engine.service import LawFit
 from plots.figure_axes import add_panel_legend, label_axes, style_axes
 from plots.palette import LAW_COLOURS, MEASURED, PAPER
 

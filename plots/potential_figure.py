@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from engine import Plane, Potential, Window, trace_equipotentials
+from engine import Plane, Potential, Window
+from engine.service import trace_equipotentials
 from plots.palette import LIGHT
 
 # Equipotentials in units of the escape energy: dense inside the well, sparse outside.

@@ -24,20 +24,18 @@ from engine import (
     Plane,
     Potential,
     PotentialReview,
-    RadiusEnvelope,
     RegularityMap,
     Result,
     Separation,
     ShareFit,
     StableManifolds,
-    SuperStickySearch,
     TrustMap,
     UncertaintyExponent,
     WadaTest,
     Window,
     default_window,
-    format_number,
 )
+from engine.service import RadiusEnvelope, SuperStickySearch, format_number
 from plots.curve_figures import draw_decay_laws, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
 from plots.image_columns import passage_column

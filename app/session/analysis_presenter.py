@@ -19,27 +19,29 @@ from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.maps.map_plots import MapsView
 from engine import (
-    BasinMeasuresRequest,
-    DecayLawsRequest,
     EnergyCurves,
-    EnergyCurvesRequest,
     EnergyCurvesSpec,
     EscapeMap,
-    JobRequest,
-    JobSubmitter,
     MapSpec,
     OriginFateMap,
-    OriginFateRequest,
     Plane,
     RegularityMap,
-    RegularityRequest,
     StableManifolds,
-    StableManifoldsRequest,
     TrustMap,
-    TrustRequest,
     UncertaintyExponent,
-    UncertaintyExponentRequest,
     default_window,
+)
+from engine.service import (
+    BasinMeasuresRequest,
+    DecayLawsRequest,
+    EnergyCurvesRequest,
+    JobRequest,
+    JobSubmitter,
+    OriginFateRequest,
+    RegularityRequest,
+    StableManifoldsRequest,
+    TrustRequest,
+    UncertaintyExponentRequest,
 )
 from plots.manifold_strokes import select_image
 from plots.map_analyses import NO_ANALYSES, MapAnalyses

@@ -49,7 +49,8 @@ from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, IndicatorVerdict, JobClient, Plane, Window, describe_fate, seconds_until_ready_for_maps
+from engine import EscapeMap, Fate, Plane, Window
+from engine.service import IndicatorVerdict, JobClient, describe_fate, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
 
 # Time until a preview that was postponed under load is tried again.

@@ -20,7 +20,8 @@ from app.state.view_state import (
     allowed_resolutions,
     allowed_t_max,
 )
-from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window, review_potential
+from engine import CASES, POTENTIALS, Plane, Window, review_potential
+from engine.service import FREQUENCIES, LONGEST_TEXT, STRENGTHS
 from plots.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT

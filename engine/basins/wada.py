@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
-from engine.basins.labels import checked_labels
+from engine.basins.labels import WADA_COUNTS_BOUNDED, checked_labels
 from engine.representation import Result
 from engine.wording import format_count
 
@@ -82,7 +82,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     Parameters
     ----------
     labels
-        (rows, columns) integers; equal ones are one basin. For a map see `exit_labels`.
+        A map, whose bounded orbits do not count, or (rows, columns) integers; equal ones are one basin.
     valid
         (rows, columns) bool, the pixels that count; None for all. Other pixels and the edge of the image form no boundary;
         distances are measured straight across them.
@@ -97,7 +97,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     ValueError
         If `labels` or `valid` has a wrong shape or type.
     """
-    labels, valid = checked_labels(labels, valid)
+    labels, valid = checked_labels(labels, valid, bounded=WADA_COUNTS_BOUNDED)
     basins = tuple(np.unique(labels[valid]).tolist())
     boundary = _slim_boundary(labels, valid)
     count = int(np.count_nonzero(boundary))

@@ -108,8 +108,8 @@ class StableManifolds(Result):
 def find_stable_manifolds(
     potential: Potential,
     energy: float,
-    images: int = 3,
     *,
+    images: int = 3,
     window: Window | None = None,
     executor: Executor | None = None,
     cancel: threading.Event | None = None,

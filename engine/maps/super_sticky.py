@@ -24,6 +24,7 @@ from engine.maps.pixels import MirrorPixels
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.progress import shows_progress
 from engine.representation import Result
 from engine.validation import checked_t_max
 
@@ -97,6 +98,7 @@ class SuperStickySearch(Result):
         )
 
 
+@shows_progress("super-sticky orbits")
 def find_super_sticky_orbits(
     escape_map: EscapeMap,
     regularity: RegularityMap,

@@ -152,7 +152,7 @@ def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
     return _build_fit(HyperbolicTangent(*(to_energy @ found).tolist()), half_widths, energies, shares)
 
 
-def fit_direct_shares(h: Any, direct: Any, starts: Any, degree: int = 3) -> ShareFit:
+def fit_direct_shares(h: Any, direct: Any, starts: Any, *, degree: int = 3) -> ShareFit:
     """Fit Nde/N0 = c0 + c1 h + … by least squares, as Zotos (2014) does with degree 3 (I, II) and 2 (III).
 
     Weights and intervals are those of `fit_escape_shares`. Outside the data the polynomial can leave the range 0 to 1.

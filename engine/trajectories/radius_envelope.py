@@ -58,7 +58,7 @@ class RadiusEnvelope(Result):
 
 
 def compute_radius_envelope(
-    potential: Potential, state: Any, t_max: float, intervals: int = 1000, *, cancel: threading.Event | None = None
+    potential: Potential, state: Any, t_max: float, *, intervals: int = 1000, cancel: threading.Event | None = None
 ) -> RadiusEnvelope:
     """Integrate one orbit until it escapes or `t_max` and return the smallest and largest R² in each interval of time.
 

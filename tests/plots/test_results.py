@@ -21,14 +21,12 @@ from engine import (
     compute_energy_curves,
     compute_map,
     compute_origin_fates,
-    compute_radius_envelope,
     compute_regularity,
     compute_separation,
     compute_statistics,
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
-    exit_labels,
     find_lyapunov_orbits,
     find_stable_manifolds,
     fit_decay_laws,
@@ -37,6 +35,7 @@ from engine import (
     judge_orbit,
     review_potential,
 )
+from engine.service import compute_radius_envelope, exit_labels
 
 POTENTIAL, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
 SPEC = MapSpec(POTENTIAL, Plane.X_PX, 0.36, (40, 40), t_max=200.0)
@@ -51,7 +50,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "origins": lambda: compute_origin_fates(SPEC),
     "orbit": lambda: integrate_orbit(POTENTIAL, STATE, t_max=50.0),
     "lyapunov": lambda: find_lyapunov_orbits(POTENTIAL, 0.36)[0],
-    "manifolds": lambda: find_stable_manifolds(POTENTIAL, 0.36, 1),
+    "manifolds": lambda: find_stable_manifolds(POTENTIAL, 0.36, images=1),
     "statistics": lambda: compute_statistics(compute_map(SPEC)),
     "decay": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), SPEC.t_max),
     "wada": lambda: compute_wada_test(*exit_labels(compute_map(SPEC).fate, bounded=False)),

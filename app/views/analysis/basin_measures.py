@@ -15,7 +15,8 @@ from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
-from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
+from engine import DecayLaws, UncertaintyExponent
+from engine.service import BasinMeasures, LawFit
 from plots.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
 _LAW_POINTS = 200

@@ -9,7 +9,8 @@ import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
-from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials
+from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits
+from engine.service import trace_equipotentials
 from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 
 # Energies of the faint equipotentials, in units of the escape energy.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
-from engine import Certificate, Fate, Regularity, Trust, describe_certificate
+from engine import Certificate, Fate, Regularity, Trust
+from engine.service import describe_certificate
 from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
 
 TRUST = {

@@ -12,7 +12,7 @@ from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 @pytest.fixture(scope="module")
 def manifolds() -> StableManifolds:
-    return find_stable_manifolds(CASES["II"], 0.3, 1)
+    return find_stable_manifolds(CASES["II"], 0.3, images=1)
 
 
 @pytest.fixture(scope="module")
