@@ -126,10 +126,10 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """A name that moved to `engine.service`, with a warning."""
+    import importlib
     import warnings
 
-    from engine import service
-
+    service = importlib.import_module(f"{__name__}.service")
     if name not in service.__all__:
         raise AttributeError(f"module 'engine' has no attribute {name!r}")
     warnings.warn(f"engine.{name} is deprecated: import it from engine.service", DeprecationWarning, stacklevel=2)

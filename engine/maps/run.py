@@ -198,7 +198,8 @@ class MapRun:
         """Share of the work done: the time covered, as a share of t_max, averaged over the interior pixels."""
         fate = self._batch.fate
         covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
-        interior = find_interior(fate)
+        # Second mirror images are copied later.
+        interior = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
         return float(covered[interior].mean()) if interior.any() else 1.0
 
 
