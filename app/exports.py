@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterator, Sequence
 from importlib import metadata
 
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.palette import Palette
 from app.state.system import TYPED, System
 from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, default_window, judge_orbit
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.palette import Palette
 
 MOST_ROWS = 100_000
 """Default number of rows that a table of orbits has at most."""
@@ -30,11 +30,11 @@ def png_bytes(
 ) -> bytes:
     """PNG file of some pictures side by side, with the map's provenance in its text fields.
 
-    Parameters and errors are those of `app.rendering.map_figure.draw_map_figure`.
+    Parameters and errors are those of `plots.map_figure.draw_map_figure`.
     """
     # Matplotlib takes longer to import than the rest of the page.
-    from app.rendering.figure_axes import RENDER_LOCK, save_figure, software
-    from app.rendering.map_figure import draw_map_figure
+    from plots.figure_axes import RENDER_LOCK, save_figure, software
+    from plots.map_figure import draw_map_figure
 
     about = {"Software": software()} | {name: str(value) for name, value in frame.provenance().items()}
     with RENDER_LOCK:

@@ -13,8 +13,8 @@ from cli import options
 from cli.options import PlaneName
 
 if TYPE_CHECKING:
-    from app.rendering.map_analyses import MapAnalyses
     from engine import EscapeMap
+    from plots.map_analyses import MapAnalyses
 
 EXAMPLES = """Examples:
 

@@ -60,7 +60,8 @@ def sweep_energies(
     from cli.output import print_sentences
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import SweepSpec, Window, plan_sweep, run_sweep
+    from engine import SweepSpec, Window, run_sweep
+    from engine.service import plan_sweep
 
     energies = space_energies(low, high, count, energy)
     frame = None if window is None else Window(*window)

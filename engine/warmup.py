@@ -159,7 +159,7 @@ def prepare_kernels(potential: Potential) -> None:
         lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX * potential.units.time),
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
         lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), executor=_EXECUTOR),
-        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1, executor=_EXECUTOR),
+        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, images=1, executor=_EXECUTOR),
     )
 
 

@@ -11,7 +11,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from engine import CASES, EscapeMap, Fate, Plane, SuperStickySearch, compute_statistics, find_lyapunov_orbits
+from engine import CASES, EscapeMap, Fate, Plane, compute_statistics, find_lyapunov_orbits
+from engine.service import SuperStickySearch
 from reproduction.map_shelf import MapShelf
 from reproduction.stated_numbers import STATED_NUMBERS, Quantity, Relation, StatedNumber
 from reproduction.unknown_windows import FittedWindow, fit_window

@@ -9,7 +9,8 @@ from importlib import metadata
 
 import numpy as np
 
-from engine import CASES, SuperStickySearch
+from engine import CASES
+from engine.service import SuperStickySearch
 from reproduction.comparisons import CLASSIFIED_SIDE, PERCENT, POINTS, Comparison, compare_all
 from reproduction.fit_sections import write_fits, write_laws
 from reproduction.map_shelf import MapShelf

@@ -13,38 +13,40 @@ import panel as pn
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.rendering.manifold_strokes import select_image
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_images import ON_DEMAND
-from app.rendering.palette import Palette
 from app.state.system import SYSTEM
 from app.state.view_state import IMAGES, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.maps.map_plots import MapsView
 from engine import (
-    BasinMeasuresRequest,
-    DecayLawsRequest,
     EnergyCurves,
-    EnergyCurvesRequest,
     EnergyCurvesSpec,
     EscapeMap,
-    JobRequest,
-    JobSubmitter,
     MapSpec,
     OriginFateMap,
-    OriginFateRequest,
     Plane,
     RegularityMap,
-    RegularityRequest,
     StableManifolds,
-    StableManifoldsRequest,
     TrustMap,
-    TrustRequest,
     UncertaintyExponent,
-    UncertaintyExponentRequest,
     default_window,
 )
+from engine.service import (
+    BasinMeasuresRequest,
+    DecayLawsRequest,
+    EnergyCurvesRequest,
+    JobRequest,
+    JobSubmitter,
+    OriginFateRequest,
+    RegularityRequest,
+    StableManifoldsRequest,
+    TrustRequest,
+    UncertaintyExponentRequest,
+)
+from plots.manifold_strokes import select_image
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.map_images import ON_DEMAND
+from plots.palette import Palette
 
 SWEPT_ENERGIES = 33
 """Energies of the curves against energy."""

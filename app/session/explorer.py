@@ -14,7 +14,6 @@ from app.job_clients.energy_animation import EnergyAnimation
 from app.job_clients.map_requests import MapRequests
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.preview_requests import LoadPolicy
-from app.rendering.palette import MOST_ORBITS
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
@@ -42,7 +41,9 @@ from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, JobClient, Plane, Window, describe_fate, seconds_until_ready_for_maps
+from engine import EscapeMap, Fate, Plane, Window
+from engine.service import JobClient, describe_fate, seconds_until_ready_for_maps
+from plots.palette import MOST_ORBITS
 
 # Time until a preview that was postponed under load is tried again.
 _RETRY_MS = 300

@@ -13,8 +13,6 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
-from app.rendering.orbit_curves import OrbitCurves, restrict_curves
-from app.rendering.palette import Palette
 from app.state.view_state import ViewState
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.orbits.inspector import Inspector
@@ -22,7 +20,10 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine import IndicatorVerdict, JobSubmitter, Plane
+from engine import Plane
+from engine.service import IndicatorVerdict, JobSubmitter
+from plots.orbit_curves import OrbitCurves, restrict_curves
+from plots.palette import Palette
 
 Interval = tuple[float, float]
 """Begin and end of an interval of time."""

@@ -27,7 +27,7 @@ class Preset:
     group
         One of `GROUPS`.
     picture
-        Picture of its thumbnail, one of `app.rendering.map_images.TITLES`.
+        Picture of its thumbnail, one of `plots.map_images.TITLES`.
     case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, images, origins, analysis
         As in `ViewState`.
     """

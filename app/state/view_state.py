@@ -9,22 +9,12 @@ from typing import Any
 import numpy as np
 import param
 
-from app.rendering.palette import MOST_ORBITS, PALETTES, Palette
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import ENERGIES
 from app.state.system import SYSTEM, TYPED, System
-from engine import (
-    FREQUENCIES,
-    POTENTIALS,
-    STRENGTHS,
-    MapSpec,
-    OrbitRequest,
-    Plane,
-    Potential,
-    UnresolvedMapSpec,
-    Window,
-    start_states,
-)
+from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
+from engine.service import FREQUENCIES, STRENGTHS, OrbitRequest, UnresolvedMapSpec
+from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:

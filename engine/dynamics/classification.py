@@ -13,6 +13,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
 
 ENERGY_TOLERANCE = 1e-9
@@ -20,7 +21,7 @@ ENERGY_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Outcomes:
+class Outcomes(Result):
     """Outcomes of n orbits, as returned by `classify_orbits`.
 
     Attributes

@@ -15,12 +15,13 @@ from types import ModuleType
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy import optimize
 
 from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.representation import Result
+from engine.root_finding import find_root
 from engine.taylor.kernels import events
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 from engine.validation import checked_number
@@ -46,7 +47,7 @@ _CHEBYSHEV_TO_POWER = np.column_stack(
 
 
 @dataclass(frozen=True, eq=False)
-class LyapunovOrbit:
+class LyapunovOrbit(Result):
     """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
 
     Attributes
@@ -182,7 +183,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOr
     bracket = _find_bracket(outward_velocity, distance)
     if bracket is None:
         raise _SearchError(f"too high, no Lyapunov orbit was found across channel {channel}; choose a lower energy")
-    u = optimize.brentq(outward_velocity, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
+    u = find_root(outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
     _, half_period, count = kernels.shoot(u, *arguments)
     if not np.isfinite(half_period):
         raise _SearchError(f"the Lyapunov orbit of channel {channel} does not turn back")

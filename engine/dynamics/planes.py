@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Never
 
-import contourpy
 import numpy as np
 
 from engine.dynamics.interior import find_outside_channels
@@ -177,6 +176,8 @@ def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float,
 
 def trace_equipotentials(potential: Potential, plane: Plane, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
     """The zero-velocity curves of several energies on (x, y) or (x, px): a list of (n, 2) pieces for each energy."""
+    import contourpy
+
     levels = [checked_number("energies", energy) for energy in energies]
     x, ordinate = (
         np.linspace(low, high, _CONTOUR_SAMPLES)

@@ -8,7 +8,6 @@ method refines them, and starts on a grid find roots whose eigenvalues are too i
 from __future__ import annotations
 
 import numpy as np
-from scipy import linalg
 
 from engine.polynomials import Terms, degree, largest_coefficients, substitute
 from engine.taylor.source.cauchy_products import derivative
@@ -126,6 +125,8 @@ def _rotated_coefficients(terms: Terms, angle: float) -> np.ndarray:
 
 def _eigenvalues(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """The finite x at which the Sylvester matrix in y is singular."""
+    from scipy import linalg
+
     m, n = p.shape[1] - 1, q.shape[1] - 1
     highest = max(p.shape[0], q.shape[0]) - 1
     size = m + n

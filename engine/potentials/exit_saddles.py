@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 Gradient = Callable[..., tuple[np.ndarray, np.ndarray]]
 Hessian = Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]
@@ -82,6 +81,8 @@ class _Descent:
 
     def _descend(self, saddle: int, side: float) -> int:
         """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
+        from scipy.integrate import solve_ivp
+
         start = self.points[saddle] + side * _START_DISTANCE * self.length * self.unstable_directions[saddle]
         distance = np.hypot(*(self.points - self.points[saddle]).T)
         others = self.points[distance > 0.0]

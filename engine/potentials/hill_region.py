@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
 
 from engine.potentials.potential import Potential
 
@@ -35,7 +34,7 @@ def find_bulging_channel(potential: Potential) -> int:
     for energy in np.unique(potential.saddle_energies):
         allowed = value < bottom + _ENERGY_SHARE * (energy - bottom)
         inside = _connected_to_origin(allowed & (beyond == 0))
-        crossed = allowed & ndimage.binary_dilation(inside) & (beyond > 0)
+        crossed = allowed & _touching(inside) & (beyond > 0)
         for channel in np.unique(beyond[crossed]):
             if potential.saddle_energies[channel - 1] >= energy:
                 return int(channel)
@@ -52,9 +51,32 @@ def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:
     """The part of a region on a polar grid that is connected to the innermost circle."""
     allowed = allowed.copy()
     allowed[0] = True
-    labels = ndimage.label(allowed)[0]
-    connected: np.ndarray = labels == labels[0, 0]
+    connected, count = np.zeros_like(allowed), 0
+    connected[0] = True
+    while int(connected.sum()) > count:
+        count = int(connected.sum())
+        for view in (np.s_[:], np.s_[::-1]):
+            for axis in (0, 1):
+                cells, open_cells = (np.moveaxis(grid, axis, 0)[view] for grid in (connected, allowed))
+                _spread(cells, open_cells)
     return connected
+
+
+def _spread(connected: np.ndarray, allowed: np.ndarray) -> None:
+    """Connect, in place, the allowed points that follow a connected one along the first axis without a gap."""
+    index = np.arange(len(allowed))[:, None]
+    last_gap = np.maximum.accumulate(np.where(allowed, -1, index))
+    connected |= allowed & (np.maximum.accumulate(np.where(connected, index, -1)) > last_gap)
+
+
+def _touching(region: np.ndarray) -> np.ndarray:
+    """A region and its neighbours along both axes."""
+    grown = region.copy()
+    for axis in (0, 1):
+        cells, neighbours = np.moveaxis(grown, axis, 0), np.moveaxis(region, axis, 0)
+        cells[1:] |= neighbours[:-1]
+        cells[:-1] |= neighbours[1:]
+    return grown
 
 
 def _channel_beyond_saddle(potential: Potential, x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from enum import Enum
 from functools import lru_cache
 from math import comb
@@ -15,6 +16,7 @@ from engine.potentials.formula_parser import COEFFICIENT_RANGE, LONGEST_TEXT, MO
 from engine.potentials.hill_region import find_bulging_channel, is_open_below
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
 from engine.potentials.symmetry import count_rotations
+from engine.representation import Result
 
 MOST_CHANNELS = 16
 """Largest number of exit channels that the kernels of the Lyapunov orbit search support."""
@@ -53,7 +55,7 @@ class CriticalPoint:
 
 
 @dataclass(frozen=True)
-class PotentialReview:
+class PotentialReview(Result):
     """The result of `review_potential`; lengths and energies are dimensionless.
 
     Attributes
@@ -94,6 +96,15 @@ class PotentialReview:
     refusal: str | None
     remarks: tuple[str, ...]
     moved_formula: str | None
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Place, kind, energy and channel of each critical point."""
+        names = [field.name for field in fields(CriticalPoint)]
+        return {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
+
+    def describe(self) -> str:
+        """Why the potential cannot be used, or what is unusual about it; empty for an ordinary one."""
+        return self.refusal or " ".join(self.remarks)
 
 
 @lru_cache(maxsize=_CACHE_SIZE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,6 +12,7 @@ from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Window
 from engine.maps.result import EscapeMap
 from engine.proportions import wilson_interval
+from engine.representation import Result
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""
@@ -23,7 +25,7 @@ _LOWER_EDGE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class EscapeStatistics:
+class EscapeStatistics(Result):
     """Counts of the interior starts of a map or of a part of it, as in Zotos (2014), section 5; arrays are read-only.
 
     Attributes
@@ -58,6 +60,11 @@ class EscapeStatistics:
     def decided(self) -> int:
         """Number of starts known to escape or to be bounded."""
         return self.escaped + self.bounded
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Escapes and the probability of an escape by the number of crossings before it."""
+        counts = self.crossing_counts
+        return {"crossings": np.arange(counts.size), "escapes": counts, "escape_probability": self.escape_probabilities}
 
     @property
     def escaped(self) -> int:

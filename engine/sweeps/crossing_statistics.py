@@ -16,6 +16,7 @@ from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.progress import shows_progress
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_curves import EnergyCurvesSpec
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 _WINDOW = tuple(Window.__dataclass_fields__)
 
 
+@shows_progress("crossing statistics")
 def compute_crossing_statistics(
     potential: Potential,
     plane: Plane,

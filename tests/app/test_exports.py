@@ -13,9 +13,6 @@ import xarray as xr
 from PIL import Image
 
 from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_images import TITLES
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
 from app.state.system import TYPED, System
 from engine import (
     CASES,
@@ -31,6 +28,9 @@ from engine import (
     integrate_orbit,
     judge_orbit,
 )
+from plots.map_analyses import MapAnalyses
+from plots.map_images import TITLES
+from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {

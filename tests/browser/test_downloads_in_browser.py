@@ -13,8 +13,8 @@ import xarray as xr
 from PIL import Image
 from playwright.sync_api import expect
 
-from app.rendering.palette import COLOUR_BLIND_SAFE
 from engine import CASES, MapSpec, Plane, compute_map
+from plots.palette import COLOUR_BLIND_SAFE
 from tests.browser.explorer_page import ExplorerPage
 
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"

@@ -8,8 +8,9 @@ from collections.abc import Callable
 import numpy as np
 from playwright.sync_api import expect
 
-from app.rendering.palette import OUTCOMES
-from engine import CASES, Fate, MapSpec, Plane, compute_map, compute_preview, preview_spec
+from engine import CASES, Fate, MapSpec, Plane, compute_map
+from engine.service import compute_preview, preview_spec
+from plots.palette import OUTCOMES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 

@@ -8,18 +8,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from app.rendering.palette import PAPER
-from engine import (
-    CASES,
-    MapSpec,
-    Plane,
-    Regularity,
-    compute_map,
-    compute_origin_fates,
-    compute_regularity,
-    describe_certificate,
-    find_stable_manifolds,
-)
+from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity, find_stable_manifolds
+from engine.service import describe_certificate
+from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
@@ -49,7 +40,7 @@ def test_manifolds_have_the_colours_and_the_image_that_is_chosen(open_explorer: 
     expect(explorer.page.get_by_role("radiogroup", name="Image of the manifolds")).to_have_count(0)
     explorer.page.get_by_label("Stable manifolds", exact=True).click()
     explorer.wait_for_data("manifolds", "data.xs.length > 4")
-    manifolds = find_stable_manifolds(CASES["III"], 0.28, 3)
+    manifolds = find_stable_manifolds(CASES["III"], 0.28, images=3)
     assert len(explorer.model_data("manifolds")["xs"]) == len(manifolds.arcs)
     assert set(explorer.model_data("manifolds")["colour"]) == set(PAPER.channels[:4])
     for channel in range(1, 5):

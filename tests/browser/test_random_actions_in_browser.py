@@ -10,12 +10,12 @@ from urllib.parse import parse_qsl, urlsplit
 import pytest
 from playwright.sync_api import TimeoutError as Late
 
-from app.rendering.image_columns import map_columns
 from app.state.permalink import read_link
 from app.state.presets import PRESETS
 from app.state.view_state import ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
 from engine import CASES, Plane, compute_map
+from plots.image_columns import map_columns
 from tests.browser.explorer_page import ExplorerPage
 
 OPENED = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112"

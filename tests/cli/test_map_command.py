@@ -14,8 +14,6 @@ import xarray as xr
 from PIL import Image
 
 from app.exports import png_bytes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
 from engine import (
     CASES,
     MapSpec,
@@ -26,6 +24,8 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.map_analyses import MapAnalyses
+from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -80,7 +80,7 @@ def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
     with (tmp_path / "map-manifolds.csv").open() as file:
         rows = list(csv.DictReader(file))
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19)
-    arcs = find_stable_manifolds(CASES["I"], 0.19, 1, window=spec.window).arcs
+    arcs = find_stable_manifolds(CASES["I"], 0.19, images=1, window=spec.window).arcs
     for name in ("x", "px"):
         assert [float(row[name]) for row in rows] == np.concatenate([getattr(arc, name) for arc in arcs]).tolist()
     assert [int(row["arc"]) for row in rows] == [n for n, arc in enumerate(arcs, 1) for _ in range(arc.x.size)]

@@ -11,12 +11,13 @@ import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Segment, Step
 from bokeh.plotting import figure
 
-from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
-from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
+from engine import DecayLaws, UncertaintyExponent
+from engine.service import BasinMeasures, LawFit
+from plots.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
 _LAW_POINTS = 200
 _PAIRS_TEXT = (

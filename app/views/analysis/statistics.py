@@ -10,13 +10,13 @@ import numpy as np
 import panel as pn
 from bokeh.models.dom import HTML
 
-from app.rendering.palette import PAPER, Palette
 from app.state.help_texts import title_with_help
 from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent, percent_range
 from app.views.components.widgets import button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
+from plots.palette import PAPER, Palette
 
 BINS = 40
 MOST_CROSSINGS = 15

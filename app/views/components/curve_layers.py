@@ -9,9 +9,10 @@ import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
-from app.rendering.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 from app.views.components.plots import batched_additions
-from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials
+from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits
+from engine.service import trace_equipotentials
+from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)

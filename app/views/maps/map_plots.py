@@ -27,9 +27,6 @@ from bokeh.models import (
 )  # fmt: skip
 from bokeh.plotting import figure
 
-from app.rendering.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
-from app.rendering.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
-from app.rendering.palette import PAPER, Palette
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.numbers import percent
@@ -41,6 +38,9 @@ from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
+from plots.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
+from plots.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
+from plots.palette import PAPER, Palette
 
 SHORT_TITLES = {
     "curves": "Exits",

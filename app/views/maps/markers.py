@@ -9,9 +9,9 @@ import numpy as np
 from bokeh.models import ColumnDataSource, LinearColorMapper, Quad, Scatter, Text
 from bokeh.plotting import figure
 
-from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, Palette
 from app.views.components.plots import batched_additions
 from engine import Window
+from plots.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 MOST_SECTION_POINTS = 2000
 """Of each orbit at most this many section points are drawn."""

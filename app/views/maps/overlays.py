@@ -8,11 +8,11 @@ import numpy as np
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine
 from bokeh.plotting import figure
 
-from app.rendering.image_columns import doubt_tones
-from app.rendering.manifold_strokes import manifold_strokes
-from app.rendering.palette import DOUBT, LIGHT, PAPER, Entry, Palette
 from app.views.components.plots import batched_additions
 from engine import MapSpec, StableManifolds, TrustMap
+from plots.image_columns import doubt_tones
+from plots.manifold_strokes import manifold_strokes
+from plots.palette import DOUBT, LIGHT, PAPER, Entry, Palette
 
 _CLEAR = "#00000000"
 # The tones as a CSS background.

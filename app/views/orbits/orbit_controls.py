@@ -10,12 +10,13 @@ from html import escape
 import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.palette import Palette
 from app.views.components.collapsible_section import Fold
 from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.numbers import grouped
 from app.views.components.widgets import OrbitList, button
-from engine import IndicatorVerdict, Orbit, Plane
+from engine import Orbit, Plane
+from engine.service import IndicatorVerdict
+from plots.palette import Palette
 
 HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
 _BOX = 180

@@ -21,11 +21,11 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure
 
-from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
-from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.plots import set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
+from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
+from plots.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 
 TITLES = {
     "path": "The orbits",

@@ -9,7 +9,6 @@ from typing import Any
 
 import panel as pn
 
-from app.rendering.palette import PALETTES
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import EnergyRange
 from app.state.system import SYSTEM, System
@@ -18,6 +17,7 @@ from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, Switches, bind, button
 from engine import CASES, Plane
+from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
 PLAY, STOP = "▶ Play", "■ Stop"

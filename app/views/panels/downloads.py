@@ -10,12 +10,12 @@ import panel as pn
 
 from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_images import ON_DEMAND, TITLES
 from app.state.view_state import ViewState
 from app.views.components.file_saver import FileSaver
 from app.views.components.widgets import button
 from engine import EnergyCurves, EscapeMap
+from plots.map_analyses import MapAnalyses
+from plots.map_images import ON_DEMAND, TITLES
 
 SIDES = {"300 pixels": 300, "600 pixels": 600, "1200 pixels": 1200}
 """Sides of each map in a saved picture."""

@@ -11,8 +11,9 @@ import pytest
 
 from app.job_clients.map_requests import MapRequests
 from app.state.view_state import ViewState
-from engine import CASES, EscapeMap, Jobs, MapSpec, Plane, Subscription, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
 from engine.jobs.requests import Answer
+from engine.service import Jobs, Subscription
 
 
 class Recorder:

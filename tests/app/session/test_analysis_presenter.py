@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from app.job_clients.follow_up_requests import FollowUpRequests
-from app.rendering.map_analyses import MapAnalyses
 from app.session.analysis_presenter import SWEPT_ENERGIES, AnalysisPresenter
 from app.state.view_state import Analysis, ViewState
 from app.views.maps.map_plots import MapsView
-from engine import CASES, EscapeMap, Jobs, MapSpec, Plane, Trust, Window, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, Trust, Window, compute_map
+from engine.service import Jobs
+from plots.map_analyses import MapAnalyses
 
 
 class Session:

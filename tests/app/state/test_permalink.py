@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.permalink import LONGEST_VALUE, read_link, write_link
 from app.state.view_state import LAYERS, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
 from engine import CASES, Plane, Window
+from plots.palette import MOST_ORBITS, PALETTES
 
 numbers = st.floats(-1e3, 1e3, allow_nan=False)
 pairs = st.tuples(numbers, numbers).filter(lambda pair: pair[0] < pair[1])

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.rendering.palette import MOST_ORBITS
 from app.state.energy_ranges import ENERGIES
 from app.state.view_state import ViewState
 from engine import CASES, Plane
+from plots.palette import MOST_ORBITS
 
 
 def test_the_map_has_the_chosen_parameters() -> None:

@@ -13,23 +13,25 @@ import pytest
 
 from engine import (
     CASES,
-    Answer,
-    DivergentStartRequest,
     EscapeMap,
-    Jobs,
     MapSpec,
-    OrbitRequest,
     Plane,
-    PreviewRequest,
-    RegularityRequest,
-    SeparationRequest,
-    UnresolvedMapSpec,
-    WarmupRequest,
     compute_map,
     compute_regularity,
     compute_separation,
     find_divergent_start,
     integrate_orbit,
+)
+from engine.service import (
+    Answer,
+    DivergentStartRequest,
+    Jobs,
+    OrbitRequest,
+    PreviewRequest,
+    RegularityRequest,
+    SeparationRequest,
+    UnresolvedMapSpec,
+    WarmupRequest,
     preview_spec,
 )
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle

@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import HyperbolicTangent, Polynomial, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine.service import HyperbolicTangent, Polynomial
 
 MANY = 10**9
 ENERGIES = np.linspace(0.26, 0.6, 25)
@@ -155,4 +156,4 @@ def test_energies_too_few_for_a_fit_raise(energies: list[float]) -> None:
 @pytest.mark.parametrize("degree", [0, 7])
 def test_degrees_out_of_range_raise(degree: int) -> None:
     with pytest.raises(ValueError, match="degree="):
-        fit_direct_shares(ENERGIES, np.full(25, 5), np.full(25, 10), degree)
+        fit_direct_shares(ENERGIES, np.full(25, 5), np.full(25, 10), degree=degree)

@@ -11,18 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from engine import (
-    CASES,
-    EscapeMap,
-    Fate,
-    MapSpec,
-    Plane,
-    Window,
-    compute_crossing_statistics,
-    compute_map,
-    compute_statistics,
-    tabulate_crossing_statistics,
-)
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Window, compute_crossing_statistics, compute_map, compute_statistics
+from engine.service import tabulate_crossing_statistics
 from engine.statistics.published_fits import PAPER_FITS
 
 SIDE = 50

@@ -12,16 +12,14 @@ from engine import (
     CASES,
     EnergyCurves,
     EnergyCurvesSpec,
-    EnergyPoint,
-    EnergyPointSpec,
     Fate,
     MapSpec,
     Plane,
     compute_energy_curves,
-    compute_energy_point,
     compute_map,
     compute_statistics,
 )
+from engine.service import EnergyPoint, EnergyPointSpec, compute_energy_point
 
 SPEC = EnergyCurvesSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), 500.0, exponent=False)
 
@@ -68,7 +66,7 @@ def test_frames_come_after_each_energy_from_coarse_to_fine() -> None:
         return EnergyPoint(spec.map_spec.energy, (1.0, 0.0, 0.0, 0.0), 0.0, 1.0, 1.0, 0.0, 0.0)
 
     spec = EnergyCurvesSpec(CASES["II"], Plane.X_PX, tuple(np.linspace(0.2, 0.4, 9)), exponent=False)
-    compute_energy_curves(spec, lambda frame: seen.append(frame.energies.tolist()), measure=measure)
+    compute_energy_curves(spec, on_frame=lambda frame: seen.append(frame.energies.tolist()), measure=measure)
     assert [len(energies) for energies in seen] == list(range(1, 10))
     np.testing.assert_allclose(seen[2], [0.2, 0.3, 0.4])
     np.testing.assert_allclose(seen[4], [0.2, 0.25, 0.3, 0.35, 0.4])

@@ -13,11 +13,11 @@ import pytest
 import xarray as xr
 
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.orbit_curves import compute_orbit_curves
 from app.state.view_state import ViewState
 from app.views.panels import downloads
 from app.views.panels.downloads import Downloads
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, integrate_orbit
+from plots.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 
 STATE = (0.1, 0.0, 0.05, 0.6)

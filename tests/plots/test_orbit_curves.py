@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.rendering.orbit_curves import (
+from engine import CASES, Plane, integrate_orbit, start_states
+from plots.orbit_curves import (
     MOST_LINE_POINTS,
     TRAIL,
     OrbitCurves,
@@ -14,7 +15,6 @@ from app.rendering.orbit_curves import (
     moment,
     restrict_curves,
 )
-from engine import CASES, Plane, integrate_orbit, start_states
 
 
 def curves_of(t_max: float) -> OrbitCurves:

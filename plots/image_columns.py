@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from app.rendering.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
 from engine import Certificate, EscapeMap, Fate, OriginFateMap, Regularity, RegularityMap, Trust, TrustMap
+from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
 
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
