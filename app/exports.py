@@ -98,7 +98,7 @@ def _rows(number: int, orbit: Orbit, stride: int) -> Iterator[str]:
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
-    """Python script that reproduces a map and orbits with the engine, bit for bit.
+    """Python script that reproduces a map and orbits with the engine, bit for bit, and draws them.
 
     Parameters
     ----------
@@ -120,6 +120,8 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
     energy = _numbers(spec.energy) if isinstance(spec.energy, tuple) else repr(float(spec.energy))
     lines = [
+        "from matplotlib import pyplot",
+        "",
         f"from engine import {', '.join(names)}",
         "",
         f"potential = {expression}",
@@ -133,10 +135,13 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"    certify={spec.certify!r},",
         ")",
         "escape_map = compute_map(spec)",
+        "escape_map.plot()",
     ]
     if starts:
         lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
         lines += ["orbits = [integrate_orbit(potential, start, spec.t_max) for start in starts]"]
+        lines += ["for orbit in orbits:", "    orbit.plot()"]
+    lines.append("pyplot.show()")
     return "\n".join(lines) + "\n"
 
 

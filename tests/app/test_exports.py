@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 from PIL import Image
 
 from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
@@ -154,9 +155,11 @@ def test_no_orbits_give_an_empty_table() -> None:
 
 
 @pytest.mark.parametrize("name", SPECS)
-def test_the_script_reproduces_the_map_and_the_orbits(name: str) -> None:
+def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = SPECS[name]
     made: dict[str, Any] = {}
+    drawn: list[int] = []
+    monkeypatch.setattr(pyplot, "show", lambda: drawn.extend(pyplot.get_fignums()))
     exec(python_lines(spec, System("II"), [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
     assert made["spec"] == spec
     whole = compute_map(spec)
@@ -166,6 +169,9 @@ def test_the_script_reproduces_the_map_and_the_orbits(name: str) -> None:
         expected = integrate_orbit(CASES["II"], start, spec.t_max)
         assert one.fate == expected.fate
         np.testing.assert_array_equal(one.x, expected.x)
+    # One figure of the map, one of each orbit.
+    assert len(drawn) == 3
+    pyplot.close("all")
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ OPENED = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112"
 LINKS = (
     "?case=II&plane=x_y&h=0.3&t_max=100&resolution=112&orbits=0.1,0.2;0.2,0.1&look=2",
     "?case=III&plane=x_px&h=0.5&t_max=100&resolution=112&manifolds=yes&analysis=statistics",
-    "?case=I&plane=x_h&t_max=100&resolution=112&palette=colour-blind+safe&lock_times=50",
+    "?case=I&plane=x_h&t_max=100&resolution=112&palette=safe&lock_times=50",
 )
 # Only entries of the gallery whose maps take moments.
 QUICK = [preset for preset in PRESETS if preset.t_max <= 1e4 and preset.case in CASES and preset.resolution <= 224]
