@@ -10,17 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
-from engine.taylor.kernels.events import (
-    BEARING_X,
-    BEARING_Y,
-    HALF_WIDTH,
-    MIDDLE,
-    OUTWARD_X,
-    OUTWARD_Y,
-    SADDLE_X,
-    SADDLE_Y,
-    exit_distance,
-)
+from engine.taylor.kernels.events import BEARING_X, BEARING_Y, OPEN, exit_distance, position_across
 
 # Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
 _LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
@@ -80,10 +70,10 @@ def _crosses_exits(x0, y0, x1, y1, curves):
     odd = False
     for k in range(curves.shape[0]):
         curve = curves[k]
-        if np.isinf(curve[HALF_WIDTH]):
+        if curve[OPEN] == 0.0:
             continue
-        s0 = (_across(x0, y0, curve) - curve[MIDDLE]) / curve[HALF_WIDTH]
-        s1 = (_across(x1, y1, curve) - curve[MIDDLE]) / curve[HALF_WIDTH]
+        s0 = position_across(x0, y0, curve)
+        s1 = position_across(x1, y1, curve)
         # The part of the line with −1 ≤ s ≤ 1.
         low = 0.0
         high = 1.0
@@ -99,11 +89,6 @@ def _crosses_exits(x0, y0, x1, y1, curves):
             at_high = exit_distance((1.0 - high) * x0 + high * x1, (1.0 - high) * y0 + high * y1, curve)
             odd ^= (at_low > 0.0) != (at_high > 0.0)
     return odd
-
-
-@subroutine
-def _across(x, y, curve):
-    return curve[OUTWARD_X] * (y - curve[SADDLE_Y]) - curve[OUTWARD_Y] * (x - curve[SADDLE_X])
 
 
 @subroutine
