@@ -50,7 +50,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "
             "decreases exponentially to the rounding error, about 1e-16. On a regular orbit it stays large or decreases like "
-            "a power of time, a straight line on these axes. A bounded orbit counts as chaotic if SALI is 1e-7 or less."
+            "a power of time, a straight line on these axes. A bounded orbit counts as chaotic if SALI is 1e−7 or less."
         ),
         "exponent": (
             "The mean exponential growth rate of a small deviation until t. On a regular orbit it decreases like ln t / t, a "

@@ -119,6 +119,10 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
         page.get_by_role("button", name=preset.title).first.click()
         explorer.press("Close")
 
+    def type_energy() -> None:
+        if page.get_by_label("Exact h", exact=True).is_enabled():
+            explorer.type_number("Exact h", f"{chance.uniform(0.13, 0.5):.3f}")
+
     def clear() -> None:
         if explorer.button("Clear all").is_visible():
             explorer.press("Clear all")
@@ -137,8 +141,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
     return plain | {
         "click": click, "clear": clear, "gallery": show_preset,
         "link": lambda: page.goto(page.url.split("?")[0] + chance.choice(LINKS)),
-        "energy": lambda: explorer.type_number("Exact h", f"{chance.uniform(0.13, 0.5):.3f}"),
-        "drag": lambda: explorer.drag_energy_to(chance.uniform(0.2, 0.8)),
+        "energy": type_energy, "drag": lambda: explorer.drag_energy_to(chance.uniform(0.2, 0.8)),
         "back": lambda: move(-1), "far back": lambda: move(-3), "forward": lambda: move(1),
     }  # fmt: skip
 

@@ -24,12 +24,13 @@ from bokeh.plotting import figure
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.plots import set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
+from engine.service import format_number
 from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
 from plots.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 
 TITLES = {
     "path": "The orbits",
-    "sali": f"SALI (chaotic at or below {CHAOS_THRESHOLD:g})",
+    "sali": f"SALI (chaotic at or below {format_number(CHAOS_THRESHOLD)})",
     "r2": "R² = x² + y²",
     "exponent": "Lyapunov exponent until t",
 }
@@ -110,7 +111,7 @@ class OrbitPlots:
         self.outlines.set_palette(palette)
 
     def _style(self) -> dict[str, Any]:
-        return {"line_color": {"field": "slot", "transform": self._mapper}, "line_alpha": "alpha"}
+        return {"line_color": {"field": "slot", "transform": self._mapper}, "line_alpha": "alpha", "line_width": 1.5}
 
     def _draw_path(self) -> figure:
         x, y = self._place
@@ -120,7 +121,7 @@ class OrbitPlots:
         path.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh"))
         path.add_glyph(self._paths, MultiLine(**style))
         path.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
-        path.add_glyph(self._trails, MultiLine(line_width=2.5, **style))
+        path.add_glyph(self._trails, MultiLine(**style | {"line_width": 2.5}))
         path.add_glyph(self._points, Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5))
         return path
 
