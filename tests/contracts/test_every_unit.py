@@ -197,7 +197,7 @@ def test_lyapunov_orbits(name: str, scaling: Scaling) -> None:
 @each_system
 @exactly_scaled
 def test_stable_manifolds(name: str, scaling: Scaling) -> None:
-    usual, scaled = find_stable_manifolds(*system(name), 2), find_stable_manifolds(*system(name, scaling), 2)
+    usual, scaled = find_stable_manifolds(*system(name), images=2), find_stable_manifolds(*system(name, scaling), images=2)
     assert len(scaled.arcs) == len(usual.arcs) > 0
     assert scaled.truncated == usual.truncated
     for arc, other in zip(scaled.arcs, usual.arcs, strict=True):

@@ -70,7 +70,9 @@ def test_intervals_of_a_tangent_have_about_95_percent_coverage() -> None:
 
 def test_intervals_of_a_polynomial_have_about_95_percent_coverage() -> None:
     rng = np.random.default_rng(4)
-    held = coverage([fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), rng), 2) for _ in range(400)], PARABOLA.parameters)
+    held = coverage(
+        [fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), rng), degree=2) for _ in range(400)], PARABOLA.parameters
+    )
     assert all(0.91 <= share <= 0.99 for share in held.values()), held
 
 
@@ -122,7 +124,7 @@ def test_the_largest_deviation_has_its_energy_and_sign() -> None:
 
 
 def test_the_description_has_formula_and_deviation() -> None:
-    fit = fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), np.random.default_rng(6)), 2)
+    fit = fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), np.random.default_rng(6)), degree=2)
     text = fit.describe()
     assert text.startswith(f"{fit.curve.formula} with c0 = −1.")
     assert f"at h = {fit.deviation.energy:g}" in text
