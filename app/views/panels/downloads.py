@@ -50,6 +50,16 @@ class Downloads:
         """The buttons, in a column."""
         return [self.link, self.side, self.picture, self.maps, self.orbits, self.curves, self.script, self.saver]
 
+    @property
+    def escape_map(self) -> EscapeMap | None:
+        """The complete map in view; None while it is computed."""
+        return self._frame
+
+    @property
+    def chosen_orbits(self) -> Sequence[ChosenOrbit]:
+        """The orbits in view."""
+        return self._orbits
+
     def show_map(self, frame: EscapeMap) -> None:
         """Set the map to download; files are made of complete maps only."""
         self._frame = frame if frame.complete else None
