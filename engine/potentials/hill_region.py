@@ -8,22 +8,29 @@ from engine.potentials.potential import Potential
 
 # The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
 _ENERGY_SHARE = 0.9
-_ANGLES, _RADII = 360, 300
-# Radii of the grid of `is_open_below`, in units of the distance of the outermost critical point.
+_ANGLES, _RADII_PER_E_FOLD = 720, 35
+# Smallest and largest radius of the grid, in units of the distances of the nearest and of the outermost critical point.
 _SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
 
 
-def is_open_below(potential: Potential, energy: float, outermost: float) -> bool:
-    """Whether the region around the origin slightly below `energy` extends far beyond the radius `outermost`."""
-    x, y = _polar_grid(outermost * np.geomspace(_SMALLEST_RADIUS, _LARGEST_RADIUS, _RADII))
-    bottom = float(potential.value(0.0, 0.0))
-    return bool(_connected_to_origin(potential.value(x, y) < bottom + _ENERGY_SHARE * (energy - bottom))[-1].any())
+def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:
+    """Whether the region around the origin slightly below `energy` extends far beyond all critical points (n, 2).
 
-
-def _polar_grid(radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """x and y (radii, angles); the angles span two turns, so that the edge of the grid does not split a region."""
+    The grid is polar in coordinates in which V ≈ ½ r² near the origin, so that it resolves narrow wells.
+    """
+    frequencies, axes = np.linalg.eigh(potential.hessian_matrix(0.0, 0.0))
+    scaled = np.sqrt(frequencies) * (points @ axes)
+    distance = np.hypot(*scaled.T)
+    distance = distance[distance > 0.0]
+    low, high = (distance.min(), distance.max()) if distance.size else (1.0, 1.0)
+    low, high = _SMALLEST_RADIUS * low, _LARGEST_RADIUS * high
+    radius = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
+    # The angles span two turns, so that the edge of the grid does not split a region.
     angle = np.linspace(0.0, 4.0 * np.pi, 2 * _ANGLES + 1)
-    return radius[:, None] * np.cos(angle), radius[:, None] * np.sin(angle)
+    xi, eta = radius * np.cos(angle) / np.sqrt(frequencies[0]), radius * np.sin(angle) / np.sqrt(frequencies[1])
+    value = potential.value(axes[0, 0] * xi + axes[0, 1] * eta, axes[1, 0] * xi + axes[1, 1] * eta)
+    bottom = float(potential.value(0.0, 0.0))
+    return bool(_connected_to_origin(value < bottom + _ENERGY_SHARE * (energy - bottom))[-1].any())
 
 
 def _connected_to_origin(allowed: np.ndarray) -> np.ndarray:

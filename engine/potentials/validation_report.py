@@ -23,7 +23,7 @@ MOST_CHANNELS = 16
 
 _CACHE_SIZE = 256
 # A Hessian is singular if the ratio of its eigenvalues is below this.
-_SINGULAR_RATIO = 1e-6
+_SINGULAR_RATIO = 1e-10
 # Radius of the circle for the index check, in units of the distance of the outermost critical point.
 _CIRCLE_RADIUS = 4.0
 # Significant digits of coefficients after a shift of the origin, and rounding errors of zero relative to the largest.
@@ -236,19 +236,18 @@ def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> 
 
 
 def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
-    outermost = max(np.hypot(point.x, point.y) for point in points) or potential.units.length
     if not potential.channels:
-        return _no_exit_refusal(potential, points, outermost)
+        return _no_exit_refusal(potential, points)
     if potential.channels > MOST_CHANNELS:
         return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
-    if is_open_below(potential, potential.escape_energy, outermost):
+    if is_open_below(potential, potential.escape_energy, potential.critical_points):
         return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
     return None
 
 
-def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...], outermost: float) -> str:
+def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str:
     energy_range = max(abs(point.energy - points[0].energy) for point in points) or potential.units.energy
-    if is_open_below(potential, points[0].energy + _OPEN_ENERGY_FACTOR * energy_range, outermost):
+    if is_open_below(potential, points[0].energy + _OPEN_ENERGY_FACTOR * energy_range, potential.critical_points):
         return "The well is open without a saddle, so its exits and its escape energy are not defined."
     return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."
 
