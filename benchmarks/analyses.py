@@ -59,7 +59,7 @@ def main() -> None:
         "uncertainty exponent": lambda: compute_uncertainty_exponent(SPEC),
     }
     threads = default_executor()._max_workers
-    print(f"III, (x, px), h = 0.45, 225 x 225, t_max = 1e5, {threads} threads, median of {REPEATS} warm runs\n")
+    print(f"III, (x, px), h = 0.45, 224 x 224, t_max = 1e5, {threads} threads, median of {REPEATS} warm runs\n")
     print("| analysis | seconds |\n|---|---|")
     for name, function in analyses.items():
         print(f"| {name} | {median_seconds(function):.3g} |")

@@ -17,7 +17,7 @@ EXAMPLES = """Examples:
 
 escape-explorer curves I --low 0.13 --high 0.5 --count 38 --output curves-I
 
-escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 225
+escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 224
 """
 
 
@@ -27,7 +27,7 @@ def draw_curves(
     high: Annotated[float, typer.Option("--high", help="Highest h.")],
     count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced energies.")],
     plane: options.Plane = PlaneName.X_PX,
-    resolution: options.Resolution = "113",
+    resolution: options.Resolution = "112",
     t_max: options.TMax = 1e5,
     exponent: Annotated[
         bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")
@@ -38,7 +38,7 @@ def draw_curves(
 ) -> None:
     """Compute measures of the basins at many energies, written to STEM.nc and STEM.csv."""
     from cli.arguments import find_plane, read_resolution, space_energies
-    from cli.files import add_ending, check_folder, write_files
+    from cli.files import add_ending, reserve_output, write_files
     from cli.potential_argument import file_name_part, find_potential
     from cli.run_context import cancellable_run
     from engine import EnergyCurvesSpec, compute_energy_curves
@@ -46,15 +46,15 @@ def draw_curves(
     energies = space_energies(low, high, count)
     spec = EnergyCurvesSpec(find_potential(case), find_plane(plane), energies, read_resolution(resolution), t_max, exponent)
     stem = output or Path(f"curves-{file_name_part(case)}-{plane}")
-    check_folder(stem)
-    with cancellable_run(threads) as run:
-        report = run.start_stage("energies")
-        on_frame = None if report is None else lambda curves: report(len(curves.points) / len(energies))
-        curves = compute_energy_curves(spec, on_frame=on_frame, cancel=run.cancel, executor=run.executor)
-    netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
-    head, rows = _tabulate(curves)
-    table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
-    files = write_files({add_ending(stem, "nc"): netcdf, add_ending(stem, "csv"): table})
+    with reserve_output(stem):
+        with cancellable_run(threads) as run:
+            report = run.start_stage("energies")
+            on_frame = None if report is None else lambda curves: report(len(curves.points) / len(energies))
+            curves = compute_energy_curves(spec, on_frame=on_frame, cancel=run.cancel, executor=run.executor)
+        netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
+        head, rows = _tabulate(curves)
+        table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+        files = write_files({add_ending(stem, "nc"): netcdf, add_ending(stem, "csv"): table})
     _print_result(head, rows, files, as_json)
 
 

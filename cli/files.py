@@ -1,10 +1,13 @@
-"""Atomic writing of result files."""
+"""Output files: reserved before the computation, written atomically."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+
+from engine.service import hold_lock
 
 Content = str | bytes
 
@@ -14,10 +17,24 @@ def add_ending(stem: Path, ending: str) -> Path:
     return stem.with_name(f"{stem.name}.{ending}")
 
 
-def check_folder(path: Path) -> None:
-    """Raise ValueError if the output folder does not exist; checked before the computation."""
+@contextmanager
+def reserve_output(path: Path | None) -> Iterator[None]:
+    """Reserve an output file, or a stem of several, from before the computation until it is written; None for no output.
+
+    Raises
+    ------
+    ValueError
+        If its folder does not exist.
+    BlockingIOError
+        If another process writes it; one sentence that names the process.
+    """
+    if path is None:
+        yield
+        return
     if not path.name or not path.parent.is_dir():
         raise ValueError(f"output='{path}': there is no folder '{path.parent}' to write to")
+    with hold_lock(path):
+        yield
 
 
 def write_files(contents: Mapping[Path, Content]) -> list[str]:
@@ -46,6 +63,9 @@ def _write(path: Path, content: bytes) -> None:
             file.flush()
             os.fsync(file.fileno())
         part.replace(path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(path)) from error
     except BaseException:
         part.unlink(missing_ok=True)
         raise

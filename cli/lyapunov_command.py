@@ -32,15 +32,14 @@ def list_lyapunov_orbits(
     as_json: options.AsJson = False,
 ) -> None:
     """List the Lyapunov orbit of each open exit: its period and its turning points on the zero-velocity curve."""
-    from cli.files import check_folder, write_files
+    from cli.files import reserve_output, write_files
     from cli.potential_argument import find_potential
     from engine import find_lyapunov_orbits
 
     potential = find_potential(case)
-    if output is not None:
-        check_folder(output)
-    orbits = find_lyapunov_orbits(potential, energy)
-    files = write_files({output: _paths_csv(orbits)}) if output is not None else []
+    with reserve_output(output):
+        orbits = find_lyapunov_orbits(potential, energy)
+        files = write_files({output: _paths_csv(orbits)}) if output is not None else []
     _print_result(energy, potential.escape_energy, orbits, files, as_json)
 
 

@@ -21,6 +21,7 @@ from cli import (
     serve_command,
     sweep_command,
 )
+from cli.system_errors import describe_system_error
 
 NAME = "escape-explorer"
 
@@ -73,7 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(str(stop) or "interrupted; nothing was written", INTERRUPTED)
     except (typer.TyperException, ValueError) as error:
         return _fail(_message(error), INVALID_REQUEST)
-    except (ImportError, OSError) as error:
+    except OSError as error:
+        return _fail(_on_one_line(describe_system_error(error)), FAILED)
+    except ImportError as error:
         return _fail(_message(error), FAILED)
     except Exception as error:
         return _fail(f"{type(error).__name__}: {_message(error)}", FAILED)
@@ -86,6 +89,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _message(error: Exception) -> str:
     """Return the message of an error on one line."""
     text = error.format_message() if isinstance(error, typer.TyperException) else str(error)
+    return _on_one_line(text)
+
+
+def _on_one_line(text: str) -> str:
     return " ".join(text.split())
 
 

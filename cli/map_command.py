@@ -42,7 +42,7 @@ def draw_map(
     energies: options.Energies = None,
     plane: options.Plane = PlaneName.X_PX,
     window: options.Window = None,
-    resolution: options.Resolution = "225",
+    resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
     backward: options.Backward = False,
@@ -83,7 +83,7 @@ def draw_map(
     from cli import map_output
     from cli.arguments import build_map_spec
     from cli.clusters import cluster_executor
-    from cli.files import check_folder, write_files
+    from cli.files import reserve_output, write_files
     from cli.map_analyses import AnalysisOptions, compute_map_with_analyses
     from cli.potential_argument import file_name_part
     from cli.run_context import cancellable_run
@@ -93,14 +93,15 @@ def draw_map(
     wanted.check(spec)
     drawing = map_output.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, side)
     stem = output or Path(file_stem(spec, file_name_part(case)))
-    check_folder(stem)
-    with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
-        frame, analyses = compute_map_with_analyses(spec, wanted, run)
-    # After the cluster is closed: with a Dask client, xarray uses distributed locks, which in-memory files do not support.
-    with cancellable_run() as run:
-        run.start_stage("writing")
-        files = map_output.contents(stem, [one.value for one in formats or Format], frame, analyses, drawing)
-    _print_result(frame, analyses, write_files(files), count_outside, as_json)
+    with reserve_output(stem):
+        with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
+            frame, analyses = compute_map_with_analyses(spec, wanted, run)
+        # After the cluster is closed: with a Dask client, xarray uses distributed locks, which in-memory files do not support.
+        with cancellable_run() as run:
+            run.start_stage("writing")
+            files = map_output.contents(stem, [one.value for one in formats or Format], frame, analyses, drawing)
+        written = write_files(files)
+    _print_result(frame, analyses, written, count_outside, as_json)
 
 
 def _print_result(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:

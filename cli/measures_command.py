@@ -33,7 +33,7 @@ def measure_basins(
     energies: options.Energies = None,
     plane: options.Plane = PlaneName.X_PX,
     window: options.Window = None,
-    resolution: options.Resolution = "225",
+    resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
     exponent: Annotated[

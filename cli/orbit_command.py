@@ -48,7 +48,7 @@ def follow_orbit(
     """
     from app.exports import orbits_csv
     from cli.arguments import find_palette, find_start
-    from cli.files import add_ending, check_folder, write_files
+    from cli.files import add_ending, reserve_output, write_files
     from cli.orbit_pictures import orbit_png
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
@@ -57,18 +57,17 @@ def follow_orbit(
 
     potential, colours = find_potential(case), find_palette(palette)
     whole = find_start(case, plane, energy, start, state)
-    if output is not None:
-        check_folder(output)
-    with cancellable_run() as run:
-        run.start_stage("orbit")
-        orbit = integrate_orbit(potential, whole, t_max, cancel=run.cancel)
-        bounded = orbit.fate == Fate.BOUNDED
-        digits = compute_birkhoff_digits(potential, whole, t_max, cancel=run.cancel) if bounded else None
-    verdict, files = judge_orbit(orbit, digits), []
-    if output is not None:
-        drawn = orbit_png(potential, orbit, colours, verdict.describe())
-        table = orbits_csv([orbit], most_rows, [verdict])
-        files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
+    with reserve_output(output):
+        with cancellable_run() as run:
+            run.start_stage("orbit")
+            orbit = integrate_orbit(potential, whole, t_max, cancel=run.cancel)
+            bounded = orbit.fate == Fate.BOUNDED
+            digits = compute_birkhoff_digits(potential, whole, t_max, cancel=run.cancel) if bounded else None
+        verdict, files = judge_orbit(orbit, digits), []
+        if output is not None:
+            drawn = orbit_png(potential, orbit, colours, verdict.describe())
+            table = orbits_csv([orbit], most_rows, [verdict])
+            files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
     _print_result(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
 
 

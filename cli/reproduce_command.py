@@ -65,13 +65,14 @@ def reproduce_paper(
     if only_list:
         _print_list({name: CAPTIONS[name] for name in chosen}, as_json)
         return
+    from cli.files import reserve_output
     from cli.run_context import cancellable_run
 
     quality = QUICK if quick else FULL
     _make_folder(output)
     began, made = time.perf_counter(), list[_WrittenFigure]()
     try:
-        with cancellable_run(threads) as run:
+        with reserve_output(output), cancellable_run(threads) as run:
             shelf = MapShelf(quality, run.executor, run.cancel)
             for name in chosen:
                 run.start_stage(name)

@@ -6,7 +6,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
 from functools import cache
 from typing import Any
 
@@ -86,3 +86,18 @@ def raise_if_cancelled(cancel: threading.Event | None) -> None:
     """Raise `concurrent.futures.CancelledError` if a cancel event was given and is set."""
     if is_cancelled(cancel):
         raise CancelledError
+
+
+def collect_result[T](future: Future[T], cancel: threading.Event | None) -> T | None:
+    """The result of a completed call; None if it never ran because the computation was cancelled.
+
+    Raises
+    ------
+    concurrent.futures.BrokenExecutor
+        When the executor has dropped the call although nobody cancelled it, as a cluster does that loses its scheduler.
+    """
+    if not future.cancelled():
+        return future.result()
+    if is_cancelled(cancel):
+        return None
+    raise BrokenExecutor("the executor has dropped a part of the computation; run it again")

@@ -9,6 +9,7 @@ from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
 from engine.dynamics.planes import trace_equipotentials
 from engine.execution import count_cores
+from engine.file_lock import hold_lock
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
 from engine.jobs.context import JobRequest
@@ -134,6 +135,7 @@ __all__ = [
     "format_number",
     "format_time",
     "format_whole",
+    "hold_lock",
     "is_ready_for_maps",
     "join_origin_fates",
     "judge_regularity",

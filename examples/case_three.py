@@ -1,4 +1,4 @@
-# ruff: noqa: D100, T201
+# ruff: noqa: D100
 
 # %% [markdown]
 # # Escapes in case III

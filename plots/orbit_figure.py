@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from engine import CHAOS_THRESHOLD, Plane, Potential
+from engine.service import format_number
 from plots.figure_axes import label_axes, name_panel, style_axes
 from plots.map_figure import draw_curve, draw_limits, draw_pixels, show_window
 from plots.orbit_curves import LEAST_SALI, OrbitCurves
@@ -36,7 +37,7 @@ def draw_sali(axes: Axes, curves: OrbitCurves, colour: str) -> None:
     axes.set_ylim(LEAST_SALI, _LARGEST_SALI)
     style_axes(axes)
     label_axes(axes, "t", "SALI")
-    name_panel(axes, f"SALI (chaotic at {CHAOS_THRESHOLD:g} or less)")
+    name_panel(axes, f"SALI (chaotic at {format_number(CHAOS_THRESHOLD)} or less)")
 
 
 def draw_r2(axes: Axes, curves: OrbitCurves, colour: str) -> None:

@@ -15,6 +15,7 @@ from typing import Any
 from panel.io.server import DocHandler, RootHandler, WSHandler
 
 from app.server.endpoints import ROUTES, NotFound
+from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
 
 
@@ -28,20 +29,6 @@ class PageHandler(SecurityHeaders, DocHandler):
             self.set_security_headers(nonce)
             chunk = add_nonce(chunk, nonce)
         super().write(chunk)
-
-
-class PageWebSocket(SecurityHeaders, WSHandler):
-    """WebSocket of a page; sends small messages at once.
-
-    A Bokeh message consists of a dozen WebSocket messages. By default, TCP delays all but the first until the client has
-    acknowledged it: one round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122,
-    4.2.3.2 and 4.2.3.4).
-    """
-
-    def open(self, *args: Any, **kwargs: Any) -> Any:
-        """Disable Nagle's algorithm and open the connection."""
-        self.set_nodelay(True)
-        return super().open(*args, **kwargs)
 
 
 def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
+from engine.proportions import wilson_interval
 from engine.representation import Result
 from engine.validation import checked_array, checked_integers, short_repr
 from engine.wording import format_count, format_decimals
@@ -89,6 +90,11 @@ class UncertaintyExponent(Result):
     def shares(self) -> np.ndarray:
         """(m,) f, the share of uncertain pairs at each separation; NaN without pairs."""
         return np.where(self.pairs > 0, self.uncertain / np.maximum(self.pairs, 1), np.nan)
+
+    @property
+    def share_intervals(self) -> tuple[np.ndarray, np.ndarray]:
+        """(m,) lower and upper limits of the 95 % Wilson intervals of the shares."""
+        return wilson_interval(self.uncertain, self.pairs)
 
     @property
     def dimension(self) -> float:

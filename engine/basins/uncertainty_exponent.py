@@ -255,7 +255,7 @@ class _PairSampler:
         """States and energy rows of the interior ones among `size` random pairs in the window."""
         points, rows = self._draw_points(index, size)
         batch = OrbitBatch.from_starts(self.spec.start_states(*points), np.tile(rows, 2))
-        batch.mark_outside(np.arange(2 * size), self.curves)
+        batch.mark_outside(self.spec.potential, np.arange(2 * size), self.curves)
         inside = (batch.fate == Fate.NOT_COMPUTED).reshape(2, -1).all(axis=0)
         return batch.state.reshape(2, -1, 4)[:, inside], rows[inside]
 

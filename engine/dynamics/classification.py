@@ -89,7 +89,7 @@ def classify_orbits(
     curves = exit_curves_in_well_units(potential, energy)[None]
     batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
-    batch.mark_outside(every_orbit, curves)
+    batch.mark_outside(scaled, every_orbit, curves)
     propagate_batch(scaled, curves, batch, every_orbit, t_max / units.time, final=True, executor=executor, cancel=cancel)
     outcomes = collect_outcomes(scaled, np.full(len(states), energy / units.energy), batch)
     return replace(outcomes, escape_time=outcomes.escape_time * units.time)

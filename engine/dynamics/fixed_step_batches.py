@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.dynamics.batch import LANES
-from engine.execution import count_workers, default_executor, is_cancelled
+from engine.execution import collect_result, count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR
 
@@ -57,8 +57,9 @@ def map_tiles(
     def collect(left_running: int) -> None:
         while len(running) > left_running:
             begin, future = running.popleft()
-            if not future.cancelled():
-                results[begin : begin + LANES] = future.result()[: len(states) - begin]
+            result = collect_result(future, cancel)
+            if result is not None:
+                results[begin : begin + LANES] = result[: len(states) - begin]
 
     for begin in range(0, len(states), LANES):
         collect(most_running - 1)

@@ -144,7 +144,7 @@ class MapRun:
             self._curves[row] = exit_curves_in_well_units(potential, energy * potential.units.energy)
             self._rows_without_exits.discard(row)
         fresh = pixels[~self._started[pixels]]
-        self._batch.mark_outside(fresh, self._curves)
+        self._batch.mark_outside(self.spec.potential, fresh, self._curves)
         self._started[fresh] = True
 
     def _certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:

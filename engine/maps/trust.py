@@ -287,7 +287,7 @@ class _TrustTest:
         reruns = []
         for start, tolerance in zip(shifted_starts(spec, x, ordinate), (TOLERANCE, SECOND_TOLERANCE), strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
-            batch.mark_outside(self._undecided, curves)
+            batch.mark_outside(potential, self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
             reruns.append(_Rerun(batch, tolerance, fate, crossings, escape_time))
         return curves, reruns

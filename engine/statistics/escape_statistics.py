@@ -11,6 +11,7 @@ from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Window
 from engine.maps.result import EscapeMap
+from engine.proportions import wilson_interval
 from engine.representation import Result
 
 MAX_SURVIVAL_POINTS = 500
@@ -86,6 +87,12 @@ class EscapeStatistics(Result):
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
+
+    @property
+    def share_intervals(self) -> dict[int, tuple[float, float]]:
+        """95 % Wilson interval of each of the `shares`, as for independent random starts."""
+        limits = {code: wilson_interval(round(share * self.starts), self.starts) for code, share in self.shares.items()}
+        return {code: (float(low), float(high)) for code, (low, high) in limits.items()}
 
     @property
     def escape_probabilities(self) -> np.ndarray:

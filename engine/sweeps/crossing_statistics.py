@@ -32,7 +32,7 @@ def compute_crossing_statistics(
     potential: Potential,
     plane: Plane,
     energies: Sequence[float],
-    resolution: tuple[int, int] = (225, 225),
+    resolution: tuple[int, int] = (224, 224),
     t_max: float = 1e5,
     *,
     window: Window | None = None,

@@ -79,7 +79,7 @@ class EnergyCurvesSpec:
     potential: Potential
     plane: Plane
     energies: tuple[float, ...]
-    resolution: tuple[int, int] = (113, 113)
+    resolution: tuple[int, int] = (112, 112)
     t_max: float = 1e5
     exponent: bool = True
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ import numpy as np
 
 from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.execution import SerialExecutor, count_workers, default_executor
+from engine.file_lock import hold_lock
 from engine.maps.compute import LARGEST_RUN, compute_map
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
@@ -76,23 +78,38 @@ def run_sweep(
     ValueError
         When the store holds another sweep or other files, or no exit is defined at one of the energies.
     OSError
-        When the store cannot be written to; finished energies and blocks stay valid.
+        When the store cannot be written to; finished energies and blocks stay valid. BlockingIOError when another process
+        computes into it, with one sentence that names the process.
     concurrent.futures.CancelledError
         When cancelled.
     """
     for energy in (spec.energies[0], spec.energies[-1]):
         exit_curves(spec.potential, energy)
-    sweep = _open_store(spec, Path(store))
-    pending = sweep.pending()
-    if pending:
-        sweep.check_writable()
+    path = Path(store)
+    sweep = _find_store(spec, path)
+    if sweep is None or sweep.pending():
+        with hold_lock(path):
+            sweep = _find_store(spec, path) or _create_store(spec, path)
+            _compute_pending(spec, sweep, on_progress, cancel, executor)
     sweep.delete_obsolete_checkpoints()
-    count = len(spec.energies)
-    for finished, index in enumerate(pending, start=count - len(pending)):
-        _compute_energy(spec, sweep, index, _start_progress(on_progress, finished, count), cancel, executor)
     if on_progress is not None:
         on_progress(1.0)
     return sweep.open_dataset()
+
+
+def _compute_pending(
+    spec: SweepSpec,
+    sweep: SweepStore,
+    on_progress: Callable[[float], None] | None,
+    cancel: threading.Event | None,
+    executor: Executor | None,
+) -> None:
+    """Compute the unfinished energies, one after the other."""
+    pending, count = sweep.pending(), len(spec.energies)
+    sweep.check_writable()
+    sweep.delete_obsolete_checkpoints()
+    for finished, index in enumerate(pending, start=count - len(pending)):
+        _compute_energy(spec, sweep, index, _start_progress(on_progress, finished, count), cancel, executor)
 
 
 def _compute_energy(
@@ -108,16 +125,31 @@ def _compute_energy(
     blocks = list(row_blocks(map_spec, spec.piece or LARGEST_RUN))
     if len(blocks) == 1:
         on_frame = None if report is None else lambda frame: report(frame.progress)
-        sweep.write(index, require_complete(compute_map(map_spec, on_frame, cancel, executor)).to_xarray())
+        images = require_complete(compute_map(map_spec, on_frame, cancel, executor)).to_xarray()
+        with _name_in_errors(sweep.path):
+            sweep.write(index, images)
         return
     checkpoint = sweep.checkpoint(index)
     for number, rows in enumerate(blocks):
         if number not in checkpoint:
             block = _compute_block(map_spec, rows, cancel, executor)
-            checkpoint.write(number, {name: getattr(block, name) for name in sweep.image_names})
+            with _name_in_errors(sweep.path):
+                checkpoint.write(number, {name: getattr(block, name) for name in sweep.image_names})
         if report is not None:
             report((number + 1) / len(blocks))
-    sweep.write_blocks(index, blocks)
+    with _name_in_errors(sweep.path):
+        sweep.write_blocks(index, blocks)
+
+
+@contextmanager
+def _name_in_errors(path: Path) -> Iterator[None]:
+    """Add the path of the store to errors of the operating system that name no file, such as that of a full disk."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None or error.filename is not None:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def _compute_block(spec: MapSpec, rows: np.ndarray, cancel: threading.Event | None, executor: Executor | None) -> EscapeMap:
@@ -127,20 +159,25 @@ def _compute_block(spec: MapSpec, rows: np.ndarray, cancel: threading.Event | No
     return require_complete(run.frame())
 
 
-def _open_store(spec: SweepSpec, path: Path) -> SweepStore:
-    """Open the store of a request; create it if there is none."""
-    attributes, coordinates = spec.provenance(), spec.coordinates()
+def _find_store(spec: SweepSpec, path: Path) -> SweepStore | None:
+    """Open the store of a request; None if the folder is missing or empty."""
     if not path.exists() or not any(path.iterdir()):
-        map_spec = spec.map_spec(spec.energies[-1])
-        template = MapRun(replace(map_spec, resolution=(1, 1))).frame().to_xarray()
-        fill_values = {name: fill for name, (_, fill) in PIXEL_ARRAYS.items()}
-        columns, rows = spec.resolution
-        create_store(path, template, fill_values, coordinates, attributes, min(max(LARGEST_RUN // columns, 1), rows))
-    elif not (path / "zarr.json").exists():
+        return None
+    if not (path / "zarr.json").exists():
         raise ValueError(f"store={path}: holds other files; must be new, empty, or the store of this sweep")
     sweep = SweepStore(path)
-    sweep.check_request(attributes, coordinates)
+    sweep.check_request(spec.provenance(), spec.coordinates())
     return sweep
+
+
+def _create_store(spec: SweepSpec, path: Path) -> SweepStore:
+    template = MapRun(replace(spec.map_spec(spec.energies[-1]), resolution=(1, 1))).frame().to_xarray()
+    fill_values = {name: fill for name, (_, fill) in PIXEL_ARRAYS.items()}
+    columns, rows = spec.resolution
+    chunk_rows = min(max(LARGEST_RUN // columns, 1), rows)
+    with _name_in_errors(path):
+        create_store(path, template, fill_values, spec.coordinates(), spec.provenance(), chunk_rows)
+    return SweepStore(path)
 
 
 def _start_progress(on_progress: Callable[[float], None] | None, finished: int, count: int) -> Callable[[float], None] | None:

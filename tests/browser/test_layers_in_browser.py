@@ -14,8 +14,8 @@ from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-VIEW = "?case=III&h=0.28&resolution=113&t_max=1000"
-SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (113, 113), t_max=1e3)
+VIEW = "?case=III&h=0.28&resolution=112&t_max=1000"
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (112, 112), t_max=1e3)
 _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
@@ -79,6 +79,10 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     reason = describe_certificate(frame.certificate[row, column])
     explorer.hover("basins", xs[column], ordinates[row])
     expect_tooltip(explorer, "bounded", reason, "regular", "never entered: inside since −t_max")
+    explorer.page.get_by_label("Origin and exit", exact=True).uncheck()
+    explorer.hover("basins", xs[column + 1], ordinates[row])
+    explorer.hover("basins", xs[column], ordinates[row])
+    expect(explorer.page.locator(".bk-Tooltip").get_by_text("never entered")).to_have_count(0)
 
 
 @pytest.mark.parametrize(

@@ -119,7 +119,7 @@ def test_json_contains_shares_and_files(count_outside: bool, run: Run, tmp_path:
 def test_default_file_names_describe_the_map(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run("map", *BOUNDED, "--side", 100)[0] == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13.nc", "escapes-I-x_px-h0.13.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13-t1000.nc", "escapes-I-x_px-h0.13-t1000.png"]
 
 
 def test_output_without_a_terminal_is_the_table_alone(run: Run, tmp_path: Path) -> None:

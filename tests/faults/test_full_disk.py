@@ -80,6 +80,21 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", str(disk)], check=False)
 
 
+def test_sweep_resumes_after_space_is_made_on_a_full_disk(
+    small_disk: Path, tmp_path: Path, run_limited: Callable[..., Finished]
+) -> None:
+    subprocess.run(["mount", "-o", "remount,size=128k", str(small_disk)], check=True)
+    full = run_limited(10**9, small_disk, *SWEEP)
+    assert full.code == FAILED
+    assert is_one_sentence(full.err), full.err
+    assert f"{os.strerror(errno.ENOSPC)}; free some space" in full.err
+    subprocess.run(["mount", "-o", "remount,size=10m", str(small_disk)], check=True)
+    assert run_limited(10**9, small_disk, *SWEEP).code == 0
+    (tmp_path / "elsewhere").mkdir()
+    assert run_limited(10**9, tmp_path / "elsewhere", *SWEEP).code == 0
+    assert _arrays(small_disk / "store.zarr") == _arrays(tmp_path / "elsewhere" / "store.zarr")
+
+
 def test_disk_that_fills_up_is_reported_in_one_sentence(small_disk: Path, run_limited: Callable[..., Finished]) -> None:
     command = ("map", "I", "--energy", "0.19", "--resolution", "120", "--t-max", "5", "--format", "nc", "--output", "map")
     completed = run_limited(10**9, small_disk, *command)

@@ -38,7 +38,7 @@ from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
-from plots.image_columns import character_column, longest_typical_time, passage_column
+from plots.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
 from plots.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
 from plots.palette import PAPER, Palette
 
@@ -179,6 +179,11 @@ class MapsView:
         self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
         self._show_legend()
 
+    def remove_layer(self, column: str) -> None:
+        """Remove the column of a layer, ``character`` or ``passage``, which the hover text would still describe."""
+        if self.source.data[column][0].size > 1:
+            self.source.data = {**self.source.data, column: NO_LAYER}
+
     def set_palette(self, palette: Palette) -> None:
         """Set all colours."""
         self._palette = palette
@@ -305,9 +310,7 @@ class MapsView:
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
         x, y = self._ranges
-        plot = self.figures[name] = square_figure(
-            name, TITLES[name], x_range=x, y_range=y, x_axis_label="x", tools="", toolbar_location=None
-        )
+        plot = self.figures[name] = square_figure(name, TITLES[name], x_range=x, y_range=y, x_axis_label="x")
         plot.toolbar = self._toolbar
         self._paint(name)
         # Two quick clicks, even at two places, are one tap and one double tap.

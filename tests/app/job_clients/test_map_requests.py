@@ -61,7 +61,7 @@ class Recorder:
 
 @pytest.fixture
 def session() -> Iterator[tuple[ViewState, MapRequests, Recorder, Jobs]]:
-    state, recorder, jobs = ViewState(case="I", energy=0.3, resolution=113, t_max=1e2), Recorder(), Jobs()
+    state, recorder, jobs = ViewState(case="I", energy=0.3, resolution=112, t_max=1e2), Recorder(), Jobs()
     requests = MapRequests(state, jobs, recorder, lambda function: function)
     yield state, requests, recorder, jobs
     requests.close()

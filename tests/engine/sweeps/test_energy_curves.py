@@ -8,7 +8,17 @@ from concurrent.futures import CancelledError
 import numpy as np
 import pytest
 
-from engine import CASES, EnergyCurves, EnergyCurvesSpec, MapSpec, Plane, compute_energy_curves, compute_map, compute_statistics
+from engine import (
+    CASES,
+    EnergyCurves,
+    EnergyCurvesSpec,
+    Fate,
+    MapSpec,
+    Plane,
+    compute_energy_curves,
+    compute_map,
+    compute_statistics,
+)
 from engine.service import EnergyPoint, EnergyPointSpec, compute_energy_point
 
 SPEC = EnergyCurvesSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), 500.0, exponent=False)
@@ -37,6 +47,11 @@ def test_below_the_escape_energy_all_orbits_are_bounded(curves: EnergyCurves) ->
     np.testing.assert_array_equal(curves.shares[0], [1.0, 0.0, 0.0, 0.0])
     assert curves.curve("s_b")[0] == 0.0
     assert np.isnan(curves.curve("mean_escape_time")[0])
+
+
+def test_orbits_that_stay_on_a_symmetry_line_have_no_share() -> None:
+    curves = compute_energy_curves(EnergyCurvesSpec(CASES["III"], Plane.X_Y, (0.6, 1.0), t_max=1e4, exponent=False))
+    np.testing.assert_array_equal(curves.shares[:, Fate.BOUNDED], 0.0)
 
 
 def test_median_escape_time_decreases_with_energy(curves: EnergyCurves) -> None:

@@ -1,0 +1,285 @@
+"""What a browser may set on the server: the values of widgets, the ranges and sizes of plots, and the events of models.
+
+Bokeh checks the types of properties only, while it applies a message, and Panel checks values in a callback; both answer an
+invalid value with a traceback in the log. Here a message is checked as a whole before Bokeh gets it.
+"""
+
+from __future__ import annotations
+
+import reprlib
+from collections import defaultdict
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from typing import Any
+
+import param
+from bokeh.core.serialization import DeserializationError, Deserializer, UnknownReferenceError
+from bokeh.document import Document
+from bokeh.events import ClientReconnected, DocumentReady, ModelEvent
+from bokeh.model import DataModel, Model
+from bokeh.models import (
+    AbstractGroup,
+    AbstractSlider,
+    Checkbox,
+    NumericInput,
+    Plot,
+    Range1d,
+    Select,
+    Selection,
+    Span,
+    Switch,
+    Tabs,
+    TextInput,
+    Toggle,
+)
+from panel.custom import JSComponent
+from panel.models.layout import Card, Column
+from panel.models.widgets import Player
+
+LONGEST_TEXT = 4000
+"""Most characters of any text in a message."""
+
+MOST_VALUES = 2000
+"""Most values in a message, nested ones included."""
+
+_LARGEST_NUMBER = 1e15
+_DEEPEST = 12
+
+Check = Callable[[Model, Any], bool]
+
+
+class RefusedMessageError(ValueError):
+    """A message that no page sends; one sentence with what is wrong."""
+
+
+class OutdatedMessageError(RefusedMessageError):
+    """A message about a model that the server has removed meanwhile."""
+
+
+def check_patch(content: Any, document: Document) -> None:
+    """Check the content of a PATCH-DOC message.
+
+    Parameters
+    ----------
+    content
+        The message's content, parsed from JSON.
+    document
+        The document that it would change.
+
+    Raises
+    ------
+    RefusedMessageError
+        When the page cannot have sent it.
+    """
+    if not isinstance(content, dict) or content.keys() != {"events"} or not isinstance(content["events"], list):
+        raise RefusedMessageError("a patch must have a list of events")
+    models = {model.id: model for model in document.models}
+    _check_values(content["events"], models)
+    decoder = Deserializer(list(models.values()))
+    ranges: dict[Range1d, dict[str, Any]] = defaultdict(dict)
+    for event in content["events"]:
+        match event:
+            case {"kind": "ModelChanged", "model": {"id": str()}, "attr": str(name), "new": value, **rest} if not rest:
+                model, new = _decode(document, decoder, event["model"]), _decode(document, decoder, value)
+                _check_change(model, name, new)
+                if isinstance(model, Range1d):
+                    ranges[model][name] = new
+            case {"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": data, **rest} if not rest:
+                _check_event(_decode(document, decoder, data))
+            case _:
+                raise RefusedMessageError(f"an event {_quote(event)} that no page sends")
+    for changed, values in ranges.items():
+        _check_range(changed, **values)
+
+
+def _decode(document: Document, decoder: Deserializer, value: Any) -> Any:
+    """The value in Python. Events of unknown classes or with other fields than theirs raise errors of all kinds."""
+    try:
+        return decoder.decode(value)
+    except UnknownReferenceError as error:
+        if isinstance(error.id, str) and document.models.seen(error.id):
+            raise OutdatedMessageError(f"the model {_quote(error.id)} is no longer there") from None
+        raise RefusedMessageError(f"there is no model {_quote(error.id)}") from None
+    except (DeserializationError, TypeError, ValueError, KeyError, AttributeError) as error:
+        raise RefusedMessageError(f"{_quote(value)} cannot be decoded: {_quote(str(error))}") from None
+
+
+def _check_range(changed: Range1d, **values: float) -> None:
+    """The ends of a range may change one after the other, but not their order."""
+    ends = {"start": changed.start, "end": changed.end} | values
+    if (ends["end"] - ends["start"]) * (changed.end - changed.start) <= 0.0:
+        raise RefusedMessageError(f"a range from {ends['start']} to {ends['end']}")
+
+
+def _check_change(model: Model, name: str, value: Any) -> None:
+    place = f"{type(model).__name__}.{name}"
+    checks = [checks[name] for kind, checks in _EDITABLE.items() if isinstance(model, kind) and name in checks]
+    if not checks:
+        raise RefusedMessageError(f"{place} is not a property that a browser changes")
+    if not model.lookup(name).property.is_valid(value) or not all(check(model, value) for check in checks):
+        raise RefusedMessageError(f"{place} cannot be {_quote(value)}")
+
+
+def _check_event(event: Any) -> None:
+    if isinstance(event, DocumentReady | ClientReconnected):
+        return
+    if not isinstance(event, ModelEvent) or not isinstance(event.model, Model):
+        raise RefusedMessageError(f"an event {_quote(event)} that no page sends")
+    name = f"event {event.event_name} of {type(event.model).__name__}"
+    if event.event_name not in event.model.subscribed_events:
+        raise RefusedMessageError(f"{name}: nothing on the server waits for it")
+    if not all(_is_real(getattr(event, field)) for field in _NUMBERS if hasattr(event, field)):
+        raise RefusedMessageError(f"{name}: its coordinates must be numbers")
+
+
+# Fields of events of plots.
+_NUMBERS = ("x", "y", "sx", "sy", "x0", "x1", "y0", "y1")
+
+
+def _check_values(events: Any, known: Container[str]) -> None:
+    """Only few and small numbers, texts, references, lists, maps and events are accepted."""
+    for number, (depth, each) in enumerate(_walk(events, 0, known)):
+        if number == MOST_VALUES or depth > _DEEPEST:
+            raise RefusedMessageError("a patch with too many values")
+        if not _is_plain(each):
+            raise RefusedMessageError(f"a patch with the value {_quote(each)}")
+
+
+def _walk(value: Any, depth: int, known: Container[str]) -> Iterator[tuple[int, Any]]:
+    """All values with their depths, except the attributes of known models, which Bokeh ignores.
+
+    A browser sends all attributes of a model that the server has added, not only its id, when it refers to it first.
+    """
+    if isinstance(value, dict) and value.get("type") == "object" and isinstance(value.get("id"), str) and value["id"] in known:
+        return
+    yield depth, value
+    children: Iterable[Any] = ()
+    if depth <= _DEEPEST and isinstance(value, dict):
+        children = (*value.keys(), *value.values())
+    elif depth <= _DEEPEST and isinstance(value, list):
+        children = value
+    for child in children:
+        yield from _walk(child, depth + 1, known)
+
+
+def _is_plain(value: Any) -> bool:
+    if isinstance(value, str):
+        # A lone surrogate cannot be written anywhere.
+        return len(value) <= LONGEST_TEXT and not any("\ud800" <= c <= "\udfff" for c in value)
+    if isinstance(value, int | float):
+        return _is_real(value)
+    return not isinstance(value, dict) or value.get("type", "map") in ("map", "event", "number")
+
+
+def _is_real(value: Any) -> bool:
+    # False for NaN.
+    return isinstance(value, int | float) and abs(value) <= _LARGEST_NUMBER
+
+
+def _quote(value: Any) -> str:
+    return reprlib.repr(value)
+
+
+def _is_between(value: Any, low: Any, high: Any) -> bool:
+    """Whether a value is a number within limits, of which each may be missing."""
+    return _is_real(value) and not isinstance(value, bool) and (low is None or low <= value) and (high is None or value <= high)
+
+
+def _is_on_slider(slider: Any, value: Any) -> bool:
+    values = value if isinstance(value, list | tuple) else [value]
+    return all(_is_between(each, slider.start, slider.end) for each in values) and list(values) == sorted(values)
+
+
+def _is_in_box(box: Any, value: Any) -> bool:
+    return value is None or _is_between(value, box.low, box.high)
+
+
+def _is_option(select: Any, value: Any) -> bool:
+    options = select.options
+    groups = options.values() if isinstance(options, Mapping) else [options]
+    return any(value == (option[0] if isinstance(option, tuple | list) else option) for group in groups for option in group)
+
+
+def _is_active(group: Any, value: Any) -> bool:
+    chosen = value if isinstance(value, list) else [] if value is None else [value]
+    return len(set(chosen)) == len(chosen) and all(_is_between(each, 0, len(group.labels) - 1) for each in chosen)
+
+
+def _is_tab(tabs: Any, value: Any) -> bool:
+    return _is_between(value, 0, len(tabs.tabs) - 1)
+
+
+def _is_direction(_: Any, value: Any) -> bool:
+    return _is_between(value, -1, 1)
+
+
+def _is_short(box: Any, value: Any) -> bool:
+    return len(value) <= (LONGEST_TEXT if box.max_length is None else box.max_length)
+
+
+def _is_yes_or_no(_: Any, value: Any) -> bool:
+    return isinstance(value, bool)
+
+
+def _is_number(_: Any, value: Any) -> bool:
+    return _is_between(value, None, None)
+
+
+def _is_position(_: Any, value: Any) -> bool:
+    """Also NaN, for a pointer outside a plot."""
+    return value is None or isinstance(value, int | float)
+
+
+def _is_size(_: Any, value: Any) -> bool:
+    return _is_between(value, 0, None)
+
+
+def _is_list_of_positions(_: Any, value: Any) -> bool:
+    return all(_is_between(each, 0, None) for each in value)
+
+
+def _is_data(model: DataModel, name: str, value: Any) -> bool:
+    """Whether the parameter of a component that a property belongs to permits a value."""
+    # Panel has no public way from a data model to its component.
+    owners = (each for each in param.concrete_descendents(JSComponent).values() if each._data_model is type(model))
+    parameter = next((owner.param[name] for owner in owners if name in owner.param), None)
+    match parameter:
+        case param.Integer() | param.Number():
+            low, high = parameter.bounds or (None, None)
+            return _is_between(value, low, high) and (isinstance(value, int) or type(parameter) is param.Number)
+        case param.Boolean():
+            return isinstance(value, bool)
+        case param.String() | param.Dict():
+            return True
+    return False
+
+
+class _DataProperties(dict[str, Check]):
+    """The properties of a component with parameters that are numbers, texts or maps."""
+
+    def __contains__(self, name: object) -> bool:
+        return name not in ("name", "tags")
+
+    def __missing__(self, name: str) -> Check:
+        return lambda model, value: _is_data(model, name, value)
+
+
+_EDITABLE: dict[type[Model], Mapping[str, Check]] = {
+    AbstractSlider: {"value": _is_on_slider, "value_throttled": _is_on_slider},
+    NumericInput: {"value": _is_in_box, "value_throttled": _is_in_box},
+    TextInput: {"value": _is_short, "value_input": _is_short},
+    Select: {"value": _is_option},
+    AbstractGroup: {"active": _is_active},
+    Toggle: {"active": _is_yes_or_no},
+    Checkbox: {"active": _is_yes_or_no},
+    Switch: {"active": _is_yes_or_no},
+    Tabs: {"active": _is_tab},
+    Player: {"value": _is_on_slider, "value_throttled": _is_on_slider, "direction": _is_direction},
+    Card: {"collapsed": _is_yes_or_no},
+    Column: {"scroll_position": _is_size},
+    Range1d: {"start": _is_number, "end": _is_number},
+    Span: {"location": _is_position},
+    Plot: dict.fromkeys(("inner_width", "inner_height", "outer_width", "outer_height"), _is_size),
+    Selection: {"indices": _is_list_of_positions, "line_indices": _is_list_of_positions},
+    DataModel: _DataProperties(),
+}
+"""By class, also of subclasses: the properties that a browser changes, and the values that are possible in one."""

@@ -1,0 +1,86 @@
+"""The WebSocket of a page: admits it, checks its messages, and closes it alone when it misbehaves."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+from bokeh.protocol.exceptions import ProtocolError
+from panel.io.server import WSHandler
+
+from app.server.admission import check_session
+from app.server.browser_rules import RefusedMessageError
+from app.server.message_guard import LARGEST_FRAGMENT, MessageGuard, UnacceptableConnectionError
+from app.server.security_headers import SecurityHeaders
+
+# Close code of a WebSocket (RFC 6455, 7.4.1).
+_POLICY_VIOLATION = 1008
+
+log = logging.getLogger(f"bokeh.{__name__}")
+
+
+class PageWebSocket(SecurityHeaders, WSHandler):
+    """WebSocket of a page; sends small messages at once.
+
+    A Bokeh message consists of a dozen WebSocket messages. By default, TCP delays all but the first until the client has
+    acknowledged it: one round trip, and up to 40 ms more (Nagle's algorithm with delayed acknowledgements, RFC 1122,
+    4.2.3.2 and 4.2.3.4).
+
+    Messages that no page sends are ignored, with one line in the log; floods and giant messages close the connection. Neither
+    reaches Bokeh.
+    """
+
+    # Tornado closes the connection when a part of a message is longer.
+    max_message_size = LARGEST_FRAGMENT
+
+    def open(self, *args: Any, **kwargs: Any) -> Any:
+        """Disable Nagle's algorithm and open the connection."""
+        self.set_nodelay(True)
+        self._guard, self._closed = MessageGuard(), False
+        try:
+            check_session(self._token, self.application_context)
+            return super().open(*args, **kwargs)
+        except Exception as error:
+            return self._refuse_connection(error)
+
+    async def _async_open(self, token: str) -> None:
+        try:
+            await super()._async_open(token)
+        except ProtocolError as error:
+            self._refuse_connection(error)
+
+    async def on_message(self, message: str | bytes) -> None:
+        """Hand a message on to Bokeh if a page can have sent it."""
+        session = self._open_session()
+        if self._closed or (session is None and self.connection is not None):
+            return
+        try:
+            if session is None:
+                raise UnacceptableConnectionError("a message before the session is open")
+            parts = self._guard.take(message, session.document)
+        except UnacceptableConnectionError as error:
+            self._refuse_connection(error)
+        except RefusedMessageError as refusal:
+            log.warning("message refused: %s", refusal)
+        else:
+            for part in parts:
+                await super().on_message(part)
+
+    def on_close(self) -> None:
+        """Tell Bokeh, unless it has given up the connection before."""
+        if self.connection is None or self._open_session() is not None:
+            super().on_close()
+        self._closed = True
+
+    def _open_session(self) -> Any:
+        """The session; None before it is open and after Bokeh has given up the connection."""
+        try:
+            return None if self.connection is None else self.connection.session
+        except AssertionError:
+            # Bokeh has no other sign of it.
+            return None
+
+    def _refuse_connection(self, error: Exception) -> None:
+        log.warning("connection closed: %s", error)
+        self._closed = True
+        self.close(_POLICY_VIOLATION, "refused")

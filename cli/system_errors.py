@@ -1,0 +1,34 @@
+"""Errors of the operating system as sentences: the path, the problem and what to do."""
+
+from __future__ import annotations
+
+import errno
+
+_WRITABLE = "choose a folder that you may write to"
+_SPACE = "free some space or choose another disk, then run the same command again"
+_ADVICE = {
+    errno.ENOENT: "check the path",
+    errno.ENOTDIR: "a part of this path is a file; choose another path",
+    errno.EISDIR: "name a file",
+    errno.EEXIST: "a file is in the place of this folder; choose another path",
+    errno.EACCES: _WRITABLE,
+    errno.EPERM: _WRITABLE,
+    errno.EROFS: _WRITABLE,
+    errno.ENOSPC: _SPACE,
+    errno.EDQUOT: _SPACE,
+    errno.EFBIG: _SPACE,
+    errno.EIO: "the disk may be failing; choose another one",
+    errno.ENAMETOOLONG: "choose a shorter name",
+    errno.EMFILE: "allow more open files (ulimit -n)",
+    errno.ECONNREFUSED: "check that the server or scheduler is running",
+    errno.EADDRINUSE: "choose another port",
+}
+
+
+def describe_system_error(error: OSError) -> str:
+    """Return a sentence without a full stop; the text of the error itself if it has no error number."""
+    if error.errno is None or error.strerror is None:
+        return str(error)
+    advice = _ADVICE.get(error.errno)
+    problem = f"{error.strerror}; {advice}" if advice else error.strerror
+    return problem if error.filename is None else f"{error.filename}: {problem}"

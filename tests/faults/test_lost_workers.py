@@ -1,0 +1,135 @@
+"""Clusters that lose workers or their scheduler: a sweep goes on, or ends with a sentence and resumes with the same bytes."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import signal
+import sys
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import distributed
+import numpy as np
+import pytest
+
+import engine
+from cli.clusters import _describing_losses
+from cli.main import FAILED, main
+from engine import CASES, Plane, SweepSpec, run_sweep
+from engine.dynamics.fixed_step_batches import map_tiles
+from tests.forked import Finished, run
+
+SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (15, 15), t_max=2e4, piece=80)
+SWEEP = (
+    "sweep", "III", "--energy", "0.36", "--energy", "0.4", "--resolution", "15", "--t-max", "2e4", "--piece", "80",
+    "--store", "store.zarr",
+)  # fmt: skip
+
+
+class ForgetfulPool(ThreadPoolExecutor):
+    """A thread pool that drops one call, as a cluster does whose scheduler restarts."""
+
+    def __init__(self, good_calls: int) -> None:
+        super().__init__(2)
+        self._numbers, self._dropped = itertools.count(), good_calls
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Any:
+        if next(self._numbers) != self._dropped:
+            return super().submit(function, *arguments, **named)
+        future: Future[Any] = Future()
+        future.cancel()
+        future.set_running_or_notify_cancel()
+        return future
+
+
+def files_of(store: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+
+
+# The calls of a block: its tiles, then those of its certificates.
+@pytest.mark.parametrize("good_calls", [0, 5, 20])
+def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(good_calls: int, tmp_path: Path) -> None:
+    with ForgetfulPool(good_calls) as pool, pytest.raises(BrokenExecutor):
+        run_sweep(SPEC, tmp_path / "store", executor=pool)
+    run_sweep(SPEC, tmp_path / "store")
+    run_sweep(SPEC, tmp_path / "straight")
+    assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
+
+
+def test_dropped_call_is_no_missing_result() -> None:
+    with ForgetfulPool(0) as pool, pytest.raises(BrokenExecutor):
+        map_tiles(lambda *_: np.ones(1), CASES["I"], np.zeros((1, 4)), executor=pool)
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [
+        (distributed.KilledWorker("task", None, 3), "several workers died"),
+        (BrokenExecutor("dropped"), "the scheduler of the cluster is lost"),
+        (distributed.comm.CommClosedError("ConnectionPool closing."), "the scheduler of the cluster is lost"),
+        (OSError("Timed out trying to connect to tcp://node1:8786 after 30 s"), "the scheduler of the cluster is lost"),
+    ],
+    ids=["workers", "scheduler restarted", "connection lost", "no connection"],
+)
+def test_losses_are_described(error: Exception, expected: str) -> None:
+    with pytest.raises(ConnectionError, match=expected), _describing_losses():
+        raise error
+
+
+def test_full_disk_is_no_loss_of_the_cluster() -> None:
+    with pytest.raises(OSError, match="No space"), _describing_losses():
+        raise OSError(28, "No space left on device", "store.zarr")
+
+
+def sweep_and_lose(folder: Path, lose: Callable[[Any], None] | None) -> None:
+    """Run the command on a cluster of two processes, with a loss after the first block."""
+    os.chdir(folder)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        run_whole, lost = engine.run_sweep, []
+
+        def on_progress(share: float) -> None:
+            if share > 0.0 and lose is not None and not lost:
+                lost.append(share)
+                lose(cluster)
+
+        engine.run_sweep = lambda *arguments, **named: run_whole(*arguments, **{**named, "on_progress": on_progress})
+        sys.exit(main((*SWEEP, "--scheduler", cluster.scheduler_address)))
+
+
+def kill_worker(cluster: Any) -> None:
+    with distributed.Client(cluster) as client:
+        os.kill(min(client.run(os.getpid).values()), signal.SIGKILL)
+
+
+def close_scheduler(cluster: Any) -> None:
+    cluster.sync(cluster.scheduler.close)
+
+
+@pytest.mark.slow
+class TestDask:
+    """The workers are processes."""
+
+    @pytest.fixture
+    def sweep(self, tmp_path: Path) -> Callable[..., Finished]:
+        def run_in(name: str, lose: Callable[[Any], None] | None) -> Finished:
+            (tmp_path / name).mkdir(exist_ok=True)
+            return run(tmp_path, sweep_and_lose, tmp_path / name, lose)
+
+        return run_in
+
+    def test_sweep_goes_on_when_a_worker_is_killed(self, tmp_path: Path, sweep: Callable[..., Finished]) -> None:
+        killed = sweep("killed", kill_worker)
+        assert killed.code == 0, killed.err
+        assert sweep("straight", None).code == 0
+        assert files_of(tmp_path / "killed") == files_of(tmp_path / "straight")
+
+    def test_sweep_resumes_on_another_scheduler(self, tmp_path: Path, sweep: Callable[..., Finished]) -> None:
+        lost = sweep("lost", close_scheduler)
+        assert lost.code == FAILED
+        assert "escape-explorer: the scheduler of the cluster is lost; start it" in lost.err
+        assert sweep("lost", None).code == 0
+        assert sweep("straight", None).code == 0
+        assert files_of(tmp_path / "lost") == files_of(tmp_path / "straight")
