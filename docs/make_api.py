@@ -20,6 +20,7 @@ import pdoc.render_helpers
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import engine
+from docs.tutorial import to_markdown
 
 ROOT = Path(__file__).parents[1]
 HERE = Path(__file__).parent
@@ -33,7 +34,8 @@ PAGE = """<!doctype html>
 body {{ max-width: 52rem; margin: 2rem auto; padding: 0 1rem; font: 1rem/1.5 system-ui, sans-serif; color-scheme: light dark }}
 img {{ max-width: 100% }} pre {{ overflow-x: auto }} td, th {{ padding: 0.2rem 0.6rem; text-align: left; vertical-align: top }}
 </style>
-<nav><a href="index.html">Escape Explorer</a> · <a href="engine.html">API reference</a></nav>
+<nav><a href="index.html">Escape Explorer</a> · <a href="tutorial.html">Tutorial</a> ·
+<a href="engine.html">API reference</a></nav>
 {body}
 <hr><nav>{pages}</nav>
 </html>
@@ -45,8 +47,11 @@ def main(arguments: list[str]) -> None:
     make_site(Path(arguments[0]) if arguments else ROOT / "site")
 
 
-def make_site(folder: Path) -> None:
-    """Write index.html from README.md, one page per Markdown file, and engine.html with every public name."""
+def make_site(folder: Path, *, run: bool = True) -> None:
+    """Write index.html from README.md, one page per Markdown file, the tutorial, and engine.html with every public name.
+
+    With `run` the tutorial is computed, which takes about 20 s, and shows its pictures.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     module = document_engine()
     pdoc.render.configure(docformat="numpy", show_source=False)
@@ -57,7 +62,9 @@ def make_site(folder: Path) -> None:
     _write(folder / "search.js", pdoc.render.search_index({"engine": module}))
     sources = _markdown_files()
     for stem, path in sources.items():
-        _write(folder / f"{stem}.html", _to_html(path.read_text(encoding="utf-8"), list(sources)[1:]))
+        _write(folder / f"{stem}.html", _to_html(path.read_text(encoding="utf-8"), [*list(sources)[1:], "tutorial"]))
+    tutorial = to_markdown(ROOT / "examples" / "tutorial.ipynb", run=run)
+    _write(folder / "tutorial.html", _to_html(tutorial, list(sources)[1:]))
     for picture in (path for pattern in PICTURES for path in HERE.glob(pattern)):
         shutil.copy(picture, folder)
     shutil.copytree(HERE / "screenshots", folder / "screenshots", dirs_exist_ok=True)

@@ -48,6 +48,7 @@ from plots.potential_figure import draw_equipotentials, enlarge
 
 _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
 _BINS = 40
+_SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 TRUST_COLOURS = ("#ffffff", "#dfe6ee", "#7da7c9", "#d1495b", "#b0b0b0")
 """Of the codes of `Trust`."""
 _MOST_DECADES = 16
@@ -72,7 +73,7 @@ def to_html(result: Result) -> str:
     rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{_shown(value)}</td></tr>" for name, value in numbers.items())
     sentence = f"<p>{html.escape(describe())}</p>" if describe is not None else ""
     return (
-        f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='display:flex;gap:1em;flex-wrap:wrap'>"
+        f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
         f"{_picture(result)}<table>{rows}</table></div></div>"
     )
 

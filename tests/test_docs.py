@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import doctest
+import inspect
+import json
 import pkgutil
 import re
 import runpy
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +18,8 @@ import engine
 
 ROOT = Path(__file__).parents[1]
 PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "benchmarks" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+EXAMPLES = [name for name in engine.__all__ if ">>>" in (getattr(engine, name).__doc__ or "")]
 
 
 def page_name(path: Path) -> str:
@@ -30,7 +36,7 @@ def make_api() -> dict[str, Any]:
 def site(make_api: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The generated pages; warnings are errors."""
     folder = tmp_path_factory.mktemp("site") / "new"
-    make_api["make_site"](folder)
+    make_api["make_site"](folder, run=False)
     return folder
 
 
@@ -82,6 +88,28 @@ def test_files_named_in_text_exist(page: Path) -> None:
 def test_modules_named_in_text_exist(page: Path) -> None:
     named = re.findall(r"`((?:app|cli|engine|reproduction)(?:\.\w+)+)", page.read_text(encoding="utf-8"))
     assert [name for name in named if not _is_defined(name)] == []
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_of_a_docstring_prints_what_it_says(name: str) -> None:
+    (test,) = doctest.DocTestFinder(recurse=False).find(inspect.unwrap(getattr(engine, name)), name)
+    assert doctest.DocTestRunner().run(test).failed == 0
+
+
+def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
+    cells = json.loads((ROOT / "examples" / "tutorial.ipynb").read_text(encoding="utf-8"))["cells"]
+    kinds = [cell["cell_type"] for cell in cells]
+    assert kinds[0] == "markdown"
+    assert ("code", "code") not in pairwise(kinds)
+    assert not any(cell.get("outputs") for cell in cells)
+
+
+@pytest.mark.slow
+def test_tutorial_in_the_pages_shows_results_and_figures(make_api: dict[str, Any], tmp_path: Path) -> None:
+    make_api["make_site"](tmp_path)
+    text = (tmp_path / "tutorial.html").read_text(encoding="utf-8")
+    assert text.count("data:image/png;base64,") >= 8
+    assert text.count("<strong>EscapeMap</strong>") == 1
 
 
 def test_python_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -106,6 +106,14 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     ValueError
         If `energy` is not finite, or so high that a Lyapunov orbit is not found or not a graph across its channel, or that
         exits meet.
+
+    Examples
+    --------
+    >>> from engine import CASES, find_lyapunov_orbits
+    >>> [round(orbit.period, 6) for orbit in find_lyapunov_orbits(CASES["I"], 0.19)]
+    [4.437671, 4.437671]
+    >>> find_lyapunov_orbits(CASES["I"], 0.1)
+    ()
     """
     energy, units = checked_number("energy", energy), potential.units
     try:

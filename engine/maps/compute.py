@@ -71,6 +71,13 @@ def compute_map(
     ------
     ValueError
         When `resume` belongs to another map, or no exit is defined at an energy of `spec`.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_map
+    >>> escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), t_max=1e3))
+    >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
+    (True, 1.0)
     """
     if resume is not None:
         _check_resumable(spec, resume)

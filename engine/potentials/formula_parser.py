@@ -98,6 +98,13 @@ def parse_formula(text: str, name: str | None = None) -> Potential:
         A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
         50 nested brackets, a degree above 12, no term with x or y, more than 60 terms, or a coefficient whose magnitude is not
         between 1e-9 and 1e9.
+
+    Examples
+    --------
+    >>> from engine import parse_formula
+    >>> potential = parse_formula("½(x² + y²) + x²y − y³/3")
+    >>> potential.channels, round(potential.escape_energy, 6)
+    (3, 0.166667)
     """
     if len(text) > LONGEST_TEXT:
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")

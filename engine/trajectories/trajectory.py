@@ -112,6 +112,13 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
         If cancelled.
     ValueError
         If `state` is not four finite numbers or `t_max` is out of range.
+
+    Examples
+    --------
+    >>> from engine import CASES, integrate_orbit
+    >>> orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), t_max=100.0)
+    >>> orbit.fate, round(orbit.escape_time, 4), orbit.to_pandas().shape[1]
+    (1, 15.1781, 8)
     """
     start = checked_state("state", state)
     t_max = checked_t_max(t_max, MAX_ORBIT_TIME)
