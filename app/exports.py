@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterator, Sequence
 from importlib import metadata
 
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.palette import Palette
 from app.state.system import TYPED, System
-from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, judge_orbit
+from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, default_window, judge_orbit
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.palette import Palette
 
 MOST_ROWS = 100_000
 """Default number of rows that a table of orbits has at most."""
@@ -30,11 +30,11 @@ def png_bytes(
 ) -> bytes:
     """PNG file of some pictures side by side, with the map's provenance in its text fields.
 
-    Parameters and errors are those of `app.rendering.map_figure.draw_map_figure`.
+    Parameters and errors are those of `plots.map_figure.draw_map_figure`.
     """
     # Matplotlib takes longer to import than the rest of the page.
-    from app.rendering.figure_axes import RENDER_LOCK, save_figure, software
-    from app.rendering.map_figure import draw_map_figure
+    from plots.figure_axes import RENDER_LOCK, save_figure, software
+    from plots.map_figure import draw_map_figure
 
     about = {"Software": software()} | {name: str(value) for name, value in frame.provenance().items()}
     with RENDER_LOCK:
@@ -98,7 +98,7 @@ def _rows(number: int, orbit: Orbit, stride: int) -> Iterator[str]:
 
 
 def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]] = ()) -> str:
-    """Python script that reproduces a map and orbits with the engine, bit for bit.
+    """Python script that reproduces a map and orbits with the engine, bit for bit, and draws them.
 
     Parameters
     ----------
@@ -120,6 +120,8 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
     energy = _numbers(spec.energy) if isinstance(spec.energy, tuple) else repr(float(spec.energy))
     lines = [
+        "from matplotlib import pyplot",
+        "",
         f"from engine import {', '.join(names)}",
         "",
         f"potential = {expression}",
@@ -133,10 +135,13 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"    certify={spec.certify!r},",
         ")",
         "escape_map = compute_map(spec)",
+        "escape_map.plot()",
     ]
     if starts:
         lines += ["starts = [", *(f"    {_state(start)}," for start in starts), "]"]
         lines += ["orbits = [integrate_orbit(potential, start, spec.t_max) for start in starts]"]
+        lines += ["for orbit in orbits:", "    orbit.plot()"]
+    lines.append("pyplot.show()")
     return "\n".join(lines) + "\n"
 
 
@@ -162,7 +167,28 @@ def _numbers(numbers: Sequence[float]) -> str:
 
 
 def file_stem(spec: MapSpec, case: str) -> str:
-    """File name for a map, without an ending: letters, digits and ``_ . + -`` only."""
+    """File name for a map, without an ending: letters, digits and ``_ . + -`` only.
+
+    It has the case, plane, energy, t_max and, unless the map shows the whole plane, the window.
+    """
     energies = spec.energy if isinstance(spec.energy, tuple) else (spec.energy,)
-    stem = f"escapes-{case}-{spec.plane.name.lower()}-h{'-'.join(repr(float(energy)) for energy in energies)}"
+    energy = "-".join(repr(float(energy)) for energy in energies)
+    stem = f"escapes-{case}-{spec.plane.name.lower()}-h{energy}-t{spec.t_max:g}"
+    window = spec.window
+    if window != default_window(spec.potential, spec.plane, spec.energy):
+        x, ordinate = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+        stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
+
+
+def curves_csv(curves: EnergyCurves) -> str:
+    """CSV table of curves against energy, one row per energy: h, a share per fate, and all other measures."""
+    dataset = curves.to_xarray()
+    names = ["share_bounded", *(f"share_channel_{k}" for k in range(1, curves.shares.shape[1]))]
+    columns = {"h": curves.energies} | dict(zip(names, curves.shares.T, strict=True))
+    columns |= {str(name): dataset[name].to_numpy() for name in dataset.data_vars if name != "share"}
+    lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
+    lines += [f"# {name}: {value}" for name, value in dataset.attrs.items()]
+    lines.append(",".join(columns))
+    lines += [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns.values()), strict=True)]
+    return "\n".join(lines) + "\n"

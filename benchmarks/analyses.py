@@ -12,8 +12,6 @@ from typing import Any
 
 from engine import (
     CASES,
-    ENTROPY_COUNTS_BOUNDED,
-    WADA_COUNTS_BOUNDED,
     MapSpec,
     Plane,
     compute_basin_entropy,
@@ -23,12 +21,11 @@ from engine import (
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
-    exit_labels,
     find_stable_manifolds,
     fit_decay_laws,
-    prepare_kernels,
 )
 from engine.execution import default_executor
+from engine.service import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels, prepare_kernels
 
 REPEATS = 5
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.45)
@@ -57,12 +54,12 @@ def main() -> None:
         "basin entropy": lambda: compute_basin_entropy(*entropy_labels),
         "Wada test": lambda: compute_wada_test(*wada_labels),
         "decay laws with bootstrap": lambda: fit_decay_laws(statistics_of_map, SPEC.t_max),
-        f"stable manifolds, {IMAGES} images, all channels": lambda: find_stable_manifolds(SPEC.potential, 0.45, IMAGES),
+        f"stable manifolds, {IMAGES} images, all channels": lambda: find_stable_manifolds(SPEC.potential, 0.45, images=IMAGES),
         "origins and fates, two maps": lambda: compute_origin_fates(SPEC),
         "uncertainty exponent": lambda: compute_uncertainty_exponent(SPEC),
     }
     threads = default_executor()._max_workers
-    print(f"III, (x, px), h = 0.45, 225 x 225, t_max = 1e5, {threads} threads, median of {REPEATS} warm runs\n")
+    print(f"III, (x, px), h = 0.45, 224 x 224, t_max = 1e5, {threads} threads, median of {REPEATS} warm runs\n")
     print("| analysis | seconds |\n|---|---|")
     for name, function in analyses.items():
         print(f"| {name} | {median_seconds(function):.3g} |")

@@ -38,6 +38,8 @@ SERVER_OPTIONS = (
     "--check-unused-sessions=1000",
 )
 START_SECONDS = 240.0
+WARM_SESSIONS = 6
+"""The memory of a page is counted from this session on: the first ones load what all of them share."""
 _ROOT = Path(__file__).parents[1]
 _ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b|^Traceback|Task exception was never retrieved")
 
@@ -69,8 +71,7 @@ class Server:
     async def watch(self) -> None:
         """Record the resident memory."""
         while True:
-            pages = int(Path(f"/proc/{self.process}/statm").read_text().split()[1])
-            self.megabytes.append(pages * 4096 / 2**20)
+            self.megabytes.append(resident_megabytes(self.process))
             await asyncio.sleep(1.0)
 
 
@@ -124,19 +125,26 @@ class Outcome:
         Sessions on the server after all were closed.
     busy_cores
         Processor time of the server per second.
+    page_megabytes
+        Resident memory per open page before the first action.
     """
 
     open_sessions: int
     remaining_sessions: int
     busy_cores: float
+    page_megabytes: float
 
 
 async def load(servers: Sequence[Server], record: Record, sessions: int, seconds: float, seed: int) -> Outcome:
     """Open the sessions, distributed over the servers in turn, run them for some time and close them."""
     monitors = [asyncio.create_task(server.watch()) for server in servers]
     simulated = [SimulatedSession(servers[n % len(servers)].address, seed + n, record) for n in range(sessions)]
-    for session in simulated:
+    for session in simulated[:WARM_SESSIONS]:
         await session.open()
+    megabytes = count_megabytes(servers)
+    for session in simulated[WARM_SESSIONS:]:
+        await session.open()
+    page_megabytes = (count_megabytes(servers) - megabytes) / max(sessions - WARM_SESSIONS, 1)
     open_sessions, used, begin = count_sessions(servers), count_cpu_seconds(servers), time.perf_counter()
     await asyncio.gather(*(session.run(begin + seconds) for session in simulated))
     busy_cores = (count_cpu_seconds(servers) - used) / (time.perf_counter() - begin)
@@ -146,7 +154,7 @@ async def load(servers: Sequence[Server], record: Record, sessions: int, seconds
         await asyncio.sleep(1.0)
     for task in monitors:
         task.cancel()
-    return Outcome(open_sessions, remaining, busy_cores)
+    return Outcome(open_sessions, remaining, busy_cores, page_megabytes)
 
 
 def count_sessions(servers: Sequence[Server]) -> int:
@@ -157,6 +165,17 @@ def count_sessions(servers: Sequence[Server]) -> int:
 def count_cpu_seconds(servers: Sequence[Server]) -> float:
     """Processor time of all processes."""
     return sum(server.cpu_seconds() for server in servers)
+
+
+def count_megabytes(servers: Sequence[Server]) -> float:
+    """Resident memory of all processes."""
+    return sum(resident_megabytes(server.process) for server in servers)
+
+
+def resident_megabytes(process: int) -> float:
+    """Resident memory of a process."""
+    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
+    return pages * 4096 / 2**20
 
 
 def summary(times: list[float]) -> str:
@@ -178,7 +197,7 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
     print(f"| replaced by the next action, until then | {summary(record.replaced)} |")
     print(f"| opening the page, one session at a time | {summary(record.opening)} |")
     print(f"\nPreviews: {record.previews}. Clicks: {record.clicks}, plots of orbits: {record.orbit_plots}.")
-    print(f"Busy cores: {outcome.busy_cores:.2f}.")
+    print(f"Busy cores: {outcome.busy_cores:.2f}. Memory per open page: {outcome.page_megabytes:.1f} MB.")
     for server in servers:
         tenth = max(len(server.megabytes) // 10, 1)
         sizes = ", ".join(f"{size:.0f}" for size in server.megabytes[::tenth])

@@ -9,11 +9,13 @@ import shutil
 import statistics
 import tempfile
 import time
+import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 
 from playwright.sync_api import Browser, WebSocket, sync_playwright
 
+from benchmarks.load import resident_megabytes
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
@@ -21,7 +23,7 @@ SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
 # Pixels are on the screen at the second animation frame after a change of the source. `begin` is called at the start of each
-# action; previews have 75 pixels per side.
+# action; previews have 76 pixels per side.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
     window.painted = {}
@@ -32,7 +34,7 @@ WATCH = """() => {
             window.painted.first ??= performance.now()
             if (data.complete[0]) window.painted.whole ??= performance.now()
         }))
-        if (data.fate[0].shape[0] == 75) window.previews.push(now)
+        if (data.fate[0].shape[0] == 76) window.previews.push(now)
     }
     source.connect(source.properties.data.change, paint)
     window.begin = () => { window.painted = {begun: performance.now()} }
@@ -84,30 +86,56 @@ PAINTED = """() => {
     const source = window.Bokeh?.documents[0]?.get_model_by_name('maps')
     return source?.data.fate?.[0]?.shape[0] > 1
 }"""
+DRAG_SECONDS = 4.0
+# Drag the slider with one move per animation frame, as browsers deliver those of a mouse; Playwright's moves come at 20 per
+# second, as each waits for its answer. Returns the number of moves per second.
+DRAG = """async ([start, y, end, seconds]) => {
+    let target = document.elementFromPoint(start, y)
+    while (target.shadowRoot) target = target.shadowRoot.elementFromPoint(start, y)
+    const fire = (type, x, target) => target.dispatchEvent(
+        new MouseEvent(type, {clientX: x, clientY: y, buttons: 1, bubbles: true, composed: true, cancelable: true}))
+    fire('mousedown', start, target)
+    const begin = performance.now()
+    let moves = 0
+    for (let share = 0; share < 1; share = (performance.now() - begin) / (1000 * seconds)) {
+        fire('mousemove', start + share * (end - start), document.documentElement)
+        moves++
+        await new Promise(requestAnimationFrame)
+    }
+    return moves / seconds
+}"""
 TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
 def report_opening(browser: Browser, address: str) -> None:
-    """Navigation to the first map, with an empty browser cache once and a full one then; the server's answer alone."""
+    """Navigation to the first map, first with an empty browser cache and then with a full one; the server's answer alone."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
     context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
-    answers, maps = [], []
+    maps = []
     for _ in range(OPENINGS):
         page = context.new_page()
         begin = time.perf_counter()
-        page.goto(address, wait_until="commit")
-        answers.append(time.perf_counter() - begin)
+        page.goto(address)
         page.wait_for_function(PAINTED, polling=20)
         page.evaluate(TWO_FRAMES)
         maps.append(time.perf_counter() - begin)
         size = page.evaluate("() => Bokeh.documents[0]._all_models.size"), page.evaluate(ELEMENTS)
         page.close()
-    warm = [statistics.median(seconds[1:]) for seconds in (answers, maps)]
-    print(
-        f"Opening the page, {OPENINGS - 1} times: first map after {warm[1]:.2f} s, of which the server's answer {warm[0]:.2f} s;"
-    )
-    print(f"with an empty browser cache {maps[0]:.2f} s. {size[0]} models, {size[1]} elements.\n", flush=True)
     context.close()
+    answers = [seconds_to_answer(address) for _ in range(OPENINGS)]
+    print(
+        f"Opening the page, {OPENINGS - 1} times: first map after {statistics.median(maps[1:]):.2f} s;"
+        f" with an empty browser cache {maps[0]:.2f} s. {size[0]} models, {size[1]} elements."
+    )
+    print(f"The server's answer, without a browser: {statistics.median(answers):.2f} s.\n", flush=True)
+
+
+def seconds_to_answer(address: str) -> float:
+    """Time of the server for a new page, from the request to the last byte of the document."""
+    begin = time.perf_counter()
+    with urllib.request.urlopen(address, timeout=60) as answer:
+        answer.read()
+    return time.perf_counter() - begin
 
 
 def open_page(browser: Browser, address: str, link: str = "") -> ExplorerPage:
@@ -144,14 +172,17 @@ def measure(explorer: ExplorerPage, action: Callable[[ExplorerPage, float], None
 
 
 def report_previews(browser: Browser, address: str) -> None:
-    """Previews per second while the slider of case III is dragged from h = 0.45 to h = 1 in about 4 s."""
+    """Previews per second while the slider of case III is dragged from h = 0.45 to h = 1 in `DRAG_SECONDS`."""
     explorer = open_page(browser, address, "?case=III&h=0.45&t_max=1000")
     explorer.page.evaluate(WATCH)
-    explorer.drag_energy_to(1.0, steps=200, pause=15, let_go=False)
+    thumb, rail = (explorer.page.locator(f".noUi-{part}").first.bounding_box() for part in ("handle", "base"))
+    assert thumb is not None
+    assert rail is not None
+    middle = thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2
+    moves = explorer.page.evaluate(DRAG, [*middle, rail["x"] + rail["width"], DRAG_SECONDS])
     previews = explorer.page.evaluate("() => window.previews")
     rate = (len(previews) - 1) / (previews[-1] - previews[0]) * 1000
-    print(f"\nPreviews while dragging, III from h = 0.45 up: {len(previews)}, {rate:.1f} per second", flush=True)
-    explorer.page.mouse.up()
+    print(f"\nPreviews while dragging, III from h = 0.45 up: {rate:.1f} per second, at {moves:.1f} moves per second", flush=True)
     explorer.page.context.close()
 
 
@@ -190,7 +221,7 @@ def report_bytes(browser: Browser, address: str) -> None:
     received.clear()
     release(explorer, 0.6)
     wait_for_map(explorer)
-    print(f"\nBytes for one full update at 225 × 225, III: {sum(received) / 1e6:.2f} MB", flush=True)
+    print(f"\nBytes for one full update at 224 × 224, III: {sum(received) / 1e6:.2f} MB", flush=True)
     context.close()
 
 
@@ -218,11 +249,6 @@ def server_process(address: str) -> int:
         if b"serve" in command and port.encode() in command:
             return int(folder.name)
     raise LookupError(f"no server at port {port}")
-
-
-def resident_megabytes(process: int) -> float:
-    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
-    return pages * 4096 / 2**20
 
 
 def main() -> None:

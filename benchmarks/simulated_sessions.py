@@ -16,7 +16,8 @@ from urllib.parse import parse_qsl
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
-from engine import PREVIEW_SIDE, Plane
+from engine import Plane
+from engine.service import PREVIEW_SIDE
 
 CHEAP_ENERGIES = {"I": (0.22, 0.45), "II": (0.22, 0.45), "III": (0.40, 0.90)}
 """Energies well above the escape energy, where a map takes the least time."""

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.rendering.palette import PALETTES, Palette
 from cli.options import Edges, PlaneName
 from cli.potential_argument import find_potential
 from engine import MapSpec, Plane, start_states
+from plots.palette import PALETTES, Palette
 
 
 def find_palette(name: str) -> Palette:

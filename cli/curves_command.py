@@ -17,7 +17,7 @@ EXAMPLES = """Examples:
 
 escape-explorer curves I --low 0.13 --high 0.5 --count 38 --output curves-I
 
-escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 225
+escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 224
 """
 
 
@@ -27,7 +27,7 @@ def draw_curves(
     high: Annotated[float, typer.Option("--high", help="Highest h.")],
     count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced energies.")],
     plane: options.Plane = PlaneName.X_PX,
-    resolution: options.Resolution = "113",
+    resolution: options.Resolution = "112",
     t_max: options.TMax = 1e5,
     exponent: Annotated[
         bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")
@@ -50,7 +50,7 @@ def draw_curves(
         with cancellable_run(threads) as run:
             report = run.start_stage("energies")
             on_frame = None if report is None else lambda curves: report(len(curves.points) / len(energies))
-            curves = compute_energy_curves(spec, on_frame, run.cancel, run.executor)
+            curves = compute_energy_curves(spec, on_frame=on_frame, cancel=run.cancel, executor=run.executor)
         netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
         head, rows = _tabulate(curves)
         table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"

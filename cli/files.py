@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from engine import hold_lock
+from engine.service import hold_lock
 
 Content = str | bytes
 

@@ -7,19 +7,10 @@ from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
-from app.rendering.map_analyses import MapAnalyses
 from cli.run_context import RunContext
-from engine import (
-    MOST_IMAGES,
-    EscapeMap,
-    MapSpec,
-    Plane,
-    compute_map,
-    compute_regularity,
-    compute_trust,
-    find_stable_manifolds,
-    join_origin_fates,
-)
+from engine import EscapeMap, MapSpec, Plane, compute_map, compute_regularity, compute_trust, find_stable_manifolds
+from engine.service import MOST_IMAGES, join_origin_fates
+from plots.map_analyses import MapAnalyses
 
 
 @dataclass(frozen=True)
@@ -52,17 +43,17 @@ def compute_map_with_analyses(spec: MapSpec, wanted: AnalysisOptions, run: RunCo
     found: dict[str, Any] = {}
     if wanted.judge:
         run.start_stage("bounded orbits")
-        found["regularity"] = compute_regularity(frame, None, run.cancel, run.executor)
+        found["regularity"] = compute_regularity(frame, on_frame=None, cancel=run.cancel, executor=run.executor)
     if wanted.origins:
         found["origins"] = join_origin_fates(frame, compute_whole_map(replace(spec, backward=True), run, "origins"))
     if wanted.trust:
         run.start_stage("doubtful pixels")
-        found["trust"] = compute_trust(frame, None, run.cancel, run.executor)
+        found["trust"] = compute_trust(frame, on_frame=None, cancel=run.cancel, executor=run.executor)
     if wanted.images:
         assert not isinstance(spec.energy, tuple)
         run.start_stage("stable manifolds")
         found["manifolds"] = find_stable_manifolds(
-            spec.potential, spec.energy, wanted.images, window=spec.window, executor=run.executor, cancel=run.cancel
+            spec.potential, spec.energy, images=wanted.images, window=spec.window, executor=run.executor, cancel=run.cancel
         )
     run.raise_if_cancelled()
     return frame, MapAnalyses(**found)

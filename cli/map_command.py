@@ -13,8 +13,8 @@ from cli import options
 from cli.options import PlaneName
 
 if TYPE_CHECKING:
-    from app.rendering.map_analyses import MapAnalyses
     from engine import EscapeMap
+    from plots.map_analyses import MapAnalyses
 
 EXAMPLES = """Examples:
 
@@ -42,7 +42,7 @@ def draw_map(
     energies: options.Energies = None,
     plane: options.Plane = PlaneName.X_PX,
     window: options.Window = None,
-    resolution: options.Resolution = "225",
+    resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
     backward: options.Backward = False,

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.exports import netcdf_bytes, png_bytes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_images import LARGEST_PICTURE, SMALLEST_PICTURE, TITLES
-from app.rendering.palette import Palette
 from cli.arguments import find_palette
 from cli.files import Content, add_ending
-from engine import EscapeMap, StableManifolds
+from engine import EscapeMap
+from plots.map_analyses import MapAnalyses
+from plots.map_images import LARGEST_PICTURE, SMALLEST_PICTURE, TITLES
+from plots.palette import Palette
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,5 @@ def contents(
     if "png" in formats:
         files[add_ending(stem, "png")] = png_bytes(frame, drawing.pictures, drawing.palette, drawing.side, analyses=analyses)
     if analyses.manifolds is not None:
-        files[stem.with_name(f"{stem.name}-manifolds.csv")] = _manifolds_csv(analyses.manifolds)
+        files[stem.with_name(f"{stem.name}-manifolds.csv")] = analyses.manifolds.to_pandas().to_csv(index=False)
     return files
-
-
-def _manifolds_csv(manifolds: StableManifolds) -> str:
-    lines = ["arc,channel,image,x,px"]
-    for number, arc in enumerate(manifolds.arcs, 1):
-        points = zip(arc.x.tolist(), arc.px.tolist(), strict=True)
-        lines += [f"{number},{arc.channel},{arc.image},{x!r},{px!r}" for x, px in points]
-    return "\n".join(lines) + "\n"

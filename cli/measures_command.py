@@ -33,7 +33,7 @@ def measure_basins(
     energies: options.Energies = None,
     plane: options.Plane = PlaneName.X_PX,
     window: options.Window = None,
-    resolution: options.Resolution = "225",
+    resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
     exponent: Annotated[
@@ -60,20 +60,11 @@ def measure_basins(
 
 def _measure(frame: EscapeMap, exponent: bool, run: RunContext) -> dict[str, dict[str, Any]]:
     """Return the numbers of each measure with a sentence, by name."""
-    from engine import (
-        ENTROPY_COUNTS_BOUNDED,
-        WADA_COUNTS_BOUNDED,
-        compute_basin_entropy,
-        compute_statistics,
-        compute_uncertainty_exponent,
-        compute_wada_test,
-        exit_labels,
-        fit_decay_laws,
-    )
+    from engine import compute_basin_entropy, compute_statistics, compute_uncertainty_exponent, compute_wada_test, fit_decay_laws
 
     run.start_stage("entropy, boundaries and decay laws")
-    entropy = compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED))
-    merging = compute_wada_test(*exit_labels(frame.fate, bounded=WADA_COUNTS_BOUNDED))
+    entropy = compute_basin_entropy(frame)
+    merging = compute_wada_test(frame)
     laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, cancel=run.cancel)
     measures = {"basin_entropy": _numbers(entropy, _ENTROPY), "merging": _numbers(merging, _MERGING)}
     measures["escape_laws"] = _numbers(laws, _LAWS) | {

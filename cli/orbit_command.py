@@ -12,7 +12,8 @@ from cli.options import PlaneName
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from engine import IndicatorVerdict, Orbit, OrbitVerdict
+    from engine import Orbit, OrbitVerdict
+    from engine.service import IndicatorVerdict
 
 EXAMPLES = """Examples:
 
@@ -51,7 +52,8 @@ def follow_orbit(
     from cli.orbit_pictures import orbit_png
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, judge_orbit
+    from engine import Fate, compute_birkhoff_digits, integrate_orbit, judge_orbit
+    from engine.service import evaluate_indicators
 
     potential, colours = find_potential(case), find_palette(palette)
     whole = find_start(case, plane, energy, start, state)

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import textwrap
 
-import numpy as np
-from matplotlib.axes import Axes
+from engine import Orbit, Potential
+from plots.figure_axes import SMALL, new_figure, save_figure, software
+from plots.orbit_curves import compute_orbit_curves, initial_state
+from plots.orbit_figure import draw_path, draw_r2, draw_sali
+from plots.palette import LIGHT, Palette
 
-from app.rendering.figure_axes import SMALL, label_axes, name_panel, new_figure, save_figure, software, style_axes
-from app.rendering.map_figure import draw_curve, draw_limits, draw_pixels, show_window
-from app.rendering.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, initial_state
-from app.rendering.palette import LIGHT, Palette
-from engine import CHAOS_THRESHOLD, Orbit, Plane, Potential
-
-_LARGEST_SALI, _EARLIEST_TIME = 10.0**0.5, 0.01
 _LINE_LENGTH = 160
 
 
@@ -22,43 +18,10 @@ def orbit_png(potential: Potential, orbit: Orbit, palette: Palette, verdict: str
     curves, colour = compute_orbit_curves(potential, orbit), palette.orbits[0]
     figure = new_figure(11.5, 5.9, f"Orbit at h = {orbit.energy:.6g}")
     panels = figure.subplot_mosaic([["path", "sali"], ["path", "r2"]])
-    _draw_path(panels["path"], potential, curves, palette)
-    _draw_sali(panels["sali"], curves, colour)
-    _draw_r2(panels["r2"], curves, colour)
+    draw_path(panels["path"], potential, curves, palette)
+    draw_sali(panels["sali"], curves, colour)
+    draw_r2(panels["r2"], curves, colour)
     figure.supxlabel(textwrap.fill(verdict, _LINE_LENGTH), fontsize=SMALL, color=LIGHT.text)
     start = ", ".join(map(repr, initial_state(orbit)))
     about = {"potential": potential.name, "energy": repr(orbit.energy), "start": start, "verdict": verdict}
     return save_figure(figure, "png", {"Software": software(), **about})
-
-
-def _draw_path(axes: Axes, potential: Potential, curves: OrbitCurves, palette: Palette) -> None:
-    """Path as a line, or shaded by its density if it is long, with the zero-velocity curve and the Lyapunov orbits."""
-    orbit, window, colour = curves.orbit, curves.window, palette.orbits[0]
-    if curves.visits is None:
-        draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], window, colors=colour, linewidths=1.0)
-    else:
-        pixels = curves.shaded(colour)[::-1]
-        draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), window, window)
-    draw_limits(axes, potential, Plane.X_Y, orbit.energy, window, palette.channels)
-    show_window(axes, window, "x", "y", equal=True)
-    name_panel(axes, "Path")
-
-
-def _draw_sali(axes: Axes, curves: OrbitCurves, colour: str) -> None:
-    t, sali = curves.sali
-    axes.loglog(np.maximum(t, _EARLIEST_TIME), sali, color=colour, linewidth=1.0)
-    axes.axhline(CHAOS_THRESHOLD, color=LIGHT.equipotential, linewidth=1.0)
-    axes.set_xlim(_EARLIEST_TIME, max(float(curves.orbit.t[-1]), 10.0 * _EARLIEST_TIME))
-    axes.set_ylim(LEAST_SALI, _LARGEST_SALI)
-    style_axes(axes)
-    label_axes(axes, "t", "SALI")
-    name_panel(axes, f"SALI (chaotic at {CHAOS_THRESHOLD:g} or less)")
-
-
-def _draw_r2(axes: Axes, curves: OrbitCurves, colour: str) -> None:
-    axes.plot(*curves.r2, color=colour, linewidth=1.0)
-    axes.set_xlim(0.0, max(float(curves.orbit.t[-1]), _EARLIEST_TIME))
-    axes.set_ylim(0.0, 1.05 * max(float(curves.orbit.r2.max()), 1e-3))
-    style_axes(axes)
-    label_axes(axes, "t", "R²")
-    name_panel(axes, "R² = x² + y²")

@@ -62,7 +62,8 @@ def serve_arguments(port: int, address: str, origins: list[str], show: bool, set
 
 def server_environment() -> dict[str, str]:
     """Return the environment of this process with a PYTHONPATH that contains the installed packages."""
-    paths = [str(app_folder().parent), *filter(None, [os.environ.get("PYTHONPATH")])]
+    root = Path(__file__).parents[__name__.count(".")]
+    paths = [str(root), *filter(None, [os.environ.get("PYTHONPATH")])]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 

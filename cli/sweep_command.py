@@ -36,7 +36,7 @@ def sweep_energies(
     ] = None,
     plane: options.Plane = PlaneName.X_PX,
     window: options.Window = None,
-    resolution: options.Resolution = "225",
+    resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
     piece: Annotated[
@@ -60,7 +60,8 @@ def sweep_energies(
     from cli.output import print_sentences
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import SweepSpec, Window, plan_sweep, run_sweep
+    from engine import SweepSpec, Window, run_sweep
+    from engine.service import plan_sweep
 
     energies = space_energies(low, high, count, energy)
     frame = None if window is None else Window(*window)

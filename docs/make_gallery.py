@@ -14,11 +14,6 @@ from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from app.rendering.manifold_strokes import manifold_strokes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import draw_curve, draw_pixels
-from app.rendering.map_images import picture_pixels
-from app.rendering.palette import LIGHT, PAPER, PATCH_EDGE
 from app.state.presets import PRESETS, Preset
 from app.state.view_state import ViewState
 from engine import (
@@ -32,8 +27,13 @@ from engine import (
     find_stable_manifolds,
     integrate_orbit,
     start_states,
-    trace_equipotentials,
 )
+from engine.service import trace_equipotentials
+from plots.manifold_strokes import manifold_strokes
+from plots.map_analyses import MapAnalyses
+from plots.map_figure import draw_curve, draw_pixels
+from plots.map_images import picture_pixels
+from plots.palette import LIGHT, PAPER, PATCH_EDGE
 
 FOLDER = Path(__file__).parents[1] / "app" / "static" / "gallery"
 SIDE = 160
@@ -79,7 +79,7 @@ def _analyse(frame: EscapeMap, preset: Preset) -> MapAnalyses:
         regularity=compute_regularity(frame) if preset.judge else None,
         trust=compute_trust(frame) if preset.trust else None,
         origins=compute_origin_fates(spec) if preset.origins else None,
-        manifolds=find_stable_manifolds(spec.potential, preset.energy, 2) if preset.manifolds else None,
+        manifolds=find_stable_manifolds(spec.potential, preset.energy, images=2) if preset.manifolds else None,
     )
 
 

@@ -33,9 +33,10 @@ _T_MAX = 10.0
 _EXECUTOR = SerialExecutor()
 
 # Kernels of the first frame of a map and of the Lyapunov orbits it needs, with the seconds that it takes to compile them on one
-# core of an AMD EPYC (Zen 4): those of each potential per operation, those of all potentials together.
+# core of an AMD EPYC (Zen 4): those of each potential per operation, those of all potentials together. "propagate" includes the
+# kernel that finds starts outside.
 _SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
-_SECONDS = {"shoot": 0.8, "propagate": 2.2}
+_SECONDS = {"shoot": 0.8, "propagate": 3.2}
 _MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
 
 
@@ -158,7 +159,7 @@ def prepare_kernels(potential: Potential) -> None:
         lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX * potential.units.time),
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
         lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), executor=_EXECUTOR),
-        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, 1, executor=_EXECUTOR),
+        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, images=1, executor=_EXECUTOR),
     )
 
 

@@ -31,4 +31,5 @@ def format_decimals(value: float, decimals: int) -> str:
 
 
 def _typeset(text: str) -> str:
-    return text.replace("-", "−").replace("inf", "∞")
+    short = text.replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+    return short.replace("-", "−").replace("inf", "∞")

@@ -1,4 +1,4 @@
-# ruff: noqa: D100, T201
+# ruff: noqa: D100
 
 # %% [markdown]
 # # Escapes in case III
@@ -20,7 +20,6 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from engine import (
     CASES,
-    ENTROPY_COUNTS_BOUNDED,
     PAPER_FITS,
     Fate,
     MapSpec,
@@ -30,7 +29,6 @@ from engine import (
     compute_map,
     compute_regularity,
     compute_trust,
-    exit_labels,
     find_lyapunov_orbits,
     fit_escape_shares,
     integrate_orbit,
@@ -145,7 +143,7 @@ print(f"new fit: {fitted.deviation.describe()}")
 entropies = []
 for h in energies:
     coarse = compute_map(MapSpec(CASE, Plane.X_PX, float(h), (100, 100), t_max=T_MAX / 10.0))
-    entropies.append(compute_basin_entropy(*exit_labels(coarse.fate, bounded=ENTROPY_COUNTS_BOUNDED)))
+    entropies.append(compute_basin_entropy(coarse))
 for h, entropy in zip(energies, entropies, strict=True):
     print(f"h = {h:.2f}: S_b {entropy.s_b:.4f}, S_bb {entropy.s_bb:.4f}{', above ln 2' if entropy.beyond_ln2 else ''}")
 

@@ -9,8 +9,8 @@ from types import MappingProxyType
 
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import save_figure, software
 from engine import CASES, Plane
+from plots.figure_axes import save_figure, software
 from reproduction.map_figures import draw_energy_plane, draw_nine_maps
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import CHANNEL_ENERGIES, STICKY_ENERGY, plane_energies

@@ -7,17 +7,15 @@ from collections.abc import Iterator
 from engine import (
     CASES,
     PAPER_FITS,
-    HyperbolicTangent,
     Plane,
-    Polynomial,
     ShareFit,
     compute_statistics,
     fit_decay_laws,
     fit_direct_shares,
     fit_escape_shares,
-    format_number,
     measure_deviation,
 )
+from engine.service import HyperbolicTangent, Polynomial, format_number
 from reproduction.map_shelf import MapShelf
 from reproduction.markdown import write_rows
 from reproduction.paper_ranges import three_energies
@@ -40,7 +38,7 @@ def write_fits(shelf: MapShelf) -> str:
         degree = len(paper.direct.coefficients) - 1
         curves: tuple[tuple[str, str, HyperbolicTangent | Polynomial, ShareFit], ...] = (
             ("Ne/N0", "escaped", paper.escaped, fit_escape_shares(h, table["escaped"].values, starts)),
-            ("Nde/N0", "direct", paper.direct, fit_direct_shares(h, table["direct"].values, starts, degree)),
+            ("Nde/N0", "direct", paper.direct, fit_direct_shares(h, table["direct"].values, starts, degree=degree)),
         )
         for name, counts, published, fitted in curves:
             rows += list(_fit_rows(f"{case}, {name}", published, fitted))

@@ -9,13 +9,13 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import LETTER, add_figure_legend, label_axes, name_panel, new_figure, patches
-from app.rendering.image_columns import longest_typical_time
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
-from app.rendering.map_images import picture_pixels
-from app.rendering.palette import PAPER
 from engine import CASES, EscapeMap, Fate, Plane, Window
+from plots.figure_axes import LETTER, add_figure_legend, label_axes, name_panel, new_figure, patches
+from plots.image_columns import longest_typical_time
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
+from plots.map_images import picture_pixels
+from plots.palette import PAPER
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import ORDINATES, PLANES
 from reproduction.paper_ranges import nine_energies, plane_energies
@@ -77,7 +77,7 @@ def draw_map_panel(
     frame
         A complete map.
     picture
-        One of `app.rendering.map_images.TITLES`.
+        One of `plots.map_images.TITLES`.
     shown
         Window of the panel.
     longest

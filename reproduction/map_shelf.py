@@ -9,19 +9,8 @@ from dataclasses import replace
 
 import xarray as xr
 
-from engine import (
-    CASES,
-    EscapeMap,
-    MapSpec,
-    Plane,
-    RegularityMap,
-    SuperStickySearch,
-    Window,
-    compute_map,
-    compute_regularity,
-    find_super_sticky_orbits,
-    tabulate_crossing_statistics,
-)
+from engine import CASES, EscapeMap, MapSpec, Plane, RegularityMap, Window, compute_map, compute_regularity
+from engine.service import SuperStickySearch, find_super_sticky_orbits, tabulate_crossing_statistics
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
 

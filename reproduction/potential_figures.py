@@ -6,8 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import label_axes, name_panels, new_figure, style_axes
-from app.rendering.palette import LIGHT, PAPER
 from engine import (
     CASES,
     LyapunovOrbit,
@@ -17,18 +15,16 @@ from engine import (
     default_window,
     find_lyapunov_orbits,
     integrate_orbit,
-    trace_equipotentials,
     trace_zero_velocity_curve,
 )
+from plots.figure_axes import label_axes, name_panels, new_figure, style_axes
+from plots.palette import LIGHT, PAPER
+from plots.potential_figure import draw_equipotentials, draw_pieces, enlarge
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import ORDINATES
 from reproduction.paper_ranges import CHANNEL_ENERGIES
 from reproduction.sample_orbits import find_sample_starts
 
-# Equipotentials in units of the escape energy: dense inside the well, sparse outside.
-_LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
-# Side of the panels in units of the side of the interior.
-_ENLARGED = 1.35
 _SAMPLES = 301
 # Distance of labels from the bottom of the well, in units of the distance of the saddle.
 _LABEL_PLACE = 1.22
@@ -37,11 +33,11 @@ _LABEL_PLACE = 1.22
 def draw_potential(case: str, shelf: MapShelf) -> Figure:
     """Three panels with the same window."""
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
-    window = _enlarged(default_window(potential, Plane.X_Y, energy))
+    window = enlarge(default_window(potential, Plane.X_Y, energy))
     figure = new_figure(12.6, 4.85, f"Case {case}: the potential and its {potential.channels} channels", equal=True)
     panels = list(figure.subplots(1, 3, sharex=True, sharey=True))
     orbits = find_lyapunov_orbits(potential, energy)
-    _draw_equipotentials(panels[0], potential, window)
+    draw_equipotentials(panels[0], potential, window)
     _draw_channels(panels[1], potential, energy, orbits, window)
     _draw_escapes(panels[2], shelf, case, window)
     for axes in panels:
@@ -57,23 +53,9 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
     return figure
 
 
-def _enlarged(window: Window) -> Window:
-    across, up = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
-    half = 0.5 * _ENLARGED * (window.x_high - window.x_low)
-    return Window(across - half, across + half, up - half, up + half)
-
-
-def _draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
-    escape = potential.escape_energy
-    for pieces in trace_equipotentials(potential, Plane.X_Y, [escape * level for level in _LEVELS], window):
-        _draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
-    (critical,) = trace_equipotentials(potential, Plane.X_Y, [escape], window)
-    _draw_pieces(axes, critical, LIGHT.critical_equipotential, 1.6)
-
-
 def _draw_channels(axes: Axes, potential: Potential, energy: float, orbits: tuple[LyapunovOrbit, ...], window: Window) -> None:
     _draw_forbidden(axes, potential, energy, window)
-    _draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), PAPER.channels[0], 1.6)
+    draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), PAPER.channels[0], 1.6)
     for orbit in orbits:
         axes.plot(*orbit.half_path.T, color=LIGHT.critical_equipotential, linewidth=2.0, solid_capstyle="round")
         x, y = potential.saddles[orbit.channel - 1] * _LABEL_PLACE
@@ -83,7 +65,7 @@ def _draw_channels(axes: Axes, potential: Potential, energy: float, orbits: tupl
 def _draw_escapes(axes: Axes, shelf: MapShelf, case: str, window: Window) -> None:
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
     _draw_forbidden(axes, potential, energy, window)
-    _draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), LIGHT.limiting_curve, 1.0)
+    draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), LIGHT.limiting_curve, 1.0)
     for channel, start in find_sample_starts(shelf.map(case, Plane.X_PX, energy)).items():
         orbit, colour = integrate_orbit(potential, start, shelf.quality.t_max, cancel=shelf.cancel), PAPER.channels[channel - 1]
         axes.plot(orbit.x, orbit.y, color=colour, linewidth=1.1)
@@ -103,8 +85,3 @@ def _draw_forbidden(axes: Axes, potential: Potential, energy: float, window: Win
     y = np.linspace(window.ordinate_low, window.ordinate_high, _SAMPLES)
     height = potential.value(*np.meshgrid(x, y))
     axes.contourf(x, y, height, levels=[energy, np.inf], colors=[LIGHT.equipotential], alpha=0.45)
-
-
-def _draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:
-    for piece in pieces:
-        axes.plot(*piece.T, color=colour, linewidth=width)

@@ -31,8 +31,8 @@ class Quality:
     search_t_max: float
 
 
-FULL = Quality("full", resolution=225, t_max=1e5, curve_points=75, search_resolution=225, search_t_max=4e6)
+FULL = Quality("full", resolution=224, t_max=1e5, curve_points=75, search_resolution=224, search_t_max=4e6)
 """As in the paper: about 50 000 starts per map, integrated to 1e5."""
 
-QUICK = Quality("quick", resolution=75, t_max=1e5, curve_points=19, search_resolution=45, search_t_max=4e6)
+QUICK = Quality("quick", resolution=74, t_max=1e5, curve_points=19, search_resolution=44, search_t_max=4e6)
 """One ninth of the starts."""

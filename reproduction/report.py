@@ -9,7 +9,8 @@ from importlib import metadata
 
 import numpy as np
 
-from engine import CASES, SuperStickySearch
+from engine import CASES
+from engine.service import SuperStickySearch
 from reproduction.comparisons import CLASSIFIED_SIDE, PERCENT, POINTS, Comparison, compare_all
 from reproduction.fit_sections import write_fits, write_laws
 from reproduction.map_shelf import MapShelf
@@ -217,7 +218,7 @@ this page.
 
 Computed with version {version} at {quality} quality: {side} × {side} starts per map, integrated to t = {t_max};
 {search_side} × {search_side} starts for the super-sticky orbits; bounded orbits of I and II classified on {classified_side} ×
-{classified_side}. The paper has up to 225 × 225 starts and t = 100 000.
+{classified_side}. The paper has up to 224 × 224 starts and t = 100 000.
 
 Shares are percentages of the starts inside, which are allowed and do not lie beyond a Lyapunov orbit. On (x, px) of I and III
 there are no others. Elsewhere the paper seems to count starts outside, too, as escapes through the channel they lie in, in a

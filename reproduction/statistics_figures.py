@@ -10,9 +10,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
-from app.rendering.palette import LIGHT, MEASURED, PAPER, THRESHOLD
-from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares, tabulate_crossing_statistics
+from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares
+from engine.service import tabulate_crossing_statistics
+from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
 from reproduction.paper_ranges import nine_energies
@@ -39,7 +40,7 @@ def draw_statistics(case: str, shelf: MapShelf) -> Figure:
     h, starts, paper = table["h"].values, table["starts"].values, PAPER_FITS[case]
     degree = len(paper.direct.coefficients) - 1
     escaped = fit_escape_shares(h, table["escaped"].values, starts)
-    direct = fit_direct_shares(h, table["direct"].values, starts, degree)
+    direct = fit_direct_shares(h, table["direct"].values, starts, degree=degree)
     _draw_fits(panels[0], h, table["escaped_share"].values, paper.escaped, escaped.curve if escaped.determined else None)
     _draw_fits(panels[1], h, table["direct_share"].values, paper.direct, direct.curve if direct.determined else None)
     label_axes(panels[0], "$h$", "$N_e/N_0$")

@@ -8,7 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from app.rendering.figure_axes import (
+from engine import Plane, find_lyapunov_orbits
+from engine.service import RadiusEnvelope, SuperStickySearch, compute_radius_envelope
+from plots.figure_axes import (
     add_figure_legend,
     add_panel_legend,
     label_axes,
@@ -17,9 +19,8 @@ from app.rendering.figure_axes import (
     patches,
     style_axes,
 )
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.palette import MEASURED, PAPER, THRESHOLD
-from engine import Plane, RadiusEnvelope, SuperStickySearch, compute_radius_envelope, find_lyapunov_orbits
+from plots.map_analyses import MapAnalyses
+from plots.palette import MEASURED, PAPER, THRESHOLD
 from reproduction.map_figures import draw_map_panel
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
@@ -82,7 +83,9 @@ def _follow_late_orbit(search: SuperStickySearch, shelf: MapShelf) -> RadiusEnve
     place = find_shown(search)
     if place is None:
         return None
-    return compute_radius_envelope(search.spec.potential, search.states[place], search.t_max, _INTERVALS, cancel=shelf.cancel)
+    return compute_radius_envelope(
+        search.spec.potential, search.states[place], search.t_max, intervals=_INTERVALS, cancel=shelf.cancel
+    )
 
 
 def _describe(search: SuperStickySearch, orbit: RadiusEnvelope | None) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import runpy
+import subprocess
 import sys
 from pathlib import Path
 
@@ -16,6 +17,31 @@ ROOT = Path(__file__).parents[1]
 
 def list_imported(*names: str) -> None:
     sys.stdout.write(" ".join(name for name in names if name in sys.modules))
+
+
+SLOW = (
+    *("scipy.linalg", "scipy.special", "scipy.optimize", "scipy.integrate", "scipy.ndimage", "shapely", "contourpy"),
+    *("pandas", "xarray", "zarr", "matplotlib", "bokeh", "holoviews", "panel"),
+)
+"""Libraries that are imported at their first use only."""
+
+
+def import_engine() -> None:
+    import engine  # noqa: F401
+
+    list_imported("numba", *SLOW)
+
+
+def list_lyapunov_orbits() -> None:
+    import contextlib
+    import io
+
+    from cli.main import main
+
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(["lyapunov", "I", "--energy", "0.19"]) == 0
+    # Numba imports the last one when it has to compile.
+    list_imported("typer", *SLOW, "numba.np.linalg")
 
 
 def import_figures() -> None:
@@ -39,6 +65,15 @@ def serve_with_an_invalid_setting() -> None:
     os.chdir(ROOT)
     sys.argv = ["panel", "serve", "app", "--port", "0"]
     runpy.run_module("panel", run_name="__main__")
+
+
+def test_engine_imports_numba_and_no_other_large_library(tmp_path: Path) -> None:
+    assert run(tmp_path, import_engine) == Finished(0, "numba", "")
+
+
+def test_lyapunov_command_loads_neither_scipy_nor_a_compiler_nor_a_plotting_library(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, "-m", "cli", "lyapunov", "I", "--energy", "0.19"], cwd=ROOT, check=True, capture_output=True)
+    assert run(tmp_path, list_lyapunov_orbits) == Finished(0, "typer", "")
 
 
 def test_figures_import_no_server_and_no_pyplot(tmp_path: Path) -> None:

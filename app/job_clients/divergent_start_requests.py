@@ -7,7 +7,8 @@ from collections.abc import Callable
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.view_state import ViewState
-from engine import Answer, DivergentStart, DivergentStartRequest, JobSubmitter, describe_fate
+from engine import DivergentStart
+from engine.service import Answer, DivergentStartRequest, JobSubmitter, describe_fate
 
 
 class DivergentStartRequests:

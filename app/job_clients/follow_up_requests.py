@@ -10,7 +10,8 @@ from typing import Any
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.view_state import ViewState
-from engine import EscapeMap, JobRequest, JobSubmitter
+from engine import EscapeMap
+from engine.service import JobRequest, JobSubmitter
 
 
 @dataclass(frozen=True, eq=False)

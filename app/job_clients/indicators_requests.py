@@ -10,16 +10,8 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import (
-    BirkhoffDigits,
-    BirkhoffDigitsRequest,
-    Fate,
-    IndicatorVerdict,
-    JobSubmitter,
-    Orbit,
-    Subscription,
-    evaluate_indicators,
-)
+from engine import BirkhoffDigits, Fate, Orbit
+from engine.service import BirkhoffDigitsRequest, IndicatorVerdict, JobSubmitter, Subscription, evaluate_indicators
 
 
 class IndicatorsRequests:

@@ -8,7 +8,7 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
-from engine import JobRequest, JobSubmitter, Subscription
+from engine.service import JobRequest, JobSubmitter, Subscription
 
 
 class LatestRequest:

@@ -10,10 +10,11 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.locking import Locked
 from app.job_clients.preview_requests import NO_OVERLOAD, LoadPolicy, PreviewRequests
-from app.rendering.image_columns import map_columns
 from app.state.system import SYSTEM
 from app.state.view_state import ViewState
-from engine import EscapeMap, JobSubmitter, MapSpec, Subscription, WarmupRequest, is_ready_for_maps
+from engine import EscapeMap, MapSpec
+from engine.service import JobSubmitter, Subscription, WarmupRequest, is_ready_for_maps
+from plots.image_columns import map_columns
 
 
 class MapListener(Protocol):

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.job_clients.locking import Locked
-from app.rendering.image_columns import map_columns
 from app.state.view_state import ViewState
-from engine import EscapeMap, JobSubmitter, PreviewRequest, Subscription
+from engine import EscapeMap
+from engine.service import JobSubmitter, PreviewRequest, Subscription
+from plots.image_columns import map_columns
 
 
 @dataclass(frozen=True)

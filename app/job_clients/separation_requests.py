@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.orbit_curves import initial_state
 from app.state.view_state import ViewState
-from engine import JobSubmitter, Orbit, Separation, SeparationRequest
+from engine import Orbit, Separation
+from engine.service import JobSubmitter, SeparationRequest
+from plots.orbit_curves import initial_state
 
 Pair = tuple[int, int]
 

@@ -11,7 +11,7 @@ from typing import Any
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.settings import Settings, read_settings
-from engine import Jobs
+from engine.service import Jobs
 
 # Waiting calls per thread above which the process is overloaded; the map of one session queues two.
 _MOST_WAITING = 4

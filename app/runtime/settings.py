@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
-from engine import MOST_REQUESTS, count_cores
+from engine.service import MOST_REQUESTS, count_cores
 
 PREFIX = "ESCAPE_EXPLORER_"
 """Prefix of the environment variables."""

@@ -13,43 +13,46 @@ import panel as pn
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.rendering.manifold_strokes import select_image
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_images import ON_DEMAND
-from app.rendering.palette import Palette
 from app.state.system import SYSTEM
 from app.state.view_state import IMAGES, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.maps.map_plots import MapsView
 from engine import (
-    BasinMeasuresRequest,
-    DecayLawsRequest,
     EnergyCurves,
-    EnergyCurvesRequest,
     EnergyCurvesSpec,
     EscapeMap,
-    JobRequest,
-    JobSubmitter,
     MapSpec,
     OriginFateMap,
-    OriginFateRequest,
     Plane,
     RegularityMap,
-    RegularityRequest,
     StableManifolds,
-    StableManifoldsRequest,
     TrustMap,
-    TrustRequest,
     UncertaintyExponent,
-    UncertaintyExponentRequest,
     default_window,
 )
+from engine.service import (
+    BasinMeasuresRequest,
+    DecayLawsRequest,
+    EnergyCurvesRequest,
+    JobRequest,
+    JobSubmitter,
+    OriginFateRequest,
+    RegularityRequest,
+    StableManifoldsRequest,
+    TrustRequest,
+    UncertaintyExponentRequest,
+)
+from plots.manifold_strokes import select_image
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.map_images import ON_DEMAND
+from plots.palette import Palette
 
 SWEPT_ENERGIES = 33
 """Energies of the curves against energy."""
 
-# Attribute of `MapAnalyses` that each layer controls.
+# Column of `map_columns` and attribute of `MapAnalyses` that each layer controls.
+_COLUMN_OF = {"judge": "character", "origins": "passage"}
 _RESULT_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
 
 
@@ -57,9 +60,15 @@ class AnalysisPresenter:
     """Analyses that the view state asks for; `on_analyses(analyses)` receives the results for the current map."""
 
     def __init__(
-        self, state: ViewState, jobs: JobSubmitter, maps: MapsView, on_analyses: Callable[[MapAnalyses], None], locked: Locked
+        self,
+        state: ViewState,
+        jobs: JobSubmitter,
+        maps: MapsView,
+        on_analyses: Callable[[MapAnalyses], None],
+        on_curves: Callable[[EnergyCurves | None], None],
+        locked: Locked,
     ) -> None:
-        self._state, self._maps, self._on_analyses = state, maps, on_analyses
+        self._state, self._maps, self._on_analyses, self._on_curves = state, maps, on_analyses, on_curves
         self._spec: MapSpec | None = None
         self._analyses = NO_ANALYSES
         # All images that are computed.
@@ -115,7 +124,7 @@ class AnalysisPresenter:
         watch(lambda *events: self._explain_manifolds(), ["manifolds", "plane"])
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
         watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
-        watch(lambda *events: self.curves.show(None), list(SYSTEM))
+        watch(lambda *events: self._show_curves(None), list(SYSTEM))
         self._show_pictures()
         self.curves.follow_energy(state.energy)
 
@@ -146,6 +155,8 @@ class AnalysisPresenter:
 
     def _remove(self, name: str) -> None:
         """Remove the results of an analysis."""
+        if name in _COLUMN_OF:
+            self._maps.remove_layer(_COLUMN_OF[name])
         if name == "trust":
             self._maps.overlays.show_trust(None)
         if name == "manifolds":
@@ -233,10 +244,11 @@ class AnalysisPresenter:
         self.curves.show_running(False)
         self.curves.say(sentence)
 
-    def _show_curves(self, curves: EnergyCurves) -> None:
-        if curves.complete:
+    def _show_curves(self, curves: EnergyCurves | None) -> None:
+        if curves is not None and curves.complete:
             self._stop_sweep()
         self.curves.show(curves)
+        self._on_curves(curves)
 
     def _open_energy(self, energy: float) -> None:
         """Show the map of an energy on the plane of the curves."""

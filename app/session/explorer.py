@@ -10,18 +10,15 @@ from urllib.parse import parse_qsl
 
 import panel as pn
 
-from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.energy_animation import EnergyAnimation
-from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.map_requests import MapRequests
-from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
+from app.job_clients.orbit_requests import ChosenOrbit
 from app.job_clients.preview_requests import LoadPolicy
-from app.job_clients.separation_requests import SeparationRequests
-from app.rendering.palette import MOST_ORBITS
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
 from app.session.analysis_presenter import AnalysisPresenter
+from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
 from app.state.navigation import window_moves
@@ -37,12 +34,6 @@ from app.views.components.progress import ProgressView
 from app.views.components.widgets import button
 from app.views.maps.map_plots import MapsView
 from app.views.maps.map_toolbar import MapToolbar
-from app.views.maps.markers import NO_POINTS
-from app.views.orbits.inspector import Inspector
-from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
-from app.views.orbits.orbit_plots import OrbitPlots
-from app.views.orbits.playback import Playback
-from app.views.orbits.separation_plot import SeparationPlot
 from app.views.panels.accessible_table import AccessibleTable
 from app.views.panels.browser_events import BrowserActions, BrowserEvents, key_legend
 from app.views.panels.controls import ControlActions, Controls
@@ -50,7 +41,9 @@ from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, IndicatorVerdict, JobClient, Plane, Window, describe_fate, seconds_until_ready_for_maps
+from engine import EscapeMap, Fate, Plane, Window
+from engine.service import JobClient, describe_fate, seconds_until_ready_for_maps
+from plots.palette import MOST_ORBITS
 
 # Time until a preview that was postponed under load is tried again.
 _RETRY_MS = 300
@@ -77,13 +70,14 @@ class Explorer:
         jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session)
         on_disconnect(document, self._client.close)
         self.potential = PotentialPresenter(self.state, jobs, self._locked)
-        self.analyses = AnalysisPresenter(self.state, jobs, self.maps, self.downloads.show_analyses, self._locked)
+        self.analyses = AnalysisPresenter(
+            self.state, jobs, self.maps, self.downloads.show_analyses, self.downloads.show_curves, self._locked
+        )
         load_policy = LoadPolicy(process.is_overloaded, lambda call: document.add_timeout_callback(call, _RETRY_MS))
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), load_policy)
-        self.orbits = OrbitRequests(self.state, jobs, self._show_orbits, self._locked)
-        self.divergent_start = DivergentStartRequests(self.state, jobs, self.orbit_controls.say, self._locked)
-        self.separation = SeparationRequests(self.state, jobs, self.separation_plot.show, self.orbit_controls.say, self._locked)
-        self.indicators = IndicatorsRequests(self.state, jobs, self._show_verdicts, self.orbit_controls.say, self._locked)
+        self.orbits: OrbitPresenter = OrbitPresenter(
+            self.state, jobs, self.maps.marks, self._add_start, self._show_orbits, self._locked, self._latest
+        )
         self.analysis = Stack(
             {
                 Analysis.STATISTICS: self.statistics.build,
@@ -97,7 +91,6 @@ class Explorer:
         self.animation = EnergyAnimation(
             document, lambda: self.map_requests.previews.under_way, self._show_animated, self._end_animation
         )
-        self._orbits_shown: tuple[ChosenOrbit, ...] = ()
         self._requested_at: float | None = None
         self._navigating = False
         self._connect()
@@ -114,22 +107,7 @@ class Explorer:
             locked(lambda: state.param.update(window=None)),
             locked(self.maps.set_drag),
         )
-        self.orbit_controls: OrbitControls = OrbitControls(
-            OrbitActions(
-                add=locked(self._add_start),
-                choose=lambda place: state.param.update(chosen=place),
-                remove=locked(lambda: state.remove_start(state.chosen)),
-                clear=locked(lambda: state.param.update(starts=(), chosen=0)),
-                find_divergent_start=locked(lambda: self.divergent_start.search()),
-                open_plane=locked(self._open_plane),
-            )
-        )
-        self.orbit_plots = OrbitPlots()
-        self.separation_plot: SeparationPlot = SeparationPlot()
-        # A server under load skips times instead of falling behind the player.
-        self.playback = Playback(self._latest(self.orbit_plots.set_time))
-        self.inspector = Inspector(self.orbit_controls, self.playback, self.orbit_plots, self.separation_plot)
-        self.statistics = StatisticsView(locked(lambda: self._count_in(None)))
+        self.statistics = StatisticsView(locked(lambda: self._count_in(None)), lambda text: self.browser.copy(text))
         self.accessible_table = AccessibleTable(state)
         self.browser = BrowserEvents(
             BrowserActions(
@@ -141,7 +119,7 @@ class Explorer:
                 copied=locked(self._copied),
             )
         )
-        self.downloads: Downloads = Downloads(state, self.browser.copy_link)
+        self.downloads: Downloads = Downloads(state, self._copy_link)
         self.notice = Notice()
         self.gallery = Gallery(locked(self._show_preset))
         self.tour: Tour = Tour(locked(self._act))
@@ -163,15 +141,12 @@ class Explorer:
 
     def _connect(self) -> None:
         watch, state = self.state.param.watch, self.state
-        watch(lambda event: self.orbit_controls.follow_plane(event.new), "plane")
-        watch(lambda event: self._show_orbits(self._orbits_shown), "chosen")
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda event: self.maps.lock_times(event.new), "lock_times")
         watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
         watch(lambda event: self._show_box(event.new), "box")
         watch(lambda event: self._show_analysis(), "analysis")
         watch(self._write_link, list(LINKED))
-        self.orbit_controls.follow_plane(state.plane)
         self._set_palette()
         self.maps.lock_times(state.lock_times)
         self._follow_history()
@@ -180,15 +155,7 @@ class Explorer:
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
-        for requests in (
-            self.map_requests,
-            self.orbits,
-            self.divergent_start,
-            self.separation,
-            self.indicators,
-            self.analyses,
-            self.potential,
-        ):
+        for requests in (self.map_requests, self.orbits, self.analyses, self.potential):
             requests.close()
         self._client.close()
 
@@ -196,12 +163,12 @@ class Explorer:
         """Use the line colours of the dark or the light theme."""
         with pn.io.hold():
             self.maps.set_dark(dark)
-            self.orbit_plots.outlines.set_dark(dark)
+            self.orbits.plots.outlines.set_dark(dark)
 
     def _begin(self) -> None:
         """Request the map and the orbits of the state, and show the problems of the link."""
         self.map_requests.request_map()
-        self.orbits.follow()
+        self.orbits.begin()
         if self._problems:
             self.notice.warn(" ".join(self._problems))
 
@@ -215,8 +182,9 @@ class Explorer:
     def _follow_history(self) -> None:
         self.toolbar.follow(self.history, zoomed=self.state.window is not None)
 
-    def _navigate(self, link: str, entry: int) -> None:
+    def _navigate(self, link: str, entry: int, steps: int) -> None:
         """Show the state of a link in the browser's history."""
+        self.browser.follow_steps(steps)
         values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
         shown = ViewState(**values)
         self.history.move_to(entry)
@@ -231,9 +199,8 @@ class Explorer:
     def _set_palette(self) -> None:
         palette = self.state.colours
         with pn.io.hold():
-            for view in (self.maps, self.orbit_plots, self.orbit_controls, self.statistics, self.separation_plot, self.analyses):
+            for view in (self.maps, self.orbits, self.statistics, self.analyses):
                 view.set_palette(palette)
-            self._show_orbits(self._orbits_shown)
 
     def _welcome(self) -> None:
         if self._offers_tour:
@@ -253,7 +220,7 @@ class Explorer:
                 ordinate = 0.6 * window.ordinate_low + 0.4 * window.ordinate_high
                 self._add_start(*self.maps.snapped(x, ordinate))
             case Act.TWIN:
-                self.divergent_start.search()
+                self.orbits.find_divergent_start()
             case Act.LAYER:
                 state.judge = True
             case Act.GALLERY:
@@ -263,6 +230,7 @@ class Explorer:
         self.toolbar.begin_touch()
         self.maps.begin_touch()
         self.controls.begin_touch()
+        self.orbits.begin_touch()
 
     def _build_help(self) -> list[pn.viewable.Viewable]:
         return [
@@ -304,18 +272,15 @@ class Explorer:
         self.maps.marks.show_box(box)
         self.statistics.show_box(box)
 
-    def _open_plane(self) -> None:
-        """Open the (x, px) plane at the energy of the chosen orbit, with that orbit."""
-        start = self.state.chosen_start
-        if start is not None and self.state.plane is Plane.X_H:
-            self.state.param.update(plane=Plane.X_PX, energy=start[1], window=None, starts=((start[0], 0.0),), chosen=0)
-
     def _show_preset(self, preset: Preset) -> None:
         self.animation.stop()
         self.state.param.update(chosen=0, **(asdict(System(preset.case)) | preset.values()))
 
     def _copied(self, success: bool) -> None:
-        self.notice.show("Link copied." if success else "The browser does not allow it: copy the page's address instead.")
+        self.notice.show("Copied." if success else "The browser does not allow copying.")
+
+    def _copy_link(self) -> None:
+        self.browser.copy(None)
 
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""
@@ -416,30 +381,9 @@ class Explorer:
         self.notice.warn(sentence)
 
     def _show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
-        """Show the orbits that are known."""
-        self._orbits_shown, chosen = tuple(orbits), self.state.chosen
-        if chosen >= len(orbits) and orbits:
-            return
-        drawings = [one.drawing for one in orbits]
-        with pn.io.hold():
-            self.maps.marks.show_starts([one.start for one in orbits])
-            on_section = self.state.plane is Plane.X_PX
-            self.maps.marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
-            self.orbit_plots.show(self.state.potential, drawings, chosen)
-            drawing = drawings[chosen] if orbits else None
-            self.playback.follow(float(drawing.orbit.t[-1]) if drawing is not None else None)
-            # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
-            self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
-            self.separation.follow(orbits)
-            self.indicators.follow(orbits)
-
-    def _show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
-        """Show what is known of the orbits in words."""
-        with pn.io.hold():
-            self.orbit_controls.show(orbits, self.state.chosen)
-            self.orbit_controls.show_indicators(verdicts)
-            self.downloads.show_orbits(orbits)
-            self.accessible_table.show_orbits(orbits)
+        """Offer the orbits to download and to screen readers."""
+        self.downloads.show_orbits(orbits)
+        self.accessible_table.show_orbits(orbits)
 
 
 def _parameters() -> dict[str, str]:

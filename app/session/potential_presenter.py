@@ -7,7 +7,8 @@ from app.job_clients.locking import Locked
 from app.state.system import SYSTEM, System, refusal
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import PotentialPanel
-from engine import CASES, Answer, JobSubmitter, Potential, PotentialReview, PotentialReviewRequest
+from engine import CASES, Potential, PotentialReview
+from engine.service import Answer, JobSubmitter, PotentialReviewRequest
 
 
 class PotentialPresenter:

@@ -50,7 +50,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "
             "decreases exponentially to the rounding error, about 1e-16. On a regular orbit it stays large or decreases like "
-            "a power of time, a straight line on these axes. A bounded orbit counts as chaotic if SALI is 1e-7 or less."
+            "a power of time, a straight line on these axes. A bounded orbit counts as chaotic if SALI is 1e−7 or less."
         ),
         "exponent": (
             "The mean exponential growth rate of a small deviation until t. On a regular orbit it decreases like ln t / t, a "
@@ -58,9 +58,9 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "the time in which an error grows by a factor of e."
         ),
         "r2": (
-            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits. On an "
-            "escaping orbit it ends at its value at the exit. A sticky orbit looks bounded for a long time; then its range "
-            "widens and it escapes."
+            "The squared distance from the centre of the well. On a regular orbit it oscillates between fixed limits; a "
+            "sticky orbit looks like that for a long time, until its range widens and it escapes. Drag over this curve, SALI "
+            "or the Lyapunov exponent to see an interval of time in full detail; a double click shows the whole orbit again."
         ),
         "separation": (
             "The distance of two orbits in position and momentum, on a logarithmic scale. In a chaotic region neighbours "
@@ -80,7 +80,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "uncertainty": (
             "Random pairs of starts at a given distance: the share of pairs with different fates, against the distance. Near "
             "a smooth boundary the share is proportional to the distance. Near a fractal boundary it decreases more slowly, "
-            "as the distance to the power α, so a more accurate start helps little. The dimension of the boundary is 2 − α."
+            "as the distance to the power α, and the dimension of the boundary is 2 − α. Bars are 95 % intervals of the shares."
         ),
         "survival": (
             "The share of the interior starts that have not escaped by time t. For fully chaotic motion it decreases "

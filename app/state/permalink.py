@@ -9,7 +9,6 @@ from urllib.parse import urlencode
 
 import numpy as np
 
-from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.system import SYSTEM, TYPED, System, refusal
 from app.state.view_state import (
     IMAGE_CHOICES,
@@ -21,7 +20,9 @@ from app.state.view_state import (
     allowed_resolutions,
     allowed_t_max,
 )
-from engine import CASES, FREQUENCIES, LONGEST_TEXT, POTENTIALS, STRENGTHS, Plane, Window, review_potential
+from engine import CASES, POTENTIALS, Plane, Window, review_potential
+from engine.service import FREQUENCIES, LONGEST_TEXT, STRENGTHS
+from plots.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
 """Maximal length of a value in a link, in characters."""

@@ -27,7 +27,7 @@ class Preset:
     group
         One of `GROUPS`.
     picture
-        Picture of its thumbnail, one of `app.rendering.map_images.TITLES`.
+        Picture of its thumbnail, one of `plots.map_images.TITLES`.
     case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, images, origins, analysis
         As in `ViewState`.
     """
@@ -42,7 +42,7 @@ class Preset:
     energy: float
     window: Window | None = None
     t_max: float = 1e5
-    resolution: int = 225
+    resolution: int = 224
     starts: tuple[tuple[float, float], ...] = ()
     judge: bool = False
     trust: bool = False
@@ -116,7 +116,7 @@ PRESETS: tuple[Preset, ...] = (
         "starts upward.",
     ),
     Preset(
-        key="regular-or-chaotic", title="Regular or chaotic", group=_PAPER, picture="characters", judge=True, resolution=113,
+        key="regular-or-chaotic", title="Regular or chaotic", group=_PAPER, picture="characters", judge=True, resolution=112,
         case="III", plane=Plane.X_PX, energy=0.26, starts=((0.4, 0.2), (0.58, 0.0), (0.05, 0.58)),
         caption="SALI separates two kinds of bounded orbits. Cyan orbits move on invariant tori; magenta ones are chaotic, in "
         "thin layers between the tori, where SALI decreases to rounding error. The analysis takes a minute, and the "

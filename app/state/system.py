@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from app.rendering.palette import MOST_CHANNELS
 from app.state.energy_ranges import ENERGIES, EnergyRange
 from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
+from plots.palette import MOST_CHANNELS
 
 TYPED = "typed"
 """Case of a potential that the user typed."""

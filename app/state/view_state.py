@@ -9,22 +9,12 @@ from typing import Any
 import numpy as np
 import param
 
-from app.rendering.palette import MOST_ORBITS, PALETTES, Palette
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import ENERGIES
 from app.state.system import SYSTEM, TYPED, System
-from engine import (
-    FREQUENCIES,
-    POTENTIALS,
-    STRENGTHS,
-    MapSpec,
-    OrbitRequest,
-    Plane,
-    Potential,
-    UnresolvedMapSpec,
-    Window,
-    start_states,
-)
+from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
+from engine.service import FREQUENCIES, STRENGTHS, OrbitRequest, UnresolvedMapSpec
+from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
@@ -43,7 +33,7 @@ IMAGES = 3
 IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
 """Images of the stable manifolds that can be drawn."""
 
-RESOLUTION_CHOICES = {"113 × 113": 113, "225 × 225": 225, "450 × 450": 450, "900 × 900": 900}
+RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
 
 
 def allowed_t_max() -> dict[str, float]:
@@ -97,7 +87,7 @@ class ViewState(param.Parameterized):
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
     energy = param.Number(default=ENERGIES["I"].first, doc="h; not used on (x, h)")
     t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
-    resolution = param.Selector(default=225, objects=list(RESOLUTION_CHOICES.values()))
+    resolution = param.Selector(default=224, objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
@@ -119,7 +109,7 @@ class ViewState(param.Parameterized):
 
     def __init__(self, **values: Any) -> None:
         t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
-        super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(225, resolutions[-1]))
+        super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(224, resolutions[-1]))
         self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
         self.param.update(**values)
 

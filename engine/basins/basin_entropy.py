@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.basins.labels import checked_labels
+from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
+from engine.representation import Result
 from engine.validation import checked_count
 from engine.wording import format_count
 
@@ -20,7 +21,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class BasinEntropy:
+class BasinEntropy(Result):
     """Basin entropies of a labelled image, in nats (dimensionless).
 
     Attributes
@@ -80,7 +81,7 @@ class BasinEntropy:
         return "S_bb ≤ ln 2: the boundary can be smooth or fractal."
 
 
-def compute_basin_entropy(labels: Any, valid: Any = None, box: int = BOX) -> BasinEntropy:
+def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> BasinEntropy:
     """Compute the basin entropies S_b and S_bb of a labelled image.
 
     The image is tiled with boxes from its first row and column. A strip narrower than a box at the far edges and boxes with a
@@ -94,9 +95,9 @@ def compute_basin_entropy(labels: Any, valid: Any = None, box: int = BOX) -> Bas
     Parameters
     ----------
     labels
-        (rows, columns) integers; equal ones are one basin. For a map see `exit_labels`.
+        A map, whose bounded orbits are a basin of their own, or (rows, columns) integers; equal ones are one basin.
     valid
-        (rows, columns) bool, the pixels that count; None for all.
+        (rows, columns) bool, the pixels that count; None for all, of a map those inside.
     box
         Side of a box in pixels, 2 to the shorter side of the image.
 
@@ -110,7 +111,7 @@ def compute_basin_entropy(labels: Any, valid: Any = None, box: int = BOX) -> Bas
     ValueError
         If a parameter is out of range.
     """
-    labels, valid = checked_labels(labels, valid)
+    labels, valid = checked_labels(labels, valid, bounded=ENTROPY_COUNTS_BOUNDED)
     box = checked_count("box", box, 2, min(labels.shape))
     boxes = _tile(labels, box)[_tile(valid, box).all(axis=1)]
     entropies, label_counts = _box_entropies(boxes)

@@ -8,6 +8,7 @@ import numpy as np
 
 from engine.arrays import read_only
 from engine.dynamics.fates import Fate
+from engine.maps.result import EscapeMap
 from engine.validation import checked_array
 
 ENTROPY_COUNTS_BOUNDED = True
@@ -46,8 +47,16 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     return read_only(fate.view()), read_only(valid)
 
 
-def checked_labels(labels: Any, valid: Any) -> tuple[np.ndarray, np.ndarray]:
-    """`labels` as integers and `valid` as bool, both (rows, columns); ValueError for any other shape or type."""
+def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarray, np.ndarray]:
+    """`labels` as integers and `valid` as bool, both (rows, columns), of a map those of `exit_labels`.
+
+    Raises
+    ------
+    ValueError
+        For any other shape or type.
+    """
+    if isinstance(labels, EscapeMap):
+        labels, valid = exit_labels(labels.fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
         raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy import special
 
 from engine.arrays import read_only
+from engine.proportions import wilson_interval
+from engine.representation import Result
 from engine.validation import checked_array, checked_integers, short_repr
 from engine.wording import format_count, format_decimals
 
@@ -46,7 +47,7 @@ def _empty_counts() -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class UncertaintyExponent:
+class UncertaintyExponent(Result):
     """Share of uncertain pairs against their separation, and the fitted power law; dimensionless, arrays are read-only.
 
     Attributes
@@ -91,6 +92,11 @@ class UncertaintyExponent:
         return np.where(self.pairs > 0, self.uncertain / np.maximum(self.pairs, 1), np.nan)
 
     @property
+    def share_intervals(self) -> tuple[np.ndarray, np.ndarray]:
+        """(m,) lower and upper limits of the 95 % Wilson intervals of the shares."""
+        return wilson_interval(self.uncertain, self.pairs)
+
+    @property
     def dimension(self) -> float:
         """2 − α, the dimension of the basin boundary in the plane of initial conditions; NaN without an exponent."""
         return 2.0 - self.exponent
@@ -98,6 +104,8 @@ class UncertaintyExponent:
     @property
     def probability(self) -> float:
         """Probability of at least this scatter about the fitted line by chance alone; NaN without a fitted line."""
+        from scipy import special
+
         freedom = int(np.count_nonzero(self.used)) - 2
         return float(special.chdtrc(freedom, self.misfit * freedom)) if np.isfinite(self.misfit) else float("nan")
 
@@ -245,6 +253,8 @@ def predict_shares(epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> np.ndar
 
 def _fit_law(used: np.ndarray, epsilon: np.ndarray, n: np.ndarray, k: np.ndarray) -> _Law | None:
     """Power law fitted to the separations `used`; None if they are too few or cover too short a range."""
+    from scipy import special
+
     if used.size < MIN_SEPARATIONS or np.ptp(np.log10(epsilon[used])) < MIN_DECADES:
         return None
     x, n, k = np.log(epsilon[used]), n[used], k[used]

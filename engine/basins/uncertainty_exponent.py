@@ -20,6 +20,7 @@ from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves_i
 from engine.dynamics.planes import Plane
 from engine.execution import raise_if_cancelled
 from engine.maps.spec import MapSpec
+from engine.progress import shows_progress
 from engine.validation import checked_count, short_repr
 
 __all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]
@@ -53,6 +54,7 @@ _STAGES = (30.0, 300.0)
 _MIN_YIELD = 1e-3
 
 
+@shows_progress("uncertainty exponent")
 def compute_uncertainty_exponent(
     spec: MapSpec,
     *,
@@ -253,7 +255,7 @@ class _PairSampler:
         """States and energy rows of the interior ones among `size` random pairs in the window."""
         points, rows = self._draw_points(index, size)
         batch = OrbitBatch.from_starts(self.spec.start_states(*points), np.tile(rows, 2))
-        batch.mark_outside(np.arange(2 * size), self.curves)
+        batch.mark_outside(self.spec.potential, np.arange(2 * size), self.curves)
         inside = (batch.fate == Fate.NOT_COMPUTED).reshape(2, -1).all(axis=0)
         return batch.state.reshape(2, -1, 4)[:, inside], rows[inside]
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
 from engine.arrays import read_only
-from engine.basins.labels import checked_labels
+from engine.basins.labels import WADA_COUNTS_BOUNDED, checked_labels
+from engine.representation import Result
 from engine.wording import format_count
 
 MIN_BASINS = 3
@@ -22,7 +23,7 @@ _NUMBER_WORDS = ("none", "one", "two")
 
 
 @dataclass(frozen=True, eq=False)
-class WadaTest:
+class WadaTest(Result):
     """Distances between the boundaries of the basins of an image, in pixels; arrays are read-only.
 
     Attributes
@@ -46,6 +47,10 @@ class WadaTest:
     radius_99: float
     boundary_pixels: int
     shares: np.ndarray = field(repr=False)
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """The share of the boundary pixels within each distance."""
+        return {"distance": np.arange(self.shares.size), "share": self.shares}
 
     @property
     def is_applicable(self) -> bool:
@@ -77,7 +82,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     Parameters
     ----------
     labels
-        (rows, columns) integers; equal ones are one basin. For a map see `exit_labels`.
+        A map, whose bounded orbits do not count, or (rows, columns) integers; equal ones are one basin.
     valid
         (rows, columns) bool, the pixels that count; None for all. Other pixels and the edge of the image form no boundary;
         distances are measured straight across them.
@@ -92,7 +97,7 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     ValueError
         If `labels` or `valid` has a wrong shape or type.
     """
-    labels, valid = checked_labels(labels, valid)
+    labels, valid = checked_labels(labels, valid, bounded=WADA_COUNTS_BOUNDED)
     basins = tuple(np.unique(labels[valid]).tolist())
     boundary = _slim_boundary(labels, valid)
     count = int(np.count_nonzero(boundary))
@@ -116,6 +121,8 @@ def _slim_boundary(colours: np.ndarray, valid: np.ndarray) -> np.ndarray:
 
 def _largest_distances(labels: np.ndarray, valid: np.ndarray, basins: tuple[int, ...], boundary: np.ndarray) -> np.ndarray:
     """Distance of each pixel of `boundary` from the furthest slim boundary; infinite if a basin has none."""
+    from scipy import ndimage
+
     distances = np.zeros(np.count_nonzero(boundary))
     for basin in basins:
         slim = _slim_boundary(labels == basin, valid)

@@ -13,10 +13,10 @@ import numpy as np
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
+from engine.dynamics.interior import find_outside_starts
 from engine.dynamics.lyapunov_orbits import exit_gates
 from engine.execution import collect_result, count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
-from engine.taylor.kernels.events import find_outside
 from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import TOLERANCE
 
@@ -71,11 +71,11 @@ class OrbitBatch:
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         return cls(states.copy(), np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), codes[0], codes[1])
 
-    def mark_outside(self, which: np.ndarray, curves: np.ndarray) -> None:
-        """Set `outside` and `fate` of those starts among `which` (indices) that lie beyond an exit curve."""
-        x, y = self.state[which, 0], self.state[which, 1]
-        channel = find_outside(x, y, curves, self.curve_row[which])
-        channel[self.fate[which] == Fate.FORBIDDEN] = 0
+    def mark_outside(self, potential: Potential, which: np.ndarray, curves: np.ndarray) -> None:
+        """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits."""
+        state = self.state[which]
+        x, y = np.ascontiguousarray(state[:, :2].T)
+        channel = find_outside_starts(potential, x, y, potential.energy(state), curves, self.curve_row[which])
         self.outside[which] = channel
         self.fate[which[channel > 0]] = Fate.OUTSIDE
 

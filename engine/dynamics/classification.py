@@ -13,6 +13,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
 
 ENERGY_TOLERANCE = 1e-9
@@ -20,7 +21,7 @@ ENERGY_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Outcomes:
+class Outcomes(Result):
     """Outcomes of n orbits, as returned by `classify_orbits`.
 
     Attributes
@@ -88,7 +89,7 @@ def classify_orbits(
     curves = exit_curves_in_well_units(potential, energy)[None]
     batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
-    batch.mark_outside(every_orbit, curves)
+    batch.mark_outside(scaled, every_orbit, curves)
     propagate_batch(scaled, curves, batch, every_orbit, t_max / units.time, final=True, executor=executor, cancel=cancel)
     outcomes = collect_outcomes(scaled, np.full(len(states), energy / units.energy), batch)
     return replace(outcomes, escape_time=outcomes.escape_time * units.time)

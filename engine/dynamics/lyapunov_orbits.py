@@ -8,6 +8,7 @@ starts too far out moves outward. The Lyapunov orbit is the root of the velocity
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -15,12 +16,13 @@ from types import ModuleType
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy import optimize
 
 from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.representation import Result
+from engine.root_finding import find_root
 from engine.taylor.kernels import events
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 from engine.validation import checked_number
@@ -36,6 +38,10 @@ _LARGEST_FIT_ERROR = 1e-11
 # Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
 _GATE_MARGIN = 1e-3
 _MOST_STEPS = 400
+# Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
+_CLOSED_HALF_WIDTH = 1e-3
+# The lines beyond the ends of an exit are sampled from this |s| − 1 on.
+_FIRST_BEYOND, _SAMPLES_BEYOND = 1e-3, 400
 # Column k holds the power series of the Chebyshev polynomial T_k.
 _CHEBYSHEV_TO_POWER = np.column_stack(
     [
@@ -46,7 +52,7 @@ _CHEBYSHEV_TO_POWER = np.column_stack(
 
 
 @dataclass(frozen=True, eq=False)
-class LyapunovOrbit:
+class LyapunovOrbit(Result):
     """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
 
     Attributes
@@ -123,7 +129,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
         if image == channel and potential.mirror_in_x:
             found[channel] = _symmetrized(found[channel])
     orbits = tuple(found.values())
-    _check_exits_apart(potential, orbits)
+    _check_exits_apart(orbits)
     return orbits
 
 
@@ -131,22 +137,31 @@ def _rescaled(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
     """An orbit in units of the well, converted to the units of its potential without rounding."""
     length = units.length
     curve = orbit.curve * length
-    directions = slice(events.OUTWARD_X, events.BEARING_Y + 1)
+    directions = slice(events.OUTWARD_X, events.OPEN + 1)
     curve[directions] = orbit.curve[directions]
     energy, period = orbit.energy * units.energy, orbit.period * units.time
     return LyapunovOrbit(orbit.channel, energy, period, orbit.x * length, orbit.y * length, curve)
 
 
-def _check_exits_apart(potential: Potential, orbits: tuple[LyapunovOrbit, ...]) -> None:
-    """Each exit must lie where its own saddle is the nearest in direction, as the test for outside points assumes."""
-    if not orbits:
-        return
-    directions = potential.saddles / np.hypot(*potential.saddles.T)[:, None]
-    for orbit in orbits:
-        nearest = np.argmax(orbit.half_path @ directions.T, axis=1) + 1
-        if np.any(nearest != orbit.channel):
-            other = int(nearest[nearest != orbit.channel][0])
-            raise _SearchError(f"too high, the exits of channels {orbit.channel} and {other} meet")
+def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
+    for one, other in itertools.combinations(orbits, 2):
+        if _paths_cross(one.half_path, other.half_path):
+            raise _SearchError(f"too high, the exits of channels {one.channel} and {other.channel} meet")
+
+
+def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two polygonal lines, (n, 2) and (m, 2), intersect."""
+    if np.any(one.max(axis=0) < other.min(axis=0)) or np.any(other.max(axis=0) < one.min(axis=0)):
+        return False
+
+    def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """(segments, points) on which side of each segment of a line the points lie."""
+        along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
+        left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+        return left
+
+    first, second = sides(one, other), sides(other, one).T
+    return bool(np.any((first[:, 1:] != first[:, :-1]) & (second[1:] != second[:-1])))
 
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
@@ -182,7 +197,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOr
     bracket = _find_bracket(outward_velocity, distance)
     if bracket is None:
         raise _SearchError(f"too high, no Lyapunov orbit was found across channel {channel}; choose a lower energy")
-    u = optimize.brentq(outward_velocity, *bracket, xtol=1e-17, rtol=4 * np.finfo(float).eps)
+    u = find_root(outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
     _, half_period, count = kernels.shoot(u, *arguments)
     if not np.isfinite(half_period):
         raise _SearchError(f"the Lyapunov orbit of channel {channel} does not turn back")
@@ -190,6 +205,7 @@ def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOr
     curve = _fit_exit_curve(saddle, outward, x, y)
     if curve is None:
         raise _SearchError(f"too high, across channel {channel} the Lyapunov orbit is not a smooth graph and defines no exit")
+    curve[events.REACH] = _find_reach(potential, energy, curve)
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
     return LyapunovOrbit(channel, energy, 2.0 * half_period, x[there_and_back], y[there_and_back], curve)
 
@@ -239,25 +255,38 @@ def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: n
     degrees = np.arange(events.CURVE_DEGREE + 1)
     end_slopes = [float(np.sum(coefficients * degrees * end ** (degrees - 1))) for end in (-1.0, 1.0)]
     curve = _straight_curve(saddle, outward)
+    curve[events.OPEN] = 1.0
     curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
     curve[events.COEFFICIENTS :] = coefficients
     return curve
 
 
+def _find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
+    """The |s| up to which a crossing counts: half of the way along the straight lines beyond the ends to where V ≤ h again."""
+    reach = np.inf
+    saddle, outward = curve[[events.SADDLE_X, events.SADDLE_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
+    farthest = _LARGEST_OFFSET * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
+    beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
+    for end, slope in ((-1.0, curve[events.SLOPE_LOW]), (1.0, curve[events.SLOPE_HIGH])):
+        u = np.polynomial.polynomial.polyval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
+        q = curve[events.MIDDLE] + curve[events.HALF_WIDTH] * end * (1.0 + beyond)
+        x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
+        reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
+    return float(reach)
+
+
 def _straight_curve(saddle: np.ndarray, outward: np.ndarray) -> np.ndarray:
-    """(columns,) the curve f = 0: a straight line across the saddle."""
+    """(columns,) the exit curve of a closed channel: a short straight line across the saddle."""
     curve = np.zeros(events.CURVE_COLUMNS)
     curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curve[events.HALF_WIDTH] = 1.0
+    curve[events.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
+    curve[events.REACH] = 1.0
     return curve
 
 
 def closed_channel_curves(potential: Potential) -> np.ndarray:
-    """(channels, columns) exit curves for closed channels: straight lines across the saddles.
-
-    No orbit with an energy below the saddle reaches such a line from inside; starts beyond it are outside.
-    """
+    """(channels, columns) exit curves for closed channels: short lines across the saddles, where V is above any lower energy."""
     rows = [_straight_curve(*row) for row in zip(potential.saddles, potential.outward_directions, strict=True)]
     return np.array(rows).reshape(potential.channels, events.CURVE_COLUMNS)
 
@@ -274,13 +303,6 @@ def exit_curves_in_well_units(potential: Potential, energy: float) -> np.ndarray
     """(channels, columns) exit curves in units of the well, at an energy in the potential's own units, which errors name."""
     find_lyapunov_orbits(potential, energy)
     return exit_curves(potential.in_well_units, energy / potential.units.energy)
-
-
-def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """int8, shaped like x and y: the channel beyond whose Lyapunov orbit each point lies, 0 if it lies inside."""
-    row = np.zeros(x.size, np.int64)
-    outside: np.ndarray = events.find_outside(x.ravel(), y.ravel(), exit_curves(potential, energy)[None], row)
-    return outside.reshape(x.shape)
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Never
 
-import contourpy
 import numpy as np
 
-from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits, find_outside_channels
+from engine.dynamics.interior import find_outside_channels
+from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
 from engine.validation import checked_number, short_repr
@@ -176,6 +176,8 @@ def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float,
 
 def trace_equipotentials(potential: Potential, plane: Plane, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
     """The zero-velocity curves of several energies on (x, y) or (x, px): a list of (n, 2) pieces for each energy."""
+    import contourpy
+
     levels = [checked_number("energies", energy) for energy in energies]
     x, ordinate = (
         np.linspace(low, high, _CONTOUR_SAMPLES)

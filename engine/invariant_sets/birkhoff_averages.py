@@ -3,8 +3,9 @@
 Along a quasi-periodic orbit the average of a smooth observable, weighted by a window function that vanishes smoothly at both
 ends, converges fast with the window length T; along a chaotic orbit it converges no faster than 1/√T. The averages over two
 consecutive windows therefore agree to many digits on an invariant torus and to few digits otherwise (Das, Saiki, Sander & Yorke
-2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). The observables are x² and y², sampled at a fixed time
-step.
+2017, Nonlinearity 30, 4111; Duignan & Meiss 2023, Physica D 449, 133749). On a weakly chaotic orbit two averages can agree by
+chance, so a third one over a window that overlaps half of each must agree as well. The observables are x² and y², sampled at a
+fixed time step.
 
 The weight exp(−1/(s(1 − s))), s = t/T, of these papers converges faster than any power of T. Eight digits are enough here, and
 the Kaiser window (Kaiser & Schafer 1980, IEEE Trans. ASSP 28, 105) reaches them for motion that completes 7 or more revolutions
@@ -45,7 +46,7 @@ def count_agreeing_digits(
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
 ) -> np.ndarray:
-    """Count the digits to which weighted averages of x² and y² over two consecutive windows agree.
+    """Count the digits to which weighted averages of x² and y² over two consecutive windows, and one between them, agree.
 
     Parameters
     ----------
@@ -62,23 +63,38 @@ def count_agreeing_digits(
 
     Returns
     -------
-    (n,) −log10 of the larger relative difference of the two averages, from 0 to 16; 0 for an orbit that escapes or whose energy
+    (n,) −log10 of the largest relative difference of the averages, from 0 to 16; 0 for an orbit that escapes or whose energy
     is not conserved. An orbit with `CERTIFIED_DIGITS` or more counts as quasi-periodic.
     """
-    return map_tiles(_agreeing_digits, potential, states, window, executor=executor, cancel=cancel)
+    return compare_averages(potential, states, window, executor=executor, cancel=cancel)[:, 1]
+
+
+def compare_averages(
+    potential: Potential,
+    states: np.ndarray,
+    window: float,
+    *,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> np.ndarray:
+    """(n, 2) digits to which the averages over the two consecutive windows agree, and those to which all three agree.
+
+    The parameters are those of `count_agreeing_digits`.
+    """
+    return map_tiles(_agreeing_digits, potential, states, window, shape=(2,), executor=executor, cancel=cancel)
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
-    """(lanes,) digits of the orbits in a tile (4, lanes)."""
+    """(lanes, 2) digits of the orbits in a tile (4, lanes)."""
     energy, step = potential.energy(tile.T), fixed_step_size(potential)
-    averages = np.zeros((2, 2, tile.shape[1]))
+    averages = np.zeros((3, 2, tile.shape[1]))
     kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
     with np.errstate(all="ignore"):
-        difference = np.abs(averages[1] - averages[0]) / np.abs(averages).max(axis=0)
-        digits = -np.log10(np.maximum(difference.max(axis=0), 10.0**-_MOST_DIGITS))
+        difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
+        digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))
         conserved = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE
     agreeing: np.ndarray = np.where(conserved & np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
-    return agreeing
+    return agreeing.T
 
 
 def window_weights(window: float, step: float) -> np.ndarray:

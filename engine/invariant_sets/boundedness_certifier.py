@@ -13,7 +13,7 @@ from engine.dynamics.batch import LANES
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.section_points import find_section_points
 from engine.execution import is_cancelled
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, compare_averages
 from engine.invariant_sets.exit_entry_points import find_entry_points
 from engine.invariant_sets.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.potentials.potential import Potential
@@ -87,11 +87,12 @@ class BoundednessCertifier:
         for window, tested in self._rounds():
             if is_cancelled(self._cancel):
                 return
-            self._digits[tested] = count_agreeing_digits(self.potential, self.states[tested], window, **self._execution)
-            certified = tested[self._digits[tested] >= CERTIFIED_DIGITS]
-            self.certificate[certified] = Certificate.QUASI_PERIODIC
+            two, three = compare_averages(self.potential, self.states[tested], window, **self._execution).T
+            self._digits[tested] = two
+            self.certificate[tested[three >= CERTIFIED_DIGITS]] = Certificate.QUASI_PERIODIC
             if self._use_curves:
-                self._certify_enclosed(certified)
+                # Two averages are enough here, since the curve is evidence of a torus as well.
+                self._certify_enclosed(tested[two >= CERTIFIED_DIGITS])
             on_round()
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
@@ -134,16 +135,16 @@ class BoundednessCertifier:
         uncertified: np.ndarray = self.certificate == Certificate.NONE
         return uncertified
 
-    def _certify_enclosed(self, certified: np.ndarray) -> None:
-        """Certify orbits enclosed by the invariant curves of some newly certified ones."""
-        certified = certified[:: -(-certified.size // _MAX_CURVES_PER_ROUND) or 1]
-        curves = self._find_curves(certified)
+    def _certify_enclosed(self, regular: np.ndarray) -> None:
+        """Certify orbits enclosed by the invariant curves of some of the given orbits."""
+        regular = regular[:: -(-regular.size // _MAX_CURVES_PER_ROUND) or 1]
+        curves = self._find_curves(regular)
         for number in _alternating_by_size([0.0 if curve is None else curve.area for curve in curves]):
             if is_cancelled(self._cancel):
                 return
             curve = curves[number]
             # The curve of an orbit that is enclosed already separates nothing more.
-            if curve is not None and not self._separated[certified[number]].all():
+            if curve is not None and not self._separated[regular[number]].all():
                 self._apply_curve(curve)
                 if self.potential.mirror_in_x:
                     self._apply_curve(curve.mirrored())

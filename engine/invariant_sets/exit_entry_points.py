@@ -7,7 +7,8 @@ import functools
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_outside_channels
+from engine.dynamics.interior import find_outside_channels
+from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.dynamics.planes import Plane, required_energy
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor

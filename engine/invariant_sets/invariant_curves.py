@@ -10,9 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
+
+if TYPE_CHECKING:
+    import shapely
 
 MOST_ISLANDS = 24
 """Largest number of islands in a chain that is searched for."""
@@ -62,6 +65,8 @@ class InvariantCurve:
         -------
         (n,) int8: −1 inside a loop, 1 outside all loops, 0 within the margin of a loop.
         """
+        import shapely
+
         side = np.ones(len(points), np.int8)
         for outer, inner in self._bounds:
             near = shapely.contains_xy(outer, *points.T)
@@ -72,6 +77,8 @@ class InvariantCurve:
     @cached_property
     def _bounds(self) -> list[tuple[shapely.Polygon, shapely.Polygon]]:
         """For each loop, a polygon that contains the exact curve and one that the exact curve contains."""
+        import shapely
+
         polygons = [
             (loop.buffer(margin, quad_segs=1), loop.buffer(-margin, quad_segs=1))
             for loop, margin in zip(self.loops, self.margins, strict=True)
@@ -81,6 +88,8 @@ class InvariantCurve:
 
     def mirrored(self) -> InvariantCurve:
         """The image under (x, px) → (−x, −px)."""
+        import shapely
+
         return InvariantCurve(tuple(shapely.transform(loop, np.negative) for loop in self.loops), self.margins)
 
 
@@ -120,6 +129,8 @@ def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon,
 
 def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
     """The loop through successive points of a rotation and its margin; None when they are not on a closed curve."""
+    import shapely
+
     order = _order_along_curve(points)
     if order is None:
         return None

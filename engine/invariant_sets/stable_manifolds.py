@@ -11,12 +11,11 @@ from __future__ import annotations
 
 import itertools
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from engine.arrays import read_only
 from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
@@ -24,6 +23,7 @@ from engine.dynamics.planes import Plane, Window, default_window
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
+from engine.representation import Result
 from engine.validation import checked_count
 
 MOST_IMAGES = 6
@@ -70,7 +70,7 @@ class ManifoldArc:
 
 
 @dataclass(frozen=True, eq=False)
-class StableManifolds:
+class StableManifolds(Result):
     """Intersections of the stable manifolds of all Lyapunov orbits of one energy with y = 0, py > 0.
 
     Attributes
@@ -91,6 +91,14 @@ class StableManifolds:
     images: int
     truncated: bool
 
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """All points, with the number of their arc from 1, its channel and its image."""
+        labels = [(number, arc.channel, arc.image) for number, arc in enumerate(self.arcs, 1)]
+        sizes = [arc.x.size for arc in self.arcs]
+        points = (np.concatenate([np.empty(0), *(getattr(arc, name) for arc in self.arcs)]) for name in ("x", "px"))
+        codes = np.repeat(np.array(labels, int).reshape(-1, 3), sizes, axis=0).T
+        return dict(zip(("arc", "channel", "image", "x", "px"), (*codes, *points), strict=True))
+
     @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
@@ -100,8 +108,8 @@ class StableManifolds:
 def find_stable_manifolds(
     potential: Potential,
     energy: float,
-    images: int = 3,
     *,
+    images: int = 3,
     window: Window | None = None,
     executor: Executor | None = None,
     cancel: threading.Event | None = None,
@@ -241,6 +249,8 @@ class _PointSpacing:
 
     def thin(self, piece: np.ndarray) -> Iterator[np.ndarray]:
         """The (m, 2) lines of a piece within the window, without points that their neighbours imply."""
+        import shapely
+
         line = shapely.simplify(shapely.LineString(piece), _THINNING_TOLERANCE * self.fine, preserve_topology=False)
         if self.low is not None and self.high is not None:
             line = shapely.clip_by_rect(line, *self.low, *self.high)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
 from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.basins.wada import WadaTest, compute_wada_test
 from engine.dynamics.planes import Plane, Window
@@ -173,7 +172,9 @@ class RegularityRequest:
 
     def run(self, context: JobContext) -> RegularityMap:
         """Classify the bounded orbits of the complete map."""
-        return compute_regularity(context.complete_map(self.map_spec), context.publish, context.cancel, context.executor)
+        return compute_regularity(
+            context.complete_map(self.map_spec), on_frame=context.publish, cancel=context.cancel, executor=context.executor
+        )
 
 
 @dataclass(frozen=True)
@@ -184,7 +185,9 @@ class TrustRequest:
 
     def run(self, context: JobContext) -> TrustMap:
         """Test the pixels of the complete map."""
-        return compute_trust(context.complete_map(self.map_spec), context.publish, context.cancel, context.executor)
+        return compute_trust(
+            context.complete_map(self.map_spec), on_frame=context.publish, cancel=context.cancel, executor=context.executor
+        )
 
 
 @dataclass(frozen=True)
@@ -211,7 +214,7 @@ class StableManifoldsRequest:
     def run(self, context: JobContext) -> StableManifolds:
         """Compute the manifolds."""
         return find_stable_manifolds(
-            self.potential, self.energy, self.images, window=self.window, executor=context.executor, cancel=context.cancel
+            self.potential, self.energy, images=self.images, window=self.window, executor=context.executor, cancel=context.cancel
         )
 
 
@@ -244,10 +247,10 @@ class BasinMeasuresRequest:
 
     def run(self, context: JobContext) -> BasinMeasures:
         """Evaluate the complete map."""
-        fate = context.complete_map(self.map_spec).fate
+        escape_map = context.complete_map(self.map_spec)
         return BasinMeasures(
-            compute_basin_entropy(*exit_labels(fate, bounded=ENTROPY_COUNTS_BOUNDED)),
-            compute_wada_test(*exit_labels(fate, bounded=WADA_COUNTS_BOUNDED)),
+            compute_basin_entropy(escape_map),
+            compute_wada_test(escape_map),
         )
 
 
@@ -284,7 +287,7 @@ class EnergyPointRequest:
     def run(self, context: JobContext) -> EnergyPoint:
         """Evaluate the complete map."""
         frame = context.complete_map(self.point_spec.map_spec)
-        return compute_energy_point(self.point_spec, context.cancel, context.executor, frame=frame)
+        return compute_energy_point(self.point_spec, cancel=context.cancel, executor=context.executor, frame=frame)
 
 
 @dataclass(frozen=True)
@@ -296,6 +299,6 @@ class EnergyCurvesRequest:
     def run(self, context: JobContext) -> EnergyCurves:
         """Evaluate all energies."""
         return compute_energy_curves(
-            self.curves_spec, context.publish, context.cancel, context.executor,
+            self.curves_spec, on_frame=context.publish, cancel=context.cancel, executor=context.executor,
             measure=lambda point_spec: context.result(EnergyPointRequest(point_spec)),
         )  # fmt: skip

@@ -19,6 +19,7 @@ from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.trust import compute_trust
+from engine.progress import shows_progress
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
@@ -28,6 +29,7 @@ _MIN_PAUSE, _MAX_PAUSE = 0.1, 1.0
 _PAUSE_SHARE = 0.3
 
 
+@shows_progress("escape map")
 def compute_map(
     spec: MapSpec,
     on_frame: Callable[[EscapeMap], None] | None = None,
@@ -36,6 +38,7 @@ def compute_map(
     *,
     resume: EscapeMap | None = None,
     with_trust: bool = False,
+    on_progress: Callable[[float], None] | None = None,
 ) -> EscapeMap:
     """Compute an escape map.
 
@@ -56,6 +59,8 @@ def compute_map(
     with_trust
         Whether to compute the reliability of each pixel as well (`compute_trust`) once the map is complete; when cancelled,
         pixels not tested yet are `Trust.NOT_TESTED`.
+    on_progress
+        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
 
     Returns
     -------
@@ -70,12 +75,12 @@ def compute_map(
     if resume is not None:
         _check_resumable(spec, resume)
     if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
-        result = _compute_in_blocks(spec, on_frame, cancel, executor)
+        result = _compute_in_blocks(spec, on_frame, cancel, executor, on_progress)
     else:
-        result = _compute_at_once(spec, on_frame, cancel, executor, resume)
+        result = _compute_at_once(spec, on_frame, cancel, executor, resume, on_progress)
     if not (with_trust and result.complete):
         return result
-    return replace(result, trust=compute_trust(result, None, cancel, executor).trust)
+    return replace(result, trust=compute_trust(result, cancel=cancel, executor=executor).trust)
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
@@ -91,13 +96,21 @@ def _compute_at_once(
     cancel: threading.Event | None,
     executor: Executor | None,
     resume: EscapeMap | None,
+    on_progress: Callable[[float], None] | None,
 ) -> EscapeMap:
     run = MapRun(spec, resume, coarse_first=on_frame is not None)
-    if on_frame is None:
-        run.run(executor, cancel)
-        return run.result()
-    run.run(executor, cancel, _FrameThrottle(run, on_frame))
+    throttle = _FrameThrottle(run, on_frame) if on_frame is not None else None
+
+    def publish(stage_over: bool) -> None:
+        if throttle is not None:
+            throttle(stage_over)
+        if on_progress is not None:
+            on_progress(run.progress())
+
+    run.run(executor, cancel, publish)
     result = run.result()
+    if on_frame is None:
+        return result
     if result.complete:
         on_frame(replace(result, batch=None))
     return result
@@ -133,6 +146,7 @@ def _compute_in_blocks(
     on_frame: Callable[[EscapeMap], None] | None,
     cancel: threading.Event | None,
     executor: Executor | None,
+    on_progress: Callable[[float], None] | None,
 ) -> EscapeMap:
     whole = _empty_map(spec)
     rows_done = 0
@@ -149,6 +163,8 @@ def _compute_in_blocks(
             break
         if on_frame is not None:
             on_frame(_read_only_views(whole))
+        if on_progress is not None:
+            on_progress(whole.progress)
     return replace(_read_only_views(whole), complete=not np.any(whole.fate == Fate.NOT_COMPUTED))
 
 

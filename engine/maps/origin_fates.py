@@ -71,7 +71,9 @@ class OriginFateMap(PixelAnalysis):
         return xr.Dataset(variables, coordinates, self.spec.provenance())
 
 
-def compute_origin_fates(spec: MapSpec, cancel: threading.Event | None = None, executor: Executor | None = None) -> OriginFateMap:
+def compute_origin_fates(
+    spec: MapSpec, *, cancel: threading.Event | None = None, executor: Executor | None = None
+) -> OriginFateMap:
     """Follow the orbit through each pixel in both time directions.
 
     As H is even in the momenta, the past of (x, y, px, py) is the future of (x, y, −px, −py).

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from enum import IntEnum
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from engine.arrays import read_only
+from engine.dynamics.fates import Fate
 from engine.dynamics.planes import find_mirror_images
-from engine.maps.result import EscapeMap
+from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
+from engine.representation import MapResult
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, eq=False)
-class PixelAnalysis:
+class PixelAnalysis(MapResult):
     """Result of an analysis of every pixel of a map.
 
     Attributes
@@ -23,6 +30,18 @@ class PixelAnalysis:
     """
 
     spec: MapSpec
+    codes: ClassVar[type[IntEnum]] = Fate
+
+    def to_xarray(self) -> xr.Dataset:
+        """The codes of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
+        # Slow to import, and seldom used.
+        import xarray as xr
+
+        x, ordinate = self.spec.pixel_centres()
+        images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
+        dims = (self.spec.plane.ordinate, "x")
+        variables = {name: (dims, image, describe_codes(self.codes)) for name, image in images.items()}
+        return xr.Dataset(variables, {dims[0]: ordinate, "x": x}, self.spec.provenance())
 
     @property
     def nbytes(self) -> int:

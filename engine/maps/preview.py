@@ -14,7 +14,7 @@ from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 
-PREVIEW_SIDE = 75
+PREVIEW_SIDE = 76
 """Largest number of columns or rows of a preview."""
 
 PREVIEW_TIME = 100.0

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from engine.execution import is_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
+from engine.progress import shows_progress
 
 # SALI is computed up to these times, with a test for tori after each: the SALI of strongly chaotic orbits falls early, most
 # regular orbits are found to be on a torus, and only the few remaining ones are integrated to t_max.
@@ -42,6 +43,7 @@ class RegularityMap(PixelAnalysis):
 
     character: np.ndarray
     complete: bool
+    codes: ClassVar = Regularity
 
     @property
     def is_too_short(self) -> bool:
@@ -55,11 +57,14 @@ class RegularityMap(PixelAnalysis):
         return code_share(self.character[judged], Regularity.CHAOTIC)
 
 
+@shows_progress("regularity")
 def compute_regularity(
     escape_map: EscapeMap,
+    *,
     on_frame: Callable[[RegularityMap], None] | None = None,
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
+    on_progress: Callable[[float], None] | None = None,
 ) -> RegularityMap:
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
@@ -77,6 +82,8 @@ def compute_regularity(
         When set, orbits not judged yet stay `Regularity.NOT_JUDGED`.
     executor
         Any `concurrent.futures.Executor`; None for the default pool of this process.
+    on_progress
+        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
 
     Raises
     ------
@@ -91,6 +98,8 @@ def compute_regularity(
         step()
         if on_frame is not None:
             on_frame(classification.result())
+        if on_progress is not None:
+            on_progress(classification.progress())
     return classification.result()
 
 
@@ -142,6 +151,10 @@ class _RegularityClassification:
         """Assign a code to the orbits in the mask `which`, and drop them."""
         self._codes.assign(self._pixels[which], character)
         self._pixels, self._orbits = self._pixels[~which], self._orbits[~which]
+
+    def progress(self) -> float:
+        """Share of the orbits that are judged."""
+        return 1.0 - self._pixels.size / max(self._codes.pixels.size, 1)
 
     def result(self) -> RegularityMap:
         """The result so far."""

@@ -13,6 +13,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.dynamics.planes import Window
 from engine.maps.spec import MapSpec
+from engine.representation import MapResult
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +31,7 @@ PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class EscapeMap:
+class EscapeMap(MapResult):
     """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
 
     Attributes
@@ -78,6 +79,14 @@ class EscapeMap:
     started: np.ndarray = field(repr=False)
     batch: OrbitBatch | None = field(default=None, repr=False)
     trust: np.ndarray | None = field(default=None, repr=False)
+
+    def numbers(self) -> dict[str, Any]:
+        """The request, and the share of each outcome among the interior starts."""
+        spec = self.spec
+        made_by = {"potential": spec.potential.name, "plane": spec.plane.value, "energy": str(spec.energy), "t_max": spec.t_max}
+        shares = self.fractions().items()
+        names = (f"channel {code}" if code > 0 else Fate(code).name.lower().replace("_", " ") for code, _ in shares)
+        return made_by | dict(zip(names, (share for _, share in shares), strict=True)) | {"complete": self.complete}
 
     @property
     def interior(self) -> np.ndarray:

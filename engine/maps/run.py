@@ -144,7 +144,7 @@ class MapRun:
             self._curves[row] = exit_curves_in_well_units(potential, energy * potential.units.energy)
             self._rows_without_exits.discard(row)
         fresh = pixels[~self._started[pixels]]
-        self._batch.mark_outside(fresh, self._curves)
+        self._batch.mark_outside(self.spec.potential, fresh, self._curves)
         self._started[fresh] = True
 
     def _certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
@@ -182,7 +182,7 @@ class MapRun:
         pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
         return EscapeMap(
             spec=spec, x=read_only(units.length * self.x), ordinate=read_only(spec.plane.ordinate_unit(units) * self.ordinate),
-            stride=self.stride, horizon=units.time * self.horizon, progress=self._progress(), complete=complete, **pixel_arrays,
+            stride=self.stride, horizon=units.time * self.horizon, progress=self.progress(), complete=complete, **pixel_arrays,
         )  # fmt: skip
 
     def _outcomes(self) -> Outcomes:
@@ -194,10 +194,12 @@ class MapRun:
             self._started[seconds[firsts]] = True
         return collect_outcomes(self.spec.potential, self._energy, self._batch)
 
-    def _progress(self) -> float:
+    def progress(self) -> float:
+        """Share of the work done: the time covered, as a share of t_max, averaged over the interior pixels."""
         fate = self._batch.fate
         covered = np.where(fate == Fate.NOT_COMPUTED, np.minimum(self._batch.t / self.spec.t_max, 1.0), 1.0)
-        interior = find_interior(fate)
+        # Second mirror images are copied later.
+        interior = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
         return float(covered[interior].mean()) if interior.any() else 1.0
 
 

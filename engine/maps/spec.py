@@ -36,7 +36,8 @@ class MapSpec:
     energy
         h, finite, dimensionless; on (x, h) a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
-        (columns, rows), each 1 to 4096.
+        (columns, rows), each 1 to 4096. In the default window an odd number of columns puts one on x = 0, where an orbit of a
+        potential even in x can stay for ever by symmetry alone; such a line has measure zero, but its pixels count in shares.
     window
         `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior. On (x, h) the ordinate
         is the energy.
@@ -58,7 +59,7 @@ class MapSpec:
     potential: Potential
     plane: Plane
     energy: float | tuple[float, float]
-    resolution: tuple[int, int] = (225, 225)
+    resolution: tuple[int, int] = (224, 224)
     window: Window = None  # type: ignore[assignment]  # None is replaced in __post_init__
     t_max: float = 1e5
     certify: bool = True

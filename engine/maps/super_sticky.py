@@ -24,11 +24,13 @@ from engine.maps.pixels import MirrorPixels
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.progress import shows_progress
+from engine.representation import Result
 from engine.validation import checked_t_max
 
 
 @dataclass(frozen=True, eq=False)
-class SuperStickySearch:
+class SuperStickySearch(Result):
     """The chaotic bounded starts of a map, integrated beyond its t_max; arrays are read-only and share one length n.
 
     The starts are ordered row by row. If the map is mirror symmetric, both mirror images are listed but only one of each pair
@@ -96,6 +98,7 @@ class SuperStickySearch:
         )
 
 
+@shows_progress("super-sticky orbits")
 def find_super_sticky_orbits(
     escape_map: EscapeMap,
     regularity: RegularityMap,

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
+from engine.progress import shows_progress
 from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE
 
@@ -72,6 +73,7 @@ class TrustMap(PixelAnalysis):
 
     trust: np.ndarray
     complete: bool
+    codes: ClassVar = Trust
 
     @property
     def doubtful_share(self) -> float:
@@ -97,11 +99,14 @@ class TrustMap(PixelAnalysis):
         return code_share(self.trust[self.trust != Trust.NOT_APPLICABLE], *codes)
 
 
+@shows_progress("trust")
 def compute_trust(
     escape_map: EscapeMap,
+    *,
     on_frame: Callable[[TrustMap], None] | None = None,
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
+    on_progress: Callable[[float], None] | None = None,
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
@@ -124,6 +129,8 @@ def compute_trust(
         When set, pixels whose test is not finished stay `Trust.NOT_TESTED`.
     executor
         Any `concurrent.futures.Executor`; None for the default pool of this process.
+    on_progress
+        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
 
     Raises
     ------
@@ -140,6 +147,8 @@ def compute_trust(
             test.certify(reached)
         test.propagate(horizon)
         reached = horizon
+        if on_progress is not None:
+            on_progress(test.progress())
     return test.result()
 
 
@@ -278,7 +287,7 @@ class _TrustTest:
         reruns = []
         for start, tolerance in zip(shifted_starts(spec, x, ordinate), (TOLERANCE, SECOND_TOLERANCE), strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
-            batch.mark_outside(self._undecided, curves)
+            batch.mark_outside(potential, self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
             reruns.append(_Rerun(batch, tolerance, fate, crossings, escape_time))
         return curves, reruns
@@ -344,6 +353,10 @@ class _TrustTest:
         self._undecided = np.flatnonzero(~finished & ~changed)
         if self._on_frame is not None:
             self._on_frame(self.result())
+
+    def progress(self) -> float:
+        """Share of the pixels that are decided."""
+        return 1.0 - self._undecided.size / max(self._codes.pixels.size, 1)
 
     def result(self) -> TrustMap:
         """The result so far."""

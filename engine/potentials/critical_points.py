@@ -7,10 +7,12 @@ method refines them, and starts on a grid find roots whose eigenvalues are too i
 
 from __future__ import annotations
 
-import numpy as np
-from scipy import linalg
+from collections.abc import Mapping
+from decimal import Decimal, localcontext
 
-from engine.polynomials import Terms, degree, largest_coefficients, substitute
+import numpy as np
+
+from engine.polynomials import Powers, Terms, degree, largest_coefficients, substitute
 from engine.taylor.source.cauchy_products import derivative
 
 # Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x.
@@ -24,6 +26,7 @@ _DEGENERATE_ROOT_TOLERANCE = 1e-3
 _SINGULAR_RATIO = 1e-6
 _RESIDUAL_TOLERANCE = 1e-12
 _NEWTON_STEPS = 60
+_MANY_DIGITS = 60
 _GRID = np.linspace(-3.0, 3.0, 31)
 # Eigenvalues beyond this distance are infinite ones with rounding errors.
 _LARGEST_ROOT = 1e5
@@ -126,6 +129,8 @@ def _rotated_coefficients(terms: Terms, angle: float) -> np.ndarray:
 
 def _eigenvalues(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """The finite x at which the Sylvester matrix in y is singular."""
+    from scipy import linalg
+
     m, n = p.shape[1] - 1, q.shape[1] - 1
     highest = max(p.shape[0], q.shape[0]) - 1
     size = m + n
@@ -196,7 +201,32 @@ def _unique_points(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
     for k in np.argsort(tolerance, kind="stable"):
         if not np.any(np.hypot(*(points[unique] - points[k]).T) <= tolerance[k]):
             unique.append(int(k))
-    return points[unique]
+    degenerate = _is_degenerate(p, q, points[unique])
+    roots = [_refined_root(p, q, points[k]) if flat else points[k] for k, flat in zip(unique, degenerate, strict=True)]
+    return np.array([root for root in roots if root is not None]).reshape(-1, 2)
+
+
+def _refined_root(p: Terms, q: Terms, point: np.ndarray) -> np.ndarray | None:
+    """The common root to which Newton's method with many digits converges; None if the point is one to rounding errors only."""
+    polynomials = (p, q, *(derivative(f, axis) for f in (p, q) for axis in (0, 1)))
+    with localcontext(prec=_MANY_DIGITS):
+        exact = [{powers: Decimal(c) for powers, c in f.items()} for f in polynomials]
+        x, y = (Decimal(float(coordinate)) for coordinate in point)
+        step = Decimal(1)
+        for _ in range(_NEWTON_STEPS):
+            f, g, px, py, qx, qy = (_exact_value(terms, x, y) for terms in exact)
+            determinant = px * qy - py * qx
+            if not determinant:
+                step = abs(f) + abs(g)
+                break
+            dx, dy = (f * qy - g * py) / determinant, (g * px - f * qx) / determinant
+            x, y, step = x - dx, y - dy, abs(dx) + abs(dy)
+        return np.array([float(x), float(y)]) if step < Decimal(_SIMPLE_ROOT_TOLERANCE) else None
+
+
+def _exact_value(terms: Mapping[Powers, Decimal], x: Decimal, y: Decimal) -> Decimal:
+    # Decimals refuse 0 to the power 0.
+    return sum((c * (x**i if i else 1) * (y**j if j else 1) for (i, j), c in terms.items()), Decimal(0))
 
 
 def _is_degenerate(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 Gradient = Callable[..., tuple[np.ndarray, np.ndarray]]
 Hessian = Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]
@@ -62,8 +61,9 @@ class _Descent:
         curvatures = [np.abs(np.linalg.eigvalsh([[a, b], [b, c]])) for a, b, c in hessians]
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
         # About the largest slope within the well.
-        self.largest_slope = self.length * float(np.max(curvatures[int(np.argmin(distance))]))
-        self.duration = _DURATION / max(float(np.min(curvatures)), 1e-6 * float(np.max(curvatures)))
+        at_origin = float(np.max(curvatures[int(np.argmin(distance))]))
+        self.largest_slope = self.length * at_origin
+        self.duration = _DURATION / max(float(np.min(curvatures)), 1e-6 * at_origin)
 
     def find_ends(self, saddle: int, side: float) -> set[int]:
         """Indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
@@ -82,14 +82,17 @@ class _Descent:
 
     def _descend(self, saddle: int, side: float) -> int:
         """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
+        from scipy.integrate import solve_ivp
+
         start = self.points[saddle] + side * _START_DISTANCE * self.length * self.unstable_directions[saddle]
         distance = np.hypot(*(self.points - self.points[saddle]).T)
         others = self.points[distance > 0.0]
 
         def downhill(_t: float, place: np.ndarray) -> np.ndarray:
             slope = np.array(self.gradient(*place))
-            # The speed is bounded, as otherwise a polynomial can reach minus infinity in finite time.
-            velocity: np.ndarray = -slope / (1.0 + np.hypot(*slope) / self.largest_slope)
+            # Bounded, as otherwise a polynomial can reach minus infinity in finite time; proportional to the distance far away.
+            speed = (1.0 + np.hypot(*place) / self.length) / (1.0 + np.hypot(*slope) / self.largest_slope)
+            velocity: np.ndarray = -slope * speed
             return velocity
 
         def near_critical_point(_t: float, place: np.ndarray) -> float:

@@ -17,7 +17,9 @@ from engine.arrays import read_only
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms
 from engine.potentials.critical_points import characteristic_length, find_critical_points
 from engine.potentials.exit_saddles import leads_out_of_well
+from engine.potentials.stored_points import stored_points
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.representation import Result
 from engine.taylor.source.cauchy_products import derivative
 from engine.validation import checked_count, checked_number, short_repr
 
@@ -38,7 +40,7 @@ STRENGTHS = (0.01, 100.0)
 
 
 @dataclass(frozen=True)
-class Potential:
+class Potential(Result):
     """V(x, y) = Σ c x^i y^j, dimensionless, for a unit mass: H = (px² + py²)/2 + V.
 
     Parameters
@@ -65,6 +67,15 @@ class Potential:
         if len({term[:2] for term in terms}) != len(terms):
             raise ValueError(f"terms={short_repr(terms)}: each pair of exponents must occur only once")
         object.__setattr__(self, "terms", terms)
+
+    def numbers(self) -> dict[str, Any]:
+        """The name, the escape energy and the number of channels."""
+        return {"name": self.name, "escape_energy": self.escape_energy, "channels": self.channels}
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Number, place and energy of each exit saddle."""
+        x, y = self.saddles.T
+        return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.saddle_energies}
 
     @property
     def coefficients(self) -> dict[Powers, float]:
@@ -114,7 +125,7 @@ class Potential:
     def critical_points(self) -> np.ndarray:
         """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve."""
         slopes = self.derivative(1, 0), self.derivative(0, 1)
-        points = find_critical_points(*slopes)
+        points = stored_points("critical_points", self.coefficients, lambda: find_critical_points(*slopes))
         tiny = _ROUNDING * characteristic_length(*slopes)
         points = np.where(np.abs(points) < tiny, 0.0, points)
         if not any(slope.get((0, 0), 0.0) for slope in slopes):
@@ -130,7 +141,10 @@ class Potential:
         square of V_xy, which is a misprint.
         """
         points = self.critical_points
-        points = points[leads_out_of_well(self.gradient, self.hessian, points)]
+        leads_out = stored_points(
+            "exit_saddles", self.coefficients, lambda: leads_out_of_well(self.gradient, self.hessian, points)
+        )
+        points = points[leads_out]
         points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
         angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
         points = points[np.argsort(angle, kind="stable")]

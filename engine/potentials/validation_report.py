@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from enum import Enum
 from functools import lru_cache
 from math import comb
@@ -12,20 +13,19 @@ import numpy as np
 from engine.polynomials import HIGHEST_DEGREE, Powers, degree
 from engine.potentials.critical_points import NotIsolatedError, winding_number
 from engine.potentials.formula_parser import COEFFICIENT_RANGE, LONGEST_TEXT, MOST_TERMS, write_formula
-from engine.potentials.hill_region import find_bulging_channel, is_open_below
+from engine.potentials.hill_region import is_open_below
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
 from engine.potentials.symmetry import count_rotations
+from engine.representation import Result
 
 MOST_CHANNELS = 16
 """Largest number of exit channels that the kernels of the Lyapunov orbit search support."""
 
 _CACHE_SIZE = 256
 # A Hessian is singular if the ratio of its eigenvalues is below this.
-_SINGULAR_RATIO = 1e-6
+_SINGULAR_RATIO = 1e-10
 # Radius of the circle for the index check, in units of the distance of the outermost critical point.
 _CIRCLE_RADIUS = 4.0
-# Smallest angle between the directions of two exit saddles, in radians, at which they can be distinguished by direction.
-_SMALLEST_ANGLE = 1e-3
 # Significant digits of coefficients after a shift of the origin, and rounding errors of zero relative to the largest.
 _MOVED_DIGITS, _MOVED_ROUNDING = 12, 1e-12
 # Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
@@ -53,7 +53,7 @@ class CriticalPoint:
 
 
 @dataclass(frozen=True)
-class PotentialReview:
+class PotentialReview(Result):
     """The result of `review_potential`; lengths and energies are dimensionless.
 
     Attributes
@@ -94,6 +94,15 @@ class PotentialReview:
     refusal: str | None
     remarks: tuple[str, ...]
     moved_formula: str | None
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Place, kind, energy and channel of each critical point."""
+        names = [field.name for field in fields(CriticalPoint)]
+        return {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
+
+    def describe(self) -> str:
+        """Why the potential cannot be used, or what is unusual about it; empty for an ordinary one."""
+        return self.refusal or " ".join(self.remarks)
 
 
 @lru_cache(maxsize=_CACHE_SIZE)
@@ -227,28 +236,18 @@ def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> 
 
 
 def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
-    outermost = max(np.hypot(point.x, point.y) for point in points) or potential.units.length
     if not potential.channels:
-        return _no_exit_refusal(potential, points, outermost)
+        return _no_exit_refusal(potential, points)
     if potential.channels > MOST_CHANNELS:
         return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
-    if is_open_below(potential, potential.escape_energy, outermost):
+    if is_open_below(potential, potential.escape_energy, potential.critical_points):
         return "The well is open below its lowest saddle, so orbits can escape without crossing an exit."
-    angles = np.sort(np.arctan2(potential.saddles[:, 1], potential.saddles[:, 0]))
-    if potential.channels > 1 and np.diff(angles, append=angles[0] + 2.0 * np.pi).min() < _SMALLEST_ANGLE:
-        return "Two exits lie in the same direction from the origin, so an escape cannot be assigned to one of them."
-    bulging = find_bulging_channel(potential)
-    if bulging:
-        return (
-            f"The well extends around the saddle of channel {bulging}: the line across this saddle does not separate inside from "
-            f"outside, so escapes cannot be detected."
-        )
     return None
 
 
-def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...], outermost: float) -> str:
+def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str:
     energy_range = max(abs(point.energy - points[0].energy) for point in points) or potential.units.energy
-    if is_open_below(potential, points[0].energy + _OPEN_ENERGY_FACTOR * energy_range, outermost):
+    if is_open_below(potential, points[0].energy + _OPEN_ENERGY_FACTOR * energy_range, potential.critical_points):
         return "The well is open without a saddle, so its exits and its escape energy are not defined."
     return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."
 

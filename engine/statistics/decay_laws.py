@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.representation import Result
 from engine.statistics.truncated_exponential import cumulative_share
 from engine.wording import format_count, format_whole
 
@@ -79,7 +80,7 @@ class LawFit:
 
 
 @dataclass(frozen=True, eq=False)
-class DecayLaws:
+class DecayLaws(Result):
     """Decay laws fitted to the escapes of a map or of a part of it; arrays are read-only.
 
     Attributes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,8 @@ from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Window
 from engine.maps.result import EscapeMap
+from engine.proportions import wilson_interval
+from engine.representation import Result
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""
@@ -22,7 +25,7 @@ _LOWER_EDGE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class EscapeStatistics:
+class EscapeStatistics(Result):
     """Counts of the interior starts of a map or of a part of it, as in Zotos (2014), section 5; arrays are read-only.
 
     Attributes
@@ -58,6 +61,11 @@ class EscapeStatistics:
         """Number of starts known to escape or to be bounded."""
         return self.escaped + self.bounded
 
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Escapes and the probability of an escape by the number of crossings before it."""
+        counts = self.crossing_counts
+        return {"crossings": np.arange(counts.size), "escapes": counts, "escape_probability": self.escape_probabilities}
+
     @property
     def escaped(self) -> int:
         """Ne: number of escapes."""
@@ -79,6 +87,12 @@ class EscapeStatistics:
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
+
+    @property
+    def share_intervals(self) -> dict[int, tuple[float, float]]:
+        """95 % Wilson interval of each of the `shares`, as for independent random starts."""
+        limits = {code: wilson_interval(round(share * self.starts), self.starts) for code, share in self.shares.items()}
+        return {code: (float(low), float(high)) for code, (low, high) in limits.items()}
 
     @property
     def escape_probabilities(self) -> np.ndarray:

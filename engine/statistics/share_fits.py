@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy import optimize, special
 
 from engine.arrays import read_only
+from engine.representation import Result
 from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
 from engine.validation import checked_array, checked_count, checked_integers, short_repr
 from engine.wording import format_number
@@ -61,7 +61,7 @@ class Deviation:
 
 
 @dataclass(frozen=True, eq=False)
-class ShareFit:
+class ShareFit(Result):
     """A curve fitted to shares against energy; arrays are read-only.
 
     Attributes
@@ -130,6 +130,8 @@ def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
     ValueError
         If a parameter is out of range.
     """
+    from scipy import optimize
+
     energies, shares = _checked_shares(h, "escaped", escaped, starts, parameters=2)
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), energies, shares)
@@ -150,7 +152,7 @@ def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
     return _build_fit(HyperbolicTangent(*(to_energy @ found).tolist()), half_widths, energies, shares)
 
 
-def fit_direct_shares(h: Any, direct: Any, starts: Any, degree: int = 3) -> ShareFit:
+def fit_direct_shares(h: Any, direct: Any, starts: Any, *, degree: int = 3) -> ShareFit:
     """Fit Nde/N0 = c0 + c1 h + … by least squares, as Zotos (2014) does with degree 3 (I, II) and 2 (III).
 
     Weights and intervals are those of `fit_escape_shares`. Outside the data the polynomial can leave the range 0 to 1.
@@ -219,6 +221,8 @@ def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray, transform: np
 
     The covariance of the latter is the sandwich (JᵀJ)⁻¹ Jᵀ diag(r² / (1 − leverage)²) J (JᵀJ)⁻¹.
     """
+    from scipy import special
+
     (count, parameters), (q, r) = jacobian.shape, np.linalg.qr(jacobian)
     leverage = np.sum(q * q, axis=1)
     if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameters:

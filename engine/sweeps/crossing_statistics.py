@@ -16,6 +16,7 @@ from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.progress import shows_progress
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_curves import EnergyCurvesSpec
@@ -26,11 +27,12 @@ if TYPE_CHECKING:
 _WINDOW = tuple(Window.__dataclass_fields__)
 
 
+@shows_progress("crossing statistics")
 def compute_crossing_statistics(
     potential: Potential,
     plane: Plane,
     energies: Sequence[float],
-    resolution: tuple[int, int] = (225, 225),
+    resolution: tuple[int, int] = (224, 224),
     t_max: float = 1e5,
     *,
     window: Window | None = None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from engine.basins.basin_entropy import compute_basin_entropy
-from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
 from engine.basins.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Plane
@@ -20,6 +19,8 @@ from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.progress import shows_progress
+from engine.representation import Result
 from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_grid import checked_sweep
@@ -78,7 +79,7 @@ class EnergyCurvesSpec:
     potential: Potential
     plane: Plane
     energies: tuple[float, ...]
-    resolution: tuple[int, int] = (113, 113)
+    resolution: tuple[int, int] = (112, 112)
     t_max: float = 1e5
     exponent: bool = True
 
@@ -133,11 +134,16 @@ _CURVES = tuple(field.name for field in fields(EnergyPoint) if field.name not in
 
 
 @dataclass(frozen=True, eq=False)
-class EnergyCurves:
+class EnergyCurves(Result):
     """The points of a sweep measured so far, by ascending energy."""
 
     spec: EnergyCurvesSpec
     points: tuple[EnergyPoint, ...]
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """All curves by name, the energy h first; the share of bounded orbits is ``share_0``."""
+        shares = {f"share_{code}": share for code, share in enumerate(self.shares.T)}
+        return {"h": self.energies, **shares, **{name: self.curve(name) for name in _CURVES}}
 
     @property
     def complete(self) -> bool:
@@ -176,13 +182,15 @@ class EnergyCurves:
         return xr.Dataset(variables, coordinates, {name: made_by[name] for name in made_by if name not in ("energy", "window")})
 
 
+@shows_progress("energy curves")
 def compute_energy_curves(
     spec: EnergyCurvesSpec,
+    *,
     on_frame: Callable[[EnergyCurves], None] | None = None,
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
-    *,
     measure: Callable[[EnergyPointSpec], EnergyPoint] | None = None,
+    on_progress: Callable[[float], None] | None = None,
 ) -> EnergyCurves:
     """Measure exits and basins at many energies, in an order from coarse to fine.
 
@@ -198,6 +206,8 @@ def compute_energy_curves(
         Any `concurrent.futures.Executor`; None for the default pool of this process.
     measure
         Replaces `compute_energy_point`, for example to use a cache; None to compute all energies.
+    on_progress
+        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
 
     Raises
     ------
@@ -209,18 +219,22 @@ def compute_energy_curves(
     points: list[EnergyPoint] = []
     for index in _coarse_to_fine(len(spec.energies)):
         point_spec = spec.point(spec.energies[index])
-        points.append(measure(point_spec) if measure is not None else compute_energy_point(point_spec, cancel, executor))
+        points.append(
+            measure(point_spec) if measure is not None else compute_energy_point(point_spec, cancel=cancel, executor=executor)
+        )
         curves = EnergyCurves(spec, tuple(sorted(points, key=lambda point: point.energy)))
         if on_frame is not None:
             on_frame(curves)
+        if on_progress is not None:
+            on_progress(len(points) / len(spec.energies))
     return curves
 
 
 def compute_energy_point(
     spec: EnergyPointSpec,
+    *,
     cancel: threading.Event | None = None,
     executor: Executor | None = None,
-    *,
     frame: EscapeMap | None = None,
 ) -> EnergyPoint:
     """Measure one energy.
@@ -253,7 +267,7 @@ def _evaluate_map(frame: EscapeMap) -> EnergyPoint:
     assert not isinstance(frame.spec.energy, tuple)
     statistics = compute_statistics(frame)
     shares = statistics.shares
-    entropy = compute_basin_entropy(*exit_labels(frame.fate, bounded=ENTROPY_COUNTS_BOUNDED))
+    entropy = compute_basin_entropy(frame)
     return EnergyPoint(
         energy=frame.spec.energy,
         shares=tuple(shares[code] for code in (Fate.BOUNDED, *range(1, frame.spec.potential.channels + 1))),

@@ -21,6 +21,7 @@ from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
+from engine.progress import shows_progress
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.zarr_store import SweepStore, create_store
@@ -39,6 +40,7 @@ MOST_CORES = 1_000_000
 """Most workers of a plan."""
 
 
+@shows_progress("sweep")
 def run_sweep(
     spec: SweepSpec,
     store: Path,

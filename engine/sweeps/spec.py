@@ -55,7 +55,7 @@ class SweepSpec:
     potential: Potential
     plane: Plane
     energies: tuple[float, ...]
-    resolution: tuple[int, int] = (225, 225)
+    resolution: tuple[int, int] = (224, 224)
     window: Window | None = None
     t_max: float = 1e5
     certify: bool = True

@@ -22,6 +22,7 @@ from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regul
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.trajectories.trajectory import Orbit
 from engine.validation import checked_state, checked_t_max
 from engine.wording import format_time
@@ -56,7 +57,7 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class BirkhoffDigits:
+class BirkhoffDigits(Result):
     """Number of digits to which weighted averages over two consecutive windows agree, by window length; arrays are read-only.
 
     Attributes

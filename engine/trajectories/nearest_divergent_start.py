@@ -15,6 +15,7 @@ from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
 from engine.dynamics.planes import Plane, start_states
 from engine.execution import raise_if_cancelled
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.validation import checked_number, checked_t_max
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
@@ -33,7 +34,7 @@ _SHORTEST_HORIZON = 1000.0
 
 
 @dataclass(frozen=True)
-class DivergentStart:
+class DivergentStart(Result):
     """A neighbouring start on the same plane whose orbit escapes through a different channel; lengths are dimensionless.
 
     Attributes

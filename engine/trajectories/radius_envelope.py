@@ -7,7 +7,7 @@ R² oscillates twice per revolution along a bounded orbit and grows beyond the L
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,7 @@ from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_pieces
 from engine.validation import checked_count, checked_state, checked_t_max, short_repr
 
@@ -30,7 +31,7 @@ _SAMPLE_INTERVAL = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class RadiusEnvelope:
+class RadiusEnvelope(Result):
     """Smallest and largest R² in intervals of time, dimensionless; arrays are read-only.
 
     Attributes
@@ -51,9 +52,13 @@ class RadiusEnvelope:
     fate: int
     escape_time: float
 
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Start of each interval, smallest and largest R²."""
+        return {"t": self.t[:-1], "low": self.low, "high": self.high}
+
 
 def compute_radius_envelope(
-    potential: Potential, state: Any, t_max: float, intervals: int = 1000, *, cancel: threading.Event | None = None
+    potential: Potential, state: Any, t_max: float, *, intervals: int = 1000, cancel: threading.Event | None = None
 ) -> RadiusEnvelope:
     """Integrate one orbit until it escapes or `t_max` and return the smallest and largest R² in each interval of time.
 

@@ -11,6 +11,7 @@ import numpy as np
 from engine.arrays import read_only
 from engine.dynamics.compiled import kernels_of
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max
 
@@ -21,7 +22,7 @@ _SAMPLES = 2000
 
 
 @dataclass(frozen=True, eq=False)
-class Separation:
+class Separation(Result):
     """Distance of two orbits against time, dimensionless; arrays are read-only.
 
     Attributes

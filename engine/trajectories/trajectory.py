@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.potentials.potential import Potential
+from engine.representation import Result
 from engine.taylor.kernels.dense_output import sample_deviations, sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max
 
@@ -29,7 +30,7 @@ _MAX_SAMPLES = 500_000
 
 
 @dataclass(frozen=True, eq=False)
-class Orbit:
+class Orbit(Result):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
 
     Attributes
@@ -57,6 +58,8 @@ class Orbit:
         ``CLOSED`` if its energy is below every saddle, ``INTEGRATED`` if it is bounded until t_max, ``NONE`` if not bounded.
     time_unit
         Unit of time of the well, in which the chaos indicators measure the length of an orbit.
+    potential
+        The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
     """
 
     t: np.ndarray
@@ -74,6 +77,7 @@ class Orbit:
     energy: float
     certificate: Certificate
     time_unit: float = 1.0
+    potential: Potential | None = field(default=None, repr=False)
 
     @property
     def nbytes(self) -> int:
@@ -125,7 +129,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
         read_only(array)
     escape_time, energy_error = float(outcome.escape_time[0]), float(outcome.energy_error[0])
     certificate = _certificate(potential, energy, fate)
-    return Orbit(*arrays, fate, escape_time, int(outcome.crossings[0]), energy_error, energy, certificate, units.time)
+    return Orbit(*arrays, fate, escape_time, int(outcome.crossings[0]), energy_error, energy, certificate, units.time, potential)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:

@@ -10,25 +10,28 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 from PIL import Image
 
-from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_images import TITLES
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
+from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from app.state.system import TYPED, System
 from engine import (
     CASES,
+    EnergyCurvesSpec,
     EscapeMap,
     MapSpec,
     Orbit,
     Plane,
+    compute_energy_curves,
     compute_map,
     compute_origin_fates,
     compute_trust,
     integrate_orbit,
     judge_orbit,
 )
+from plots.map_analyses import MapAnalyses
+from plots.map_images import TITLES
+from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {
@@ -130,6 +133,17 @@ def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
     assert f"# orbit 2: one in {stride} of {orbit.t.size} samples" in comments
 
 
+def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
+    curves = compute_energy_curves(
+        EnergyCurvesSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), resolution=(20, 20), t_max=100.0, exponent=False)
+    )
+    comments, rows = table(curves_csv(curves))
+    assert "# t_max: 100.0" in comments
+    assert [float(row["h"]) for row in rows] == [0.13, 0.2]
+    np.testing.assert_array_equal([float(row["share_channel_2"]) for row in rows], curves.shares[:, 2])
+    np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves.curve("s_b"))
+
+
 def test_too_few_rows_for_all_orbits_are_rejected(orbit: Orbit) -> None:
     with pytest.raises(ValueError, match="most_rows=1: must be at least 1, and one for each of 2 orbits"):
         orbits_csv([orbit, orbit], most_rows=1)
@@ -141,9 +155,11 @@ def test_no_orbits_give_an_empty_table() -> None:
 
 
 @pytest.mark.parametrize("name", SPECS)
-def test_the_script_reproduces_the_map_and_the_orbits(name: str) -> None:
+def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = SPECS[name]
     made: dict[str, Any] = {}
+    drawn: list[int] = []
+    monkeypatch.setattr(pyplot, "show", lambda: drawn.extend(pyplot.get_fignums()))
     exec(python_lines(spec, System("II"), [START, (np.float64(1 / 3), 0.0, 0.0, 0.3)]), made)
     assert made["spec"] == spec
     whole = compute_map(spec)
@@ -153,6 +169,9 @@ def test_the_script_reproduces_the_map_and_the_orbits(name: str) -> None:
         expected = integrate_orbit(CASES["II"], start, spec.t_max)
         assert one.fate == expected.fate
         np.testing.assert_array_equal(one.x, expected.x)
+    # One figure of the map, one of each orbit.
+    assert len(drawn) == 3
+    pyplot.close("all")
 
 
 @pytest.mark.parametrize(
@@ -181,14 +200,14 @@ def test_a_script_with_an_invalid_start_is_rejected(start: tuple[float, ...]) ->
 @pytest.mark.parametrize(
     ("name", "stem"),
     [
-        ("a window", "escapes-II-x_px-h0.18"),
-        ("the whole interior", "escapes-II-x_y-h0.30000000000000004"),
-        ("energies", "escapes-II-x_h-h0.16666666666666666-0.4"),
+        ("a window", "escapes-II-x_px-h0.18-t200--1.0_1.4--0.8_0.8"),
+        ("the whole interior", "escapes-II-x_y-h0.30000000000000004-t100"),
+        ("energies", "escapes-II-x_h-h0.16666666666666666-0.4-t100"),
     ],
 )
-def test_files_are_named_after_case_plane_and_energy(name: str, stem: str) -> None:
+def test_files_are_named_after_case_plane_energy_duration_and_window(name: str, stem: str) -> None:
     assert file_stem(SPECS[name], "II") == stem
 
 
 def test_a_file_name_has_only_safe_characters() -> None:
-    assert file_stem(SPECS["a window"], '../a "b"') == "escapes-.._a__b_-x_px-h0.18"
+    assert file_stem(SPECS["a window"], '../a "b"') == "escapes-.._a__b_-x_px-h0.18-t200--1.0_1.4--0.8_0.8"

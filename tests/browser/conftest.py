@@ -19,7 +19,7 @@ from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 from tests.conftest import TIMEOUT_MS
 
-QUICK = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=113"
+QUICK = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112"
 """Link to a map that is computed in moments."""
 
 

@@ -13,7 +13,7 @@ from app.state.presets import PRESETS
 from app.views.components.analysis_choice import LAYER_LABELS
 from tests.browser.explorer_page import ExplorerPage
 
-LAYERS_ON = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=113&trust=yes&manifolds=yes&origins=yes"
+LAYERS_ON = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112&trust=yes&manifolds=yes&origins=yes"
 # Two messages as the server sends them, the second one when the button has been drawn and before it can answer.
 _ENABLE_AGAIN = """async label => {
     const model = [...Bokeh.documents[0]._all_models.values()].find(model => model.label === label)

@@ -24,8 +24,8 @@ from engine import (
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.25, (113, 113), t_max=1e3)
-VIEW = "?case=II&plane=x_px&h=0.25&t_max=1000&resolution=113"
+SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.25, (112, 112), t_max=1e3)
+VIEW = "?case=II&plane=x_px&h=0.25&t_max=1000&resolution=112"
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def test_regular_and_chaotic_orbits_can_be_distinguished(explorer: ExplorerPage)
     expect(explorer.text(re.compile(r"\d % of the bounded orbits are chaotic"))).to_be_visible()
     explorer.wait_for_data("maps", "data.character[0].length > 1")
     codes = explorer.column("character")
-    shown = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (113, 113), t_max=1e3))
+    shown = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (112, 112), t_max=1e3))
     chaotic = compute_regularity(shown).character == Regularity.CHAOTIC
     assert chaotic.any()
     assert len(set(codes[chaotic])) == 1
@@ -130,7 +130,7 @@ def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> Non
 
 
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link="?case=I&h=0.05&t_max=10000&resolution=113&orbits=0.1,0.05")
+    explorer = open_explorer(link="?case=I&h=0.05&t_max=10000&resolution=112&orbits=0.1,0.05")
     table = explorer.page.get_by_label("chaos indicators")
     for name in ("SALI", "Lyapunov exponent", "Birkhoff digits"):
         expect(table).to_contain_text(name)

@@ -26,7 +26,7 @@ def window() -> Window:
 def opened(open_for_all: Callable[..., ExplorerPage], window: Window) -> ExplorerPage:
     edges = ",".join(map(repr, (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)))
     plane = DEEP.plane.name.lower()
-    return open_for_all(link=f"?case={DEEP.case}&plane={plane}&h={DEEP.energy!r}&t_max=1000&resolution=113&window={edges}")
+    return open_for_all(link=f"?case={DEEP.case}&plane={plane}&h={DEEP.energy!r}&t_max=1000&resolution=112&window={edges}")
 
 
 def test_a_window_of_1e_12_of_the_plane_is_computed(explorer: ExplorerPage, window: Window) -> None:

@@ -13,11 +13,11 @@ import xarray as xr
 from PIL import Image
 from playwright.sync_api import expect
 
-from app.rendering.palette import COLOUR_BLIND_SAFE
 from engine import CASES, MapSpec, Plane, compute_map
+from plots.palette import COLOUR_BLIND_SAFE
 from tests.browser.explorer_page import ExplorerPage
 
-SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=113&orbits=0.1,0.2;0.1,-0.3"
+SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,7 @@ def download_file(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
 
 def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
     name, data = download_file(small, "Picture (PNG)")
-    assert name == "escapes-III-x_px-h0.45.png"
+    assert name == "escapes-III-x_px-h0.45-t1000.png"
     picture = Image.open(io.BytesIO(data))
     assert picture.width > 3 * 600
     assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
@@ -45,7 +45,7 @@ def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
 def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
     name, data = download_file(small, "Maps (NetCDF)")
     assert name.endswith(".nc")
-    expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (113, 113), t_max=1e3))
+    expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (112, 112), t_max=1e3))
     with xr.open_dataset(io.BytesIO(data), engine="h5netcdf") as dataset:
         np.testing.assert_array_equal(dataset["fate"], expected.fate)
 
@@ -67,7 +67,7 @@ def test_a_script_that_computes_the_map(small: ExplorerPage) -> None:
 
 def test_the_link_is_copied(small: ExplorerPage) -> None:
     small.press("Copy link")
-    expect(small.text("Link copied.")).to_be_visible()
+    expect(small.text("Copied.")).to_be_visible()
     assert small.page.evaluate("() => navigator.clipboard.readText()") == small.page.url
 
 

@@ -8,16 +8,17 @@ from collections.abc import Callable
 import numpy as np
 from playwright.sync_api import expect
 
-from app.rendering.palette import OUTCOMES
-from engine import CASES, Fate, MapSpec, Plane, compute_map, compute_preview, preview_spec
+from engine import CASES, Fate, MapSpec, Plane, compute_map
+from engine.service import compute_preview, preview_spec
+from plots.palette import OUTCOMES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# Previews have 75 pixels per side.
+# Previews have 76 pixels per side.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
     window.previews = 0
-    source.connect(source.properties.data.change, () => { if (source.data.fate[0].shape[0] == 75) window.previews += 1 })
+    source.connect(source.properties.data.change, () => { if (source.data.fate[0].shape[0] == 76) window.previews += 1 })
 }"""
 
 
@@ -33,7 +34,7 @@ def test_previews_follow_the_slider_and_the_map_its_release(explorer: ExplorerPa
     explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=50)
     explorer.page.wait_for_function("() => window.previews >= 3")
     expect(explorer.text("Preview up to t = 100")).to_be_visible()
-    spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (113, 113), t_max=100.0)
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (112, 112), t_max=100.0)
     # The number follows the previews.
     expect(explorer.page.get_by_label("Exact h", exact=True)).to_have_value("0.46")
     assert_same_fates(explorer, compute_preview(preview_spec(spec)).fate)
@@ -45,9 +46,9 @@ def test_previews_follow_the_slider_and_the_map_its_release(explorer: ExplorerPa
 def test_dragging_back_shows_the_map_again(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
     explorer.drag_energy_to(0.9, let_go=False)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 75")
+    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 76")
     explorer.drag_energy_to(0.225)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 113 && data.complete[0]")
+    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 112 && data.complete[0]")
     np.testing.assert_array_equal(explorer.column("fate"), before)
 
 
@@ -64,7 +65,7 @@ def test_the_energy_can_be_played_and_stopped(explorer: ExplorerPage) -> None:
 def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=f"{QUICK}&window=0.1,0.3,0.0,0.2")
     explorer.drag_energy_to(0.6, let_go=False)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 75")
+    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 76")
     assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
     explorer.page.mouse.up()
     explorer.wait_for_view("window=0.1,0.3,0.0,0.2")

@@ -19,7 +19,7 @@ PICTURES = ("curves", "basins", "times", "crossings")
 
 def quick_map(energy: float, **options: object) -> EscapeMap:
     """The map of the page `explorer` at an energy."""
-    return compute_map(MapSpec(CASES["I"], Plane.X_PX, energy, (113, 113), t_max=100.0, **options))
+    return compute_map(MapSpec(CASES["I"], Plane.X_PX, energy, (112, 112), t_max=100.0, **options))
 
 
 def assert_same_crossings(explorer: ExplorerPage, expected: EscapeMap) -> None:
@@ -57,14 +57,14 @@ def test_the_plane_can_be_changed(explorer: ExplorerPage, plane: Plane) -> None:
         "names => names.map(name => Bokeh.documents[0].get_model_by_name(name).left[0].axis_label)", list(PICTURES)
     )
     assert set(labels) == {plane.ordinate}
-    state = ViewState(case="I", energy=0.19, plane=plane, resolution=113, t_max=100.0)
+    state = ViewState(case="I", energy=0.19, plane=plane, resolution=112, t_max=100.0)
     assert_same_crossings(explorer, compute_map(state.map_spec()))
 
 
 def test_the_resolution_can_be_changed(explorer: ExplorerPage) -> None:
-    explorer.choose("Resolution", "225 × 225")
-    explorer.wait_for_view("resolution=225")
-    assert explorer.column("fate").shape == (225, 225)
+    explorer.choose("Resolution", "224 × 224")
+    explorer.wait_for_view("resolution=224")
+    assert explorer.column("fate").shape == (224, 224)
 
 
 def test_a_longer_t_max_leaves_fewer_bounded(explorer: ExplorerPage) -> None:
@@ -178,8 +178,12 @@ def test_a_map_can_be_stopped_and_continued(explorer: ExplorerPage) -> None:
     expect(explorer.button("Stop").or_(explorer.text("Done, t ="))).to_be_visible()
 
 
-def test_escape_stops_the_map(explorer: ExplorerPage) -> None:
+def test_escape_closes_a_help_text_and_then_stops_the_map(explorer: ExplorerPage) -> None:
     begin_a_long_map(explorer)
+    explorer.press("About: Basins of escape")
+    explorer.page.keyboard.press("Escape")
+    expect(explorer.page.locator(".help-text:popover-open")).to_have_count(0)
+    expect(explorer.button("Stop")).to_be_visible()
     explorer.page.keyboard.press("Escape")
     expect(explorer.text("Stopped:")).to_be_visible()
 
@@ -200,7 +204,7 @@ def test_the_address_opens_the_same_view(explorer: ExplorerPage, open_explorer: 
 
 
 def test_an_invalid_link_gives_a_warning_and_shows_the_rest(open_explorer: Callable[..., ExplorerPage]) -> None:
-    page = open_explorer(link="?case=II&h=%3Cimg%20src=x%20onerror=alert(1)%3E&t_max=100&resolution=113").page
+    page = open_explorer(link="?case=II&h=%3Cimg%20src=x%20onerror=alert(1)%3E&t_max=100&resolution=112").page
     expect(page.get_by_role("alert")).to_contain_text("Ignored h=?img src?x onerror?alert?1??: choose a number")
     expect(page.get_by_text("3 exit channels")).to_be_visible()
     assert page.locator("img[src=x]").count() == 0

@@ -6,7 +6,7 @@ from playwright.sync_api import expect
 
 from tests.browser.explorer_page import ExplorerPage
 
-HOME = "h=0.19&t_max=100&resolution=113"
+HOME = "h=0.19&t_max=100&resolution=112"
 
 
 def zoom(explorer: ExplorerPage) -> float:

@@ -8,23 +8,14 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from app.rendering.palette import PAPER
-from engine import (
-    CASES,
-    MapSpec,
-    Plane,
-    Regularity,
-    compute_map,
-    compute_origin_fates,
-    compute_regularity,
-    describe_certificate,
-    find_stable_manifolds,
-)
+from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity, find_stable_manifolds
+from engine.service import describe_certificate
+from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-VIEW = "?case=III&h=0.28&resolution=113&t_max=1000"
-SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (113, 113), t_max=1e3)
+VIEW = "?case=III&h=0.28&resolution=112&t_max=1000"
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (112, 112), t_max=1e3)
 _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
@@ -49,7 +40,7 @@ def test_manifolds_have_the_colours_and_the_image_that_is_chosen(open_explorer: 
     expect(explorer.page.get_by_role("radiogroup", name="Image of the manifolds")).to_have_count(0)
     explorer.page.get_by_label("Stable manifolds", exact=True).click()
     explorer.wait_for_data("manifolds", "data.xs.length > 4")
-    manifolds = find_stable_manifolds(CASES["III"], 0.28, 3)
+    manifolds = find_stable_manifolds(CASES["III"], 0.28, images=3)
     assert len(explorer.model_data("manifolds")["xs"]) == len(manifolds.arcs)
     assert set(explorer.model_data("manifolds")["colour"]) == set(PAPER.channels[:4])
     for channel in range(1, 5):
@@ -88,6 +79,10 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     reason = describe_certificate(frame.certificate[row, column])
     explorer.hover("basins", xs[column], ordinates[row])
     expect_tooltip(explorer, "bounded", reason, "regular", "never entered: inside since −t_max")
+    explorer.page.get_by_label("Origin and exit", exact=True).uncheck()
+    explorer.hover("basins", xs[column + 1], ordinates[row])
+    explorer.hover("basins", xs[column], ordinates[row])
+    expect(explorer.page.locator(".bk-Tooltip").get_by_text("never entered")).to_have_count(0)
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,11 @@ from html import unescape
 import pytest
 from playwright.sync_api import Locator, expect
 
-from app.rendering.map_images import TITLES
-from app.rendering.palette import PALETTES, Entry
 from app.state.help_texts import HELP_TEXTS
 from app.views.maps.map_plots import SHORT_TITLES
 from engine import CASES, Fate
+from plots.map_images import TITLES
+from plots.palette import PALETTES, Entry
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 

@@ -117,3 +117,18 @@ def test_orbits_can_be_cleared_while_their_time_plays(for_orbits: ExplorerPage) 
         for_orbits.wait_for_data("points", "data.x.length == 1")
         for_orbits.press("Clear all")
         for_orbits.wait_for_data("starts", "data.x.length == 0")
+
+
+def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", 0.05, 0.02)
+    expect(for_orbits.text("Escaped through")).to_be_visible()
+    for_orbits.page.locator(".r2").first.scroll_into_view_if_needed()
+    whole = for_orbits.ranges("r2")
+    for_orbits.drag("r2", (0.2 * whole[1], 0.1), (0.4 * whole[1], 0.1))
+    expect(for_orbits.text("Shown: t = ")).to_be_visible()
+    begin, end = for_orbits.ranges("r2")[:2]
+    assert (begin, end) == pytest.approx((0.2 * whole[1], 0.4 * whole[1]), rel=0.05)
+    times = for_orbits.model_data("r2_histories")["xs"][0]
+    assert begin <= times[0] < times[-1] <= end
+    for_orbits.press("Whole orbit")
+    for_orbits.page.wait_for_function("end => Bokeh.documents[0].get_model_by_name('r2').x_range.end == end", arg=whole[1])

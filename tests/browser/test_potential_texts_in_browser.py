@@ -17,7 +17,7 @@ OpenExplorer = Callable[..., ExplorerPage]
 
 # Case I with its well at (1, 0).
 WELL_ELSEWHERE = "((x-1)^2 + y^2)/2 - (x-1)y^2"
-SMALL = "resolution=113&t_max=1000"
+SMALL = "resolution=112&t_max=1000"
 
 
 def test_a_refused_potential_stays_in_the_box_and_its_well_can_be_used(open_explorer: OpenExplorer) -> None:
@@ -57,7 +57,7 @@ def test_the_controls_name_the_parameters_and_their_formula(open_explorer: OpenE
 
 
 def test_the_verdict_on_a_short_orbit_is_that_of_its_indicators(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link="?case=II&plane=x_h&orbits=0.3,0.05&t_max=100&resolution=113")
+    explorer = open_explorer(link="?case=II&plane=x_h&orbits=0.3,0.05&t_max=100&resolution=112")
     expect(
         explorer.text("undecided whether regular or chaotic, with 15 upward crossings of y = 0 until t = 100.")
     ).to_be_visible()
@@ -65,7 +65,7 @@ def test_the_verdict_on_a_short_orbit_is_that_of_its_indicators(open_explorer: O
 
 
 def test_certified_orbits_are_bounded_for_ever_in_all_texts(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link="?case=I&h=0.14&orbits=-0.3,0.0;-0.305,0.0&t_max=1e4&resolution=113")
+    explorer = open_explorer(link="?case=I&h=0.14&orbits=-0.3,0.0;-0.305,0.0&t_max=1e4&resolution=112")
     expect(explorer.text("Bounded for ever (certified: quasi-periodic, as on an invariant torus) and regular")).to_be_visible()
     expect(explorer.page.get_by_role("radio", name="bounded for ever, regular")).to_have_count(2)
 
@@ -78,4 +78,4 @@ def test_a_link_restores_the_box_and_says_what_to_do_about_a_problem(open_explor
     explorer.press("Count the whole view")
     explorer.page.wait_for_function("!location.search.includes('box=')")
     query = urllib.parse.parse_qs(urllib.parse.urlsplit(explorer.page.url).query)
-    assert (query["resolution"], query["analysis"]) == (["113"], ["statistics"])
+    assert (query["resolution"], query["analysis"]) == (["112"], ["statistics"])

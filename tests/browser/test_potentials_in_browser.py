@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import expect
 
-from app.rendering.palette import OUTCOMES
+from plots.palette import OUTCOMES
 from tests.browser.explorer_page import ExplorerPage
 
 pytestmark = pytest.mark.browser
@@ -33,7 +33,7 @@ def test_a_typed_potential_is_reviewed_applied_and_written_to_the_link(explorer:
 
 
 def test_a_link_opens_a_potential_with_its_parameters(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link="?case=I&epsilon=0.5&h=0.75&resolution=113&t_max=100")
+    explorer = open_explorer(link="?case=I&epsilon=0.5&h=0.75&resolution=112&t_max=100")
     expect(explorer.text("2 exit channels above h = 0.5")).to_be_visible()
     assert {1, 2} <= set((explorer.column("fate") - len(OUTCOMES) + 1).ravel().tolist())
 

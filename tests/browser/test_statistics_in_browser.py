@@ -28,7 +28,7 @@ def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
 
 @pytest.fixture(scope="module")
 def counted() -> EscapeMap:
-    return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (113, 113), t_max=100.0))
+    return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (112, 112), t_max=100.0))
 
 
 def test_the_statistics_are_those_of_the_map(explorer: ExplorerPage, counted: EscapeMap) -> None:

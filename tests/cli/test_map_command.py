@@ -14,8 +14,6 @@ import xarray as xr
 from PIL import Image
 
 from app.exports import png_bytes
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
 from engine import (
     CASES,
     MapSpec,
@@ -26,6 +24,8 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.map_analyses import MapAnalyses
+from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -80,7 +80,7 @@ def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
     with (tmp_path / "map-manifolds.csv").open() as file:
         rows = list(csv.DictReader(file))
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19)
-    arcs = find_stable_manifolds(CASES["I"], 0.19, 1, window=spec.window).arcs
+    arcs = find_stable_manifolds(CASES["I"], 0.19, images=1, window=spec.window).arcs
     for name in ("x", "px"):
         assert [float(row[name]) for row in rows] == np.concatenate([getattr(arc, name) for arc in arcs]).tolist()
     assert [int(row["arc"]) for row in rows] == [n for n, arc in enumerate(arcs, 1) for _ in range(arc.x.size)]
@@ -119,7 +119,7 @@ def test_json_contains_shares_and_files(count_outside: bool, run: Run, tmp_path:
 def test_default_file_names_describe_the_map(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run("map", *BOUNDED, "--side", 100)[0] == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13.nc", "escapes-I-x_px-h0.13.png"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13-t1000.nc", "escapes-I-x_px-h0.13-t1000.png"]
 
 
 def test_output_without_a_terminal_is_the_table_alone(run: Run, tmp_path: Path) -> None:

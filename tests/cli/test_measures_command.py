@@ -23,10 +23,10 @@ from engine import (
     compute_statistics,
     compute_uncertainty_exponent,
     compute_wada_test,
-    exit_labels,
     find_lyapunov_orbits,
     fit_decay_laws,
 )
+from engine.service import exit_labels
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -11,8 +11,9 @@ import pytest
 from PIL import Image
 
 from app.exports import orbits_csv
-from app.rendering.palette import COLOUR_BLIND_SAFE
-from engine import CASES, Plane, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, judge_orbit, start_states
+from engine import CASES, Plane, compute_birkhoff_digits, integrate_orbit, judge_orbit, start_states
+from engine.service import evaluate_indicators
+from plots.palette import COLOUR_BLIND_SAFE
 
 Run = Callable[..., tuple[int, str, str]]
 

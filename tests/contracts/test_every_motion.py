@@ -32,6 +32,13 @@ def starts(potential: Potential, energy: float, count: int, seed: int = 0) -> np
     return np.column_stack([place, speed * np.cos(angle), speed * np.sin(angle)])
 
 
+def starts_on_axis(potential: Potential, energy: float, count: int) -> np.ndarray:
+    """(count, 4) states with y = px = 0."""
+    x = 0.3 * potential.units.length * np.linspace(-1.0, 1.0, count)
+    zero = np.zeros(count)
+    return np.column_stack([x, zero, zero, np.sqrt(2.0 * (energy - potential.value(x, zero)))])
+
+
 @each_compiled
 def test_energy_is_conserved(potential: Potential) -> None:
     energy = energy_of(potential, 0.9)
@@ -88,6 +95,7 @@ def test_rotated_starts_escape_through_rotated_channels(potential: Potential) ->
 def test_outcomes_agree_with_heyoka(potential: Potential) -> None:
     energy = energy_of(potential, ENERGY_FACTOR)
     states = starts(potential, energy, 12, seed=5)
+    states[-4:] = starts_on_axis(potential, energy, 4)
     ours = classify_orbits(potential, energy, states, t_max=12.0)
     theirs = taylor_heyoka.classify(potential, exit_lines(potential, energy), states, 12.0, 1e-15)
     np.testing.assert_array_equal(ours.fate, theirs.fate)

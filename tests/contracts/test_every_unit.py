@@ -26,29 +26,31 @@ from engine import (
     Window,
     classify_orbits,
     compute_birkhoff_digits,
-    compute_energy_point,
     compute_map,
     compute_origin_fates,
-    compute_preview,
-    compute_radius_envelope,
     compute_regularity,
     compute_separation,
     compute_trust,
     compute_uncertainty_exponent,
     default_window,
-    evaluate_indicators,
     find_divergent_start,
     find_lyapunov_orbits,
     find_section_crossings,
     find_stable_manifolds,
-    find_super_sticky_orbits,
     integrate_orbit,
-    preview_spec,
     review_potential,
     start_states,
     trace_zero_velocity_curve,
 )
 from engine.potentials.catalogue import POTENTIALS
+from engine.service import (
+    compute_energy_point,
+    compute_preview,
+    compute_radius_envelope,
+    evaluate_indicators,
+    find_super_sticky_orbits,
+    preview_spec,
+)
 from engine.sweeps.energy_curves import EnergyPointSpec
 
 
@@ -195,7 +197,7 @@ def test_lyapunov_orbits(name: str, scaling: Scaling) -> None:
 @each_system
 @exactly_scaled
 def test_stable_manifolds(name: str, scaling: Scaling) -> None:
-    usual, scaled = find_stable_manifolds(*system(name), 2), find_stable_manifolds(*system(name, scaling), 2)
+    usual, scaled = find_stable_manifolds(*system(name), images=2), find_stable_manifolds(*system(name, scaling), images=2)
     assert len(scaled.arcs) == len(usual.arcs) > 0
     assert scaled.truncated == usual.truncated
     for arc, other in zip(scaled.arcs, usual.arcs, strict=True):
@@ -240,7 +242,7 @@ def test_measures_of_single_orbits(name: str, scaling: Scaling) -> None:
     for s in (Scaling(1.0, 1.0), scaling):
         potential, state = s.potential(usual), s.states(start)
         quiet = s.states(0.1 * start * [1.0, 0.0, 1.0, 1.0])
-        envelope = compute_radius_envelope(potential, state, s.time * t_max, 20)
+        envelope = compute_radius_envelope(potential, state, s.time * t_max, intervals=20)
         separation = compute_separation(potential, state, 1.0000001 * state, s.time * t_max)
         digits = compute_birkhoff_digits(potential, quiet, 2000.0 * times(name) * s.time)
         near = find_divergent_start(potential, Plane.X_PX, float(potential.energy(state)), state[0], state[2], s.time * t_max)
@@ -303,7 +305,10 @@ def test_manifolds_of_a_fast_and_of_a_slow_well(omega: float, epsilon: float) ->
     # V = ½ω²r² + εV₁ is the well with ω = 1 and the same shape, in other units: L = ω²/ε and E = ω²L².
     changed = CASES["II"].with_parameters(omega, omega, epsilon)
     scaling = Scaling(omega**2 / epsilon, omega**6 / epsilon**2)
-    usual, scaled = find_stable_manifolds(CASES["II"], 0.2, 2), find_stable_manifolds(changed, 0.2 * scaling.energy, 2)
+    usual, scaled = (
+        find_stable_manifolds(CASES["II"], 0.2, images=2),
+        find_stable_manifolds(changed, 0.2 * scaling.energy, images=2),
+    )
     lengths = [
         sum(np.hypot(np.diff(arc.x) / s.length, np.diff(arc.px) / s.momentum).sum() for arc in found.arcs)
         for found, s in ((usual, Scaling(1.0, 1.0)), (scaled, scaling))

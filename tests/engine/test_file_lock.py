@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from engine import hold_lock
 from engine.file_lock import _lock
+from engine.service import hold_lock
 from tests.forked import fork_context, start
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks")

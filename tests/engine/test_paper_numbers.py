@@ -69,6 +69,11 @@ def test_case_3_on_x_y_at_06_is_65_to_35() -> None:
     assert (first + second, third + fourth) == pytest.approx((0.65, 0.35), abs=2 * PERCENT)
 
 
+def test_case_3_on_x_y_at_06_has_no_bounded_orbits() -> None:
+    # But for the orbits that stay on x = 0 by symmetry, a line without area that default maps have no pixel on.
+    assert compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.6)).fractions()[Fate.BOUNDED] == 0.0
+
+
 def test_case_3_on_x_px_at_06_is_44_44_6_6() -> None:
     assert shares(interior_map("III", Plane.X_PX, 0.6)) == pytest.approx([0.44, 0.44, 0.06, 0.06], abs=PERCENT)
 

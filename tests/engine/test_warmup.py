@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import threading
 
-from engine import (
-    Potential,
+from engine import Potential
+from engine.service import (
     is_ready_for_maps,
     prepare_for_certificates,
     prepare_for_maps,

@@ -15,7 +15,8 @@ import pytest
 import xarray as xr
 
 from cli.main import FAILED, main
-from engine import CASES, prepare_kernels
+from engine import CASES
+from engine.service import prepare_kernels
 from tests.forked import Finished, run
 
 

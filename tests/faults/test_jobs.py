@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from app.job_clients.error_messages import sentence
-from engine import CASES, EscapeMap, Jobs, MapSpec, OrbitRequest, Plane, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
+from engine.service import Jobs, OrbitRequest
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 
 MAP = MapSpec(CASES["I"], Plane.X_PX, 0.3, (48, 48), t_max=100.0)

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine import CASES, JobClient, Jobs, MapSpec, OrbitRequest, Plane, Subscription
+from engine import CASES, MapSpec, Plane
+from engine.service import JobClient, Jobs, OrbitRequest, Subscription
 from tests.fuzz.hostile import anything
 
 ORBITS = [OrbitRequest(CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0) for k in range(4)]

@@ -22,7 +22,7 @@ NAMES = (
     "energies", "palette", "orbits", "look", "V", "omega_1", "omega_2", "epsilon", "__class__", "utm_source", "",
 )  # fmt: skip
 LEGAL = {
-    "case": "II", "plane": "x_y", "h": "0.2", "t_max": "1000", "resolution": "225", "window": "-1,1,-1,1", "orbits": "0.1,0.2",
+    "case": "II", "plane": "x_y", "h": "0.2", "t_max": "1000", "resolution": "224", "window": "-1,1,-1,1", "orbits": "0.1,0.2",
 }  # fmt: skip
 SAFE = re.compile(r"[A-Za-z0-9_ .,;:+()=?…-]*")
 POTENTIAL_PROBLEM = "Ignored the potential in the link: "

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from engine import (
     CASES,
-    LONGEST_TIME,
     EnergyCurvesSpec,
     EscapeMap,
     MapSpec,
@@ -23,7 +22,6 @@ from engine import (
     compute_basin_entropy,
     compute_birkhoff_digits,
     compute_map,
-    compute_radius_envelope,
     compute_separation,
     compute_statistics,
     compute_uncertainty_exponent,
@@ -35,16 +33,13 @@ from engine import (
     fit_decay_laws,
     fit_direct_shares,
     fit_escape_shares,
-    fit_uncertainty,
     integrate_orbit,
     judge_orbit,
     measure_deviation,
-    plan_sweep,
-    preview_spec,
     start_states,
-    trace_equipotentials,
     trace_zero_velocity_curve,
 )
+from engine.service import LONGEST_TIME, compute_radius_envelope, fit_uncertainty, plan_sweep, preview_spec, trace_equipotentials
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]
@@ -139,7 +134,8 @@ def test_birkhoff_digits(state: Any, t_max: Any) -> None:
 @given(states, times, mostly(st.integers(1, 20)))
 def test_radius_envelope(state: Any, t_max: Any, intervals: Any) -> None:
     result_or_error(
-        lambda: compute_radius_envelope(CASE, state, shortened(t_max), intervals), ["state", "t_max", "intervals", "energy"]
+        lambda: compute_radius_envelope(CASE, state, shortened(t_max), intervals=intervals),
+        ["state", "t_max", "intervals", "energy"],
     )
 
 
@@ -193,17 +189,17 @@ def test_sweep_plan(cores: Any) -> None:
 @given(labels, labels | st.none(), mostly(st.integers(1, 5)))
 def test_basin_measures(pixels: Any, valid: Any, box: Any) -> None:
     names = ["labels", "valid", "box"]
-    result_or_error(lambda: compute_basin_entropy(pixels, valid, box), names)
+    result_or_error(lambda: compute_basin_entropy(pixels, valid, box=box), names)
     result_or_error(lambda: compute_wada_test(pixels, valid), names)
     frame = small_map()
-    result_or_error(lambda: compute_basin_entropy(frame.fate, frame.fate >= 0, box), names)
+    result_or_error(lambda: compute_basin_entropy(frame.fate, frame.fate >= 0, box=box), names)
 
 
 @given(number_lists, count_lists, count_lists, counts)
 def test_share_fits(h: Any, part: Any, whole: Any, degree: Any) -> None:
     names = ["h", "escaped", "direct", "counts", "starts", "degree", "separations", "pairs", "uncertain"]
     result_or_error(lambda: fit_escape_shares(h, part, whole), names)
-    result_or_error(lambda: fit_direct_shares(h, part, whole, degree), names)
+    result_or_error(lambda: fit_direct_shares(h, part, whole, degree=degree), names)
     result_or_error(lambda: fit_uncertainty(h, whole, part), names)
     result_or_error(lambda: measure_deviation(np.cos, h, part, whole), names)
 
@@ -230,4 +226,4 @@ def test_uncertainty_exponent(pairs: Any, separations: Any, work: Any, seed: Any
 def test_stable_manifolds(energy: Any, images: Any) -> None:
     if isinstance(images, int | float) and images == 1 and isinstance(energy, int | float) and energy > 0.125:
         return
-    result_or_error(lambda: find_stable_manifolds(CASE, energy, images), ["energy", "images"])
+    result_or_error(lambda: find_stable_manifolds(CASE, energy, images=images), ["energy", "images"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import heyoka as hy
@@ -22,8 +23,13 @@ def coordinates():
 
 def equations(potential: Potential) -> list:
     x, y, px, py = coordinates()
-    fx = sum(-c * i * x ** (i - 1) * y**j for i, j, c in potential.terms if i)
-    fy = sum(-c * j * x**i * y ** (j - 1) for i, j, c in potential.terms if j)
+
+    def term(c: float, i: int, j: int):
+        # Not as powers: the series of y**3 divides by y.
+        return math.prod([x] * i + [y] * j, start=hy.expression(c))
+
+    fx = sum((term(-c * i, i - 1, j) for i, j, c in potential.terms if i), start=hy.expression(0.0))
+    fy = sum((term(-c * j, i, j - 1) for i, j, c in potential.terms if j), start=hy.expression(0.0))
     return [(x, px), (y, py), (px, fx), (py, fy)]
 
 
@@ -100,6 +106,7 @@ class Classifier:
             self.integrator.time = 0.0
             self.integrator.state[:] = state
             self.integrator.propagate_until(t_max)
+            assert np.isfinite(self.integrator.state).all()
             outcomes.fate[n], outcomes.crossings[n] = self.channel, self.crossings
             if self.channel:
                 outcomes.escape_time[n] = self.integrator.time

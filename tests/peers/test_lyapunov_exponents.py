@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, Plane, Regularity, Verdict, integrate_orbit, judge_orbit, judge_regularity, start_states
+from engine import CASES, Plane, Regularity, Verdict, integrate_orbit, judge_orbit, start_states
+from engine.service import judge_regularity
 from tests.peers import taylor_heyoka
 
 T_MAX, INTERVAL, DISTANCE = 3000.0, 10.0, 1e-8

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, MapSpec, Plane, Regularity, RegularityMap, SuperStickySearch, Window, compute_map
+from engine import CASES, Fate, MapSpec, Plane, Regularity, RegularityMap, Window, compute_map
+from engine.service import SuperStickySearch
 from reproduction.comparisons import Comparison, compare_all
 from reproduction.map_shelf import MapShelf
 from reproduction.quality import Quality

@@ -13,8 +13,9 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
-from app.rendering.palette import PAPER
-from engine import CASES, Fate, Plane, SuperStickySearch, classify_orbits
+from engine import CASES, Fate, Plane, classify_orbits
+from engine.service import SuperStickySearch
+from plots.palette import PAPER
 from reproduction.figures import FIGURES
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import curve_energies, nine_energies, plane_energies

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, MapSpec, Plane, SuperStickySearch
+from engine import CASES, MapSpec, Plane
+from engine.service import SuperStickySearch
 from reproduction.comparisons import Comparison, compare_all
 from reproduction.map_shelf import MapShelf
 from reproduction.markdown import write_rows

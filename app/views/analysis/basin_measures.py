@@ -8,20 +8,24 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Step
+from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Segment, Step
 from bokeh.plotting import figure
 
-from app.rendering.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
-from engine import BasinMeasures, DecayLaws, LawFit, UncertaintyExponent
+from engine import DecayLaws, UncertaintyExponent
+from engine.service import BasinMeasures, LawFit
+from plots.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
 _LAW_POINTS = 200
-_PAIRS_TEXT = "<b>@share{custom}</b> of the pairs have different fates<br>at a separation of @separation{custom}@note"
+_PAIRS_TEXT = (
+    "<b>@share{custom}</b> of the pairs have different fates<br>at a separation of @separation{custom}@note<br>"
+    "95 % interval @low{custom} to @high{custom}"
+)
 _SURVIVAL_TEXT = "<b>@share{custom}</b> of the starts are still inside<br>at t = @t{custom}"
-_NO_PAIRS: dict[str, list[Any]] = {"separation": [], "share": [], "colour": [], "note": []}
+_NO_PAIRS: dict[str, list[Any]] = {name: [] for name in ("separation", "share", "low", "high", "colour", "note")}
 _MEASURING = "Comparing pairs of starts …"
 
 
@@ -84,8 +88,10 @@ class BasinMeasuresView:
             return
         shares = found.shares
         positive = shares > 0.0
+        low, high = found.share_intervals
         self.pairs.data = {
             "separation": found.separations[positive], "share": shares[positive],
+            "low": low[positive], "high": high[positive],
             "colour": np.where(found.used[positive], MEASURED, SET_ASIDE),
             "note": np.where(found.used[positive], "", "; not used for the exponent"),
         }  # fmt: skip
@@ -117,8 +123,10 @@ class BasinMeasuresView:
         )  # fmt: skip
         style: dict[str, Any] = {"x": "separation", "y": "share"}
         plot.add_glyph(self._line, Line(line_color=LAW_COLOURS["power law"], line_width=2, **style))
+        plot.add_glyph(self.pairs, Segment(x0="separation", x1="separation", y0="low", y1="high", line_color="colour"))
         pairs = plot.add_glyph(self.pairs, Scatter(size=8, fill_color="colour", line_color=LIGHT.halo, **style))
-        plot.add_tools(chart_hover(_PAIRS_TEXT, {"@share": "percent", "@separation": "number"}, [pairs]))
+        formats = {"@share": "percent", "@low": "percent", "@high": "percent", "@separation": "number"}
+        plot.add_tools(chart_hover(_PAIRS_TEXT, formats, [pairs]))
         return plot
 
     def _draw_survival(self) -> figure:

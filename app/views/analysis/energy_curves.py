@@ -11,13 +11,13 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, Line, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
-from app.rendering.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 from app.views.components.chart_hover import chart_hover
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.widgets import button
 from engine import EnergyCurves
+from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 
 TITLES = {
     "shares": "Shares of the interior starts",

@@ -9,11 +9,12 @@ from typing import Any
 
 import panel as pn
 
-from app.rendering.mathml import potential_formula
 from app.state.system import PARAMETERS, SHOWN_DIGITS, TYPED, System
 from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.widgets import Slider, button
-from engine import FREQUENCIES, LONGEST_TEXT, POTENTIALS, PotentialReview, write_formula
+from engine import POTENTIALS, PotentialReview, write_formula
+from engine.service import FREQUENCIES, LONGEST_TEXT
+from plots.mathml import potential_formula
 
 # Ends of the sliders; links and the command line allow wider ranges.
 _SLIDER = (max(FREQUENCIES[0], 0.2), 2.0)

@@ -10,13 +10,13 @@ import numpy as np
 import panel as pn
 from bokeh.models.dom import HTML
 
-from app.rendering.palette import PAPER, Palette
 from app.state.help_texts import title_with_help
 from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import patch
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import grouped, percent, percent_range
 from app.views.components.widgets import button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
+from plots.palette import PAPER, Palette
 
 BINS = 40
 MOST_CROSSINGS = 15
@@ -35,15 +35,24 @@ _BAR = "#5b8db8"
 
 
 class StatisticsView:
-    """A table and two charts of the whole view, or of a box drawn on a map; `on_whole` is called to remove the box."""
+    """A table and two charts of the whole view, or of a box drawn on a map.
 
-    def __init__(self, on_whole: Callable[[], None]) -> None:
+    Parameters
+    ----------
+    on_whole
+        Called to remove the box.
+    on_copy
+        Called with the table as tab-separated text.
+    """
+
+    def __init__(self, on_whole: Callable[[], None], on_copy: Callable[[str], None]) -> None:
         self._palette = PAPER
         self._frame: EscapeMap | None = None
         self._box: Window | None = None
         self._active = False
         self.table = pn.pane.HTML("", name="statistics", sizing_mode="stretch_width")
         self.whole = button("Count the whole view", on_whole, visible=False)
+        self.copy = button("Copy table", lambda: on_copy(self._text()))
 
     def activate(self, active: bool) -> None:
         """Count while the section is on the page."""
@@ -76,7 +85,7 @@ class StatisticsView:
         self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escape probability after n crossings")
         _describe(self._probabilities, _PROBABILITIES_TEXT, {f"@{PROBABILITY}": "percent"})
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
-        left = pn.Column(self.whole, self.table, margin=0, css_classes=["plot"])
+        left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])
         return [left, histogram, probabilities]
 
     def _count(self) -> None:
@@ -98,22 +107,46 @@ class StatisticsView:
         shown[: len(probabilities)] = probabilities
         self._probabilities.handles["source"].data = {CROSSINGS: _NUMBERS, PROBABILITY: shown}
 
+    def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
+        """Name, colour and code of each fate in the table."""
+        channels = [(f"channel {k}", self._palette.channels[k - 1], k) for k in range(1, len(statistics.channel_counts) + 1)]
+        undecided = [("undecided", self._palette.outcomes[Fate.NOT_COMPUTED].colour, int(Fate.NOT_COMPUTED))]
+        bounded = [("bounded", self._palette.bounded, int(Fate.BOUNDED))]
+        return [*channels, *bounded, *(undecided if statistics.undecided else [])]
+
     def _table(self, statistics: EscapeStatistics) -> str:
-        shares = statistics.shares
-        rows = [(f"channel {k + 1}", self._palette.channels[k], shares[k + 1]) for k in range(len(statistics.channel_counts))]
-        rows += [("bounded", self._palette.bounded, shares[Fate.BOUNDED])]
-        if shares[Fate.NOT_COMPUTED]:
-            rows += [("undecided", self._palette.outcomes[Fate.NOT_COMPUTED].colour, shares[Fate.NOT_COMPUTED])]
-        body = "".join(f"<tr><td>{patch(colour)}{name}</td><td>{percent(share, 2)}</td></tr>" for name, colour, share in rows)
-        facts = {
-            "interior starts": grouped(statistics.starts),
-            "direct escapes": percent(statistics.direct_share, 2),
-            "mean escape time": _number(statistics.mean_escape_time),
-            "median escape time": _number(statistics.median_escape_time),
-        }
-        body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in facts.items())
+        shares, intervals = statistics.shares, statistics.share_intervals
+        body = "".join(
+            f"<tr><td>{patch(colour)}{name}</td><td>{percent(shares[code], 2)}</td>"
+            f"<td class='quiet'>{percent_range(*intervals[code])}</td></tr>"
+            for name, colour, code in self._shares(statistics)
+        )
+        body += "".join(f"<tr><td>{name}</td><td>{value}</td></tr>" for name, value in _facts(statistics).items())
         place = "the whole view" if self._box is None else "the box drawn on the maps"
-        return f"<table aria-label='statistics'><caption>Interior starts in {place}</caption>{body}</table>"
+        caption = f"Interior starts in {place}, with 95 % intervals"
+        return f"<table aria-label='statistics'><caption>{caption}</caption>{body}</table>"
+
+    def _text(self) -> str:
+        """The table as tab-separated text, with shares at full precision."""
+        if self._frame is None:
+            return ""
+        statistics = compute_statistics(self._frame, self._box)
+        shares, intervals = statistics.shares, statistics.share_intervals
+        rows = [("fate", "share", "95 % low", "95 % high")]
+        for name, _, code in self._shares(statistics):
+            low, high = intervals[code]
+            rows.append((name, repr(shares[code]), repr(low), repr(high)))
+        rows += [(name, value, "", "") for name, value in _facts(statistics).items()]
+        return "\n".join("\t".join(row) for row in rows)
+
+
+def _facts(statistics: EscapeStatistics) -> dict[str, str]:
+    return {
+        "interior starts": grouped(statistics.starts),
+        "direct escapes": percent(statistics.direct_share, 2),
+        "mean escape time": _number(statistics.mean_escape_time),
+        "median escape time": _number(statistics.median_escape_time),
+    }
 
 
 def _draw_times() -> hv.Histogram:
@@ -143,6 +176,7 @@ def _frame() -> dict[str, Any]:
 def _simplify(plot: Any, _element: Any) -> None:
     """Remove background and ticks, as in `square_figure`."""
     plot.state.min_border_top = 28
+    plot.state.sizing_mode = "scale_width"
     plot.state.background_fill_alpha = plot.state.border_fill_alpha = 0.0
     plot.state.axis.major_tick_line_color = plot.state.axis.minor_tick_line_color = None
 

@@ -7,7 +7,7 @@ from typing import Any
 import panel as pn
 
 from app.state.view_state import IMAGE_CHOICES, LAYERS, Analysis, ViewState
-from app.views.components.widgets import SegmentedControl, Switches
+from app.views.components.widgets import SegmentedControl, Switches, bind
 
 LAYER_LABELS = {
     "judge": "Regular or chaotic",
@@ -47,11 +47,8 @@ class LayerSwitches:
     def _choose_image(self) -> SegmentedControl:
         """The choice, made when it is first wanted."""
         if self._images is None:
-            state = self._state
-            images = SegmentedControl(label="Image of the manifolds", options=IMAGE_LABELS, value=state.images, margin=(6, 10))
-            images.param.watch(lambda event: state.param.update(images=event.new), "value")
-            state.param.watch(lambda event: images.param.update(value=event.new), "images")
-            self._images = images
+            images = SegmentedControl(label="Image of the manifolds", options=IMAGE_LABELS, margin=(6, 10))
+            self._images = bind(images, self._state, "images")
         return self._images
 
     def _on(self) -> list[str]:
@@ -66,8 +63,5 @@ class AnalysisTabs:
     """A segmented control that writes to the view state and follows it."""
 
     def __init__(self, state: ViewState) -> None:
-        self.tabs = SegmentedControl(
-            label="Analysis", options={label: analysis for analysis, label in ANALYSIS_LABELS.items()}, value=state.analysis
-        )
-        self.tabs.param.watch(lambda event: state.param.update(analysis=event.new), "value")
-        state.param.watch(lambda event: self.tabs.param.update(value=event.new), "analysis")
+        options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
+        self.tabs = bind(SegmentedControl(label="Analysis", options=options), state, "analysis")

@@ -9,8 +9,10 @@ import numpy as np
 from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
-from app.rendering.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
-from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits, trace_equipotentials
+from app.views.components.plots import batched_additions
+from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits
+from engine.service import trace_equipotentials
+from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 
 # Energies of the faint equipotentials, in units of the escape energy.
 _LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9, 1.2, 1.6, 2.2, 3.0)
@@ -42,13 +44,14 @@ class CurveLayers:
 
     def _draw_exits(self) -> None:
         plots, self._without_exits = self._without_exits, []
-        for plot, numbered in plots:
-            plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
-            plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
-            if numbered:
-                number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
-                number.text_font_style = "bold"
-                plot.add_glyph(self._labels, number)
+        with batched_additions([plot for plot, _ in plots]):
+            for plot, numbered in plots:
+                plot.add_glyph(self._exits, MultiLine(line_color=self._inks.halo, line_width=5))
+                plot.add_glyph(self._exits, MultiLine(line_color="colour", line_width=3))
+                if numbered:
+                    number = Text(text_color="colour", text_align="center", text_baseline="middle", text_font_size="16px")
+                    number.text_font_style = "bold"
+                    plot.add_glyph(self._labels, number)
 
     def _draw_inked(self, plot: figure, source: ColumnDataSource, ink: str, width: float) -> None:
         line = MultiLine(line_color=getattr(self._inks, ink), line_width=width)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.rendering.palette import Entry, Palette
+from plots.palette import Entry, Palette
 
 
 def patch(colour: str) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 from bokeh.models import Range1d
@@ -16,7 +18,7 @@ _BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28,
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
-    """A square figure with a title, a help text and a toolbar that is shown while the mouse is over it.
+    """A square figure with a title and a help text, without tools.
 
     Parameters
     ----------
@@ -27,10 +29,8 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     **options
         Of `bokeh.plotting.figure`.
     """
-    defaults = {"toolbar_location": "above", "toolbar_inner": True}
+    defaults = {"tools": "", "toolbar_location": None}
     plot = figure(name=name, title=None, sizing_mode="scale_width", aspect_ratio=1, **_BORDERS, **(defaults | options))
-    plot.toolbar.autohide = True
-    plot.toolbar.logo = None
     plot.center = []
     # `plot.axis` would search all models of the figure for each attribute.
     for axis in (*plot.below, *plot.left):
@@ -40,6 +40,14 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot.css_classes = [name]
     plot.elements = [HTML(html=title_with_help(title, name))]
     return plot
+
+
+@contextmanager
+def batched_additions(plots: Sequence[figure]) -> Iterator[None]:
+    """Add any number of models to the figures of a page; Bokeh searches all models of the page once instead of for each."""
+    document = plots[0].document if plots else None
+    with document.models.freeze() if document is not None else nullcontext():
+        yield
 
 
 def set_range(edges: Range1d, low: float, high: float) -> None:

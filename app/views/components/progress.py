@@ -11,7 +11,8 @@ import panel as pn
 
 from app.views.components.numbers import grouped, percent
 from app.views.components.widgets import button
-from engine import PREVIEW_TIME, Certificate, EscapeMap, Fate
+from engine import Certificate, EscapeMap, Fate
+from engine.service import PREVIEW_TIME
 
 STOP, CONTINUE = "Stop", "Continue"
 # Styles: a change of `visible` would have the browser lay out the page, figures included, twice for each map.

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 import panel as pn
+import param
 from bokeh.document import Document
 
 NUMBER_FORMAT = "0.[000000000000000]"
@@ -59,4 +60,18 @@ def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **
     """A button; `kind` is "default", "primary" for the main action of a section, or "light" for one without a frame."""
     widget = pn.widgets.Button(label=label, color=kind, **options)
     widget.on_click(lambda event: on_click())
+    return widget
+
+
+def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, name: str) -> Bound:
+    """Make a widget show an attribute of a state, and write to it."""
+
+    def write(event: Any) -> None:
+        # Panel runs callbacks of widgets without the session's lock, which changes of bare Bokeh models need; held ones have it.
+        with pn.io.hold():
+            state.param.update({name: event.new})
+
+    widget.value = getattr(state, name)
+    widget.param.watch(write, "value")
+    state.param.watch(lambda event: widget.param.update(value=event.new), name)
     return widget

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
-from app.rendering.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
-from engine import Certificate, Fate, Regularity, Trust, describe_certificate
+from engine import Certificate, Fate, Regularity, Trust
+from engine.service import describe_certificate
+from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
 
 TRUST = {
     Trust.LIKE_NEIGHBOURS: "not tested: like all its neighbours",
@@ -65,7 +66,7 @@ def pixel_hover(source: ColumnDataSource, doubts: ColumnDataSource, x: Range1d, 
     Parameters
     ----------
     source
-        Columns of `app.rendering.image_columns.map_columns`.
+        Columns of `plots.image_columns.map_columns`.
     doubts
         Column ``trust`` of `Trust` codes; empty while that layer is off.
     x, ordinate

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 import panel as pn
 
-from app.rendering.map_images import SHORTEST_TIME
-from app.rendering.palette import Entry, Palette
 from app.views.components.legends import legend_items, passage_legend
 from app.views.components.numbers import grouped
 from engine import Fate, MapSpec
+from plots.map_images import SHORTEST_TIME
+from plots.palette import Entry, Palette
 
 _STEPS = 12
 

@@ -27,9 +27,6 @@ from bokeh.models import (
 )  # fmt: skip
 from bokeh.plotting import figure
 
-from app.rendering.image_columns import character_column, longest_typical_time, passage_column
-from app.rendering.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
-from app.rendering.palette import PAPER, Palette
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.numbers import percent
@@ -41,6 +38,9 @@ from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
+from plots.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
+from plots.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
+from plots.palette import PAPER, Palette
 
 SHORT_TITLES = {
     "curves": "Exits",
@@ -179,6 +179,11 @@ class MapsView:
         self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
         self._show_legend()
 
+    def remove_layer(self, column: str) -> None:
+        """Remove the column of a layer, ``character`` or ``passage``, which the hover text would still describe."""
+        if self.source.data[column][0].size > 1:
+            self.source.data = {**self.source.data, column: NO_LAYER}
+
     def set_palette(self, palette: Palette) -> None:
         """Set all colours."""
         self._palette = palette
@@ -305,9 +310,7 @@ class MapsView:
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
         x, y = self._ranges
-        plot = self.figures[name] = square_figure(
-            name, TITLES[name], x_range=x, y_range=y, x_axis_label="x", tools="", toolbar_location=None
-        )
+        plot = self.figures[name] = square_figure(name, TITLES[name], x_range=x, y_range=y, x_axis_label="x")
         plot.toolbar = self._toolbar
         self._paint(name)
         # Two quick clicks, even at two places, are one tap and one double tap.

@@ -9,8 +9,9 @@ import numpy as np
 from bokeh.models import ColumnDataSource, LinearColorMapper, Quad, Scatter, Text
 from bokeh.plotting import figure
 
-from app.rendering.palette import LIGHT, MARK_EDGE, PAPER, Palette
+from app.views.components.plots import batched_additions
 from engine import Window
+from plots.palette import LIGHT, MARK_EDGE, PAPER, Palette
 
 MOST_SECTION_POINTS = 2000
 """Of each orbit at most this many section points are drawn."""
@@ -38,9 +39,10 @@ class Markers:
     def _draw(self, kind: str) -> None:
         """Add a kind of mark to the figures that lack it."""
         plots, self._pending[kind] = self._pending[kind], []
-        for plot in plots:
-            for source, glyph in self._glyphs(kind):
-                plot.add_glyph(source, glyph, level="annotation")
+        with batched_additions(plots):
+            for plot in plots:
+                for source, glyph in self._glyphs(kind):
+                    plot.add_glyph(source, glyph, level="annotation")
 
     def _glyphs(self, kind: str) -> list[tuple[ColumnDataSource, Any]]:
         colour = {"field": "slot", "transform": self._mapper}

@@ -8,10 +8,11 @@ import numpy as np
 from bokeh.models import ColumnDataSource, Image, LinearColorMapper, MultiLine
 from bokeh.plotting import figure
 
-from app.rendering.image_columns import doubt_tones
-from app.rendering.manifold_strokes import manifold_strokes
-from app.rendering.palette import DOUBT, LIGHT, PAPER, Entry, Palette
+from app.views.components.plots import batched_additions
 from engine import MapSpec, StableManifolds, TrustMap
+from plots.image_columns import doubt_tones
+from plots.manifold_strokes import manifold_strokes
+from plots.palette import DOUBT, LIGHT, PAPER, Entry, Palette
 
 _CLEAR = "#00000000"
 # The tones as a CSS background.
@@ -39,14 +40,18 @@ class Overlays:
 
     def _draw_doubts(self) -> None:
         plots, self._without_doubts = self._without_doubts, []
-        for plot in plots:
-            plot.add_glyph(self.doubts, Image(image="doubt", dw="dw", dh="dh", color_mapper=self._mapper))
+        with batched_additions(plots):
+            for plot in plots:
+                plot.add_glyph(self.doubts, Image(image="doubt", dw="dw", dh="dh", color_mapper=self._mapper))
 
     def _draw_manifolds(self) -> None:
         plots, self._without_manifolds = self._without_manifolds, []
-        for plot in plots:
-            plot.add_glyph(self.manifolds, MultiLine(line_color=LIGHT.halo, line_width="halo_width", line_alpha="halo_alpha"))
-            plot.add_glyph(self.manifolds, MultiLine(line_color="colour", line_width="width", line_alpha="alpha"))
+        halo = {"line_color": LIGHT.halo, "line_width": "halo_width", "line_alpha": "halo_alpha"}
+        stroke = {"line_color": "colour", "line_width": "width", "line_alpha": "alpha"}
+        with batched_additions(plots):
+            for plot in plots:
+                for style in (halo, stroke):
+                    plot.add_glyph(self.manifolds, MultiLine(**style))
 
     def begin(self, spec: MapSpec) -> None:
         """Remove the overlays if the map is another one."""

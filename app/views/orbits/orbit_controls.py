@@ -10,12 +10,13 @@ from html import escape
 import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.palette import Palette
 from app.views.components.collapsible_section import Fold
 from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.numbers import grouped
 from app.views.components.widgets import OrbitList, button
-from engine import IndicatorVerdict, Orbit, Plane
+from engine import Orbit, Plane
+from engine.service import IndicatorVerdict
+from plots.palette import Palette
 
 HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
 _BOX = 180
@@ -32,6 +33,7 @@ class OrbitActions:
     clear: Callable[[], None]
     find_divergent_start: Callable[[], None]
     open_plane: Callable[[], None]
+    show_all_times: Callable[[], None]
 
 
 class OrbitControls:
@@ -49,6 +51,10 @@ class OrbitControls:
         self.remove = button("Remove", actions.remove, margin=0)
         self.clear = button("Clear all", actions.clear, margin=0)
         self.open_plane = button("Open (x, px) at this h", actions.open_plane, margin=0)
+        self.interval = pn.pane.HTML("", name="interval", margin=(8, 0))
+        self._all_times = button("Whole orbit", actions.show_all_times, margin=(4, 8))
+        self._interval_row = flex_row(self.interval, self._all_times, align="center")
+        self._interval_row.param.update(margin=(0, 10), visible=False)
         self.note = pn.pane.HTML(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
         self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10))
         self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
@@ -67,7 +73,7 @@ class OrbitControls:
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
         buttons.margin = (5, 10)
         return pn.Column(
-            self.choice, buttons, self.text, playback, self.indicators,
+            self.choice, buttons, self.text, playback, self._interval_row, self.indicators,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["orbit-values"],
         )  # fmt: skip
 
@@ -79,6 +85,13 @@ class OrbitControls:
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
         self.choice.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
+
+    def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
+        """Show which part of the duration is in view; None is the whole duration."""
+        self._interval_row.visible = interval is not None
+        if interval is not None:
+            begin, end = interval
+            self.interval.object = f"Shown: t = {begin:.6g} to {end:.6g} of {duration:.6g}"
 
     def say(self, sentence: str) -> None:
         """Show a message about the orbits."""

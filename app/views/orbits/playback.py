@@ -13,7 +13,7 @@ FRAME_MS = 50
 
 
 class Playback:
-    """A player over the duration of the chosen orbit.
+    """A player over the duration of the chosen orbit, or over an interval of it.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class Playback:
 
     def __init__(self, on_time: Callable[[float | None], None]) -> None:
         self._on_time = on_time
-        self._duration = 0.0
+        self._interval = 0.0, 0.0
         self.player = NamedPlayer(
             label="Time along the orbits", start=0, end=STEPS, value=0, interval=FRAME_MS, loop_policy="loop",
             show_loop_controls=False, visible_buttons=["previous", "play", "pause", "next"], disabled=True,
@@ -37,20 +37,22 @@ class Playback:
         """The player and its time."""
         return self._row
 
-    def follow(self, duration: float | None) -> None:
-        """Set the duration of the chosen orbit; None without one."""
-        self.player.disabled = not duration
-        self._row.visible = duration is not None
-        if not duration:
+    def follow(self, interval: tuple[float, float] | None) -> None:
+        """Set the interval of time to play; None without an orbit."""
+        begin, end = interval or (0.0, 0.0)
+        self.player.disabled = end == begin
+        self._row.visible = interval is not None
+        if end == begin:
             self.player.direction = 0
-        if duration == self._duration:
+        if (begin, end) == self._interval:
             return
-        self._duration = duration or 0.0
-        # At 0 the start is marked by its cross; the moving point appears after that.
+        self._interval = begin, end
+        # At the beginning the start is marked by its cross; the moving point appears after that.
         self.player.value = 0
         self._report()
 
     def _report(self) -> None:
-        t = self._duration * self.player.value / STEPS
-        self.text.object = f"t = {t:.5g}" if t > 0.0 else ""
-        self._on_time(t if t > 0.0 else None)
+        (begin, end), step = self._interval, self.player.value
+        t = begin + (end - begin) * step / STEPS
+        self.text.object = f"t = {t:.5g}" if step else ""
+        self._on_time(t if step else None)

@@ -6,9 +6,9 @@ import numpy as np
 import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d
 
-from app.rendering.palette import PAPER, Palette
 from app.views.components.plots import set_decades, set_range, square_figure
 from engine import Separation
+from plots.palette import PAPER, Palette
 
 TITLE = "Distance of two orbits"
 LEAST = 1e-17

@@ -12,7 +12,8 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import grouped, percent
-from engine import EscapeMap, Fate, compute_statistics, format_time
+from engine import EscapeMap, Fate, compute_statistics
+from engine.service import format_time
 
 
 class AccessibleTable:

@@ -51,6 +51,8 @@ function key_of(event, keys) {
   if (named && event.shiftKey) return null
   const key = event.key === "=" ? "+" : named ? event.key : event.key.toLowerCase()
   if (!keys.includes(key) || comes_from(event, TYPING)) return null
+  // The browser closes an open help text.
+  if (key === "Escape" && event.composedPath().some(node => node.popoverTargetElement?.matches(":popover-open"))) return null
   return key.startsWith("Arrow") && comes_from(event, MOVING) ? null : key
 }
 
@@ -86,7 +88,6 @@ export function render({model, el}) {
   const listen = event => {
     const key = key_of(event, model.keys)
     if (key === null) return
-    // The browser closes help texts with Escape.
     if (key !== "Escape") event.preventDefault()
     // A key that is held down repeats faster than pictures are painted.
     if (event.repeat && event.timeStamp - last < REST_MS) return
@@ -100,15 +101,19 @@ export function render({model, el}) {
   // Entries of the history have numbers: a new number is a new entry, the same one replaces the address.
   const page = crypto.getRandomValues(new Uint32Array(1))[0]
   let entry = 0
+  // Steps through the history. An address that the server has sent before it knew of the last step is out of date.
+  let steps = 0
   history.replaceState({page, entry}, "")
   model.on("address", () => {
-    const {link, entry: next} = model.address
+    const {link, entry: next, steps: known} = model.address
+    if (known !== steps) return
     history[next > entry ? "pushState" : "replaceState"]({page, entry: next}, "", link)
     entry = next
   })
   const tell_entry = event => {
     entry = event.state?.page === page ? event.state.entry : 0
-    model.send_msg({link: window.location.search, entry})
+    steps++
+    model.send_msg({link: window.location.search, entry, steps})
   }
   window.addEventListener("popstate", tell_entry)
   model.on("lifecycle:remove", () => {
@@ -118,8 +123,8 @@ export function render({model, el}) {
   })
   if (document.documentElement.dataset.theme === "dark") tell_theme()
   model.on("command", async () => {
-    const {name} = model.command
-    if (name === "copy") model.send_msg({copied: await copy(window.location.href)})
+    const {name, text} = model.command
+    if (name === "copy") model.send_msg({copied: await copy(text ?? window.location.href)})
     else history.go(name === "back" ? -1 : 1)
   })
   if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
@@ -130,11 +135,11 @@ export function render({model, el}) {
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class BrowserListener(JSComponent):
-    """The browser side: it sends {key}, {link, entry}, {dark}, {touch}, {first_visit} or {copied}."""
+    """The browser side: it sends {key}, {link, entry, steps}, {dark}, {touch}, {first_visit} or {copied}."""
 
     keys = param.List(default=list(KEYS))
-    address = param.Dict(default={}, doc="link of the view, number of its entry in the history; number, see `command`")
-    command = param.Dict(default={}, doc="name: back, forward or copy; and a number that makes repeats differ")
+    address = param.Dict(default={}, doc="link of the view, its entry in the history, steps known; number, see `command`")
+    command = param.Dict(default={}, doc="name: back, forward or copy; text to copy; number that makes repeats differ")
 
     _esm = _LISTENER
 
@@ -148,7 +153,8 @@ class BrowserActions:
     key
         Called with each key of `KEYS`, except for keys that a field, slider or menu uses.
     navigate
-        Called with the query string and the number of the entry that the browser's Back or Forward leads to.
+        Called with the query string and the number of the entry that the browser's Back or Forward leads to, and the number
+        of such steps so far.
     dark
         Called with whether the theme is dark, when it changes or is not light at the beginning.
     touch
@@ -156,11 +162,11 @@ class BrowserActions:
     first_visit
         Called if this browser opens the page for the first time.
     copied
-        Called with the success of `copy_link`.
+        Called with the success of `copy`.
     """
 
     key: Callable[[str], None]
-    navigate: Callable[[str, int], None]
+    navigate: Callable[[str, int, int], None]
     dark: Callable[[bool], None]
     touch: Callable[[], None]
     first_visit: Callable[[], None]
@@ -173,6 +179,7 @@ class BrowserEvents:
     def __init__(self, actions: BrowserActions) -> None:
         self._actions = actions
         self._numbers = count()
+        self._steps = 0
         self._listener = BrowserListener(width=0, height=0, margin=0, styles={"position": "absolute"})
         self._listener.on_msg(lambda event: self._receive(event.data))
 
@@ -180,13 +187,17 @@ class BrowserEvents:
         """An invisible component that must be on the page."""
         return self._listener
 
-    def copy_link(self) -> None:
-        """Copy the page's address to the clipboard; browsers allow it only soon after a click or a key."""
-        self._command("copy")
+    def copy(self, text: str | None) -> None:
+        """Copy a text, or with None the page's address; browsers allow it only soon after a click or a key."""
+        self._command("copy", text=text)
 
     def write_link(self, link: str, entry: int) -> None:
         """Show a link as the address of the page, as this entry of the browser's history."""
-        self._listener.address = {"link": link, "entry": entry, "number": next(self._numbers)}
+        self._listener.address = {"link": link, "entry": entry, "steps": self._steps, "number": next(self._numbers)}
+
+    def follow_steps(self, steps: int) -> None:
+        """The view follows the browser's history up to this number of steps; addresses written before are out of date."""
+        self._steps = steps
 
     def go_back(self) -> None:
         """Do what the browser's Back does."""
@@ -196,16 +207,16 @@ class BrowserEvents:
         """Do what the browser's Forward does."""
         self._command("forward")
 
-    def _command(self, name: str) -> None:
-        self._listener.command = {"name": name, "number": next(self._numbers)}
+    def _command(self, name: str, **details: Any) -> None:
+        self._listener.command = {"name": name, **details, "number": next(self._numbers)}
 
     def _receive(self, message: Any) -> None:
         # Messages come from a browser: ignore what is not expected.
         match message:
             case {"key": str(key)} if key in KEYS:
                 self._actions.key(key)
-            case {"link": str(link), "entry": int(entry)}:
-                self._actions.navigate(link, entry)
+            case {"link": str(link), "entry": int(entry), "steps": int(steps)}:
+                self._actions.navigate(link, entry, steps)
             case {"dark": bool(dark)}:
                 self._actions.dark(dark)
             case {"touch": True}:

@@ -9,15 +9,15 @@ from typing import Any
 
 import panel as pn
 
-from app.rendering.palette import PALETTES
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import EnergyRange
 from app.state.system import SYSTEM, System
 from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
-from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, Switches, button
+from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, Switches, bind, button
 from engine import CASES, Plane
+from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
 PLAY, STOP = "▶ Play", "■ Stop"
@@ -118,14 +118,9 @@ class Controls:
         ]
 
     def _make_list(self, name: str, label: str, options: dict[str, Any]) -> pn.viewable.Viewable:
-        """A drop-down list that writes to an attribute of the view state and follows it."""
-        state = self.state
-        box = pn.widgets.Select(
-            label=label, options=options, value=getattr(state, name), sizing_mode="stretch_width", margin=(0, 10, 8, 10)
-        )
-        box.param.watch(lambda event: state.param.update(**{name: event.new}), "value")
-        state.param.watch(lambda event: box.param.update(value=event.new), name)
-        return box
+        """A drop-down list of an attribute of the view state."""
+        box = pn.widgets.Select(label=label, options=options, sizing_mode="stretch_width", margin=(0, 10, 8, 10))
+        return bind(box, self.state, name)
 
     def _make_lock(self) -> pn.viewable.Viewable:
         """A switch that keeps the limits of the escape times."""

@@ -8,14 +8,14 @@ from functools import partial
 
 import panel as pn
 
-from app.exports import file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_images import ON_DEMAND, TITLES
 from app.state.view_state import ViewState
 from app.views.components.file_saver import FileSaver
 from app.views.components.widgets import button
-from engine import EscapeMap
+from engine import EnergyCurves, EscapeMap
+from plots.map_analyses import MapAnalyses
+from plots.map_images import ON_DEMAND, TITLES
 
 SIDES = {"300 pixels": 300, "600 pixels": 600, "1200 pixels": 1200}
 """Sides of each map in a saved picture."""
@@ -24,6 +24,7 @@ File = tuple[str, Callable[[], bytes]]
 """Name and content of a file; the content is made by a call that may take seconds."""
 
 _NO_MAP = "The map is not complete yet."
+_NO_CURVES = "There are no curves against energy yet."
 
 
 class Downloads:
@@ -34,18 +35,30 @@ class Downloads:
         self._frame: EscapeMap | None = None
         self._analyses = MapAnalyses()
         self._orbits: Sequence[ChosenOrbit] = ()
+        self._curves: EnergyCurves | None = None
         self.saver = FileSaver()
         self.link = button("Copy link", copy_link)
         self.side = pn.widgets.Select(label="Side of each map", options=SIDES, value=600, width=130)
         self.picture = button("Picture (PNG)", self._saving(self.png_file))
         self.maps = button("Maps (NetCDF)", self._saving(self.netcdf_file))
         self.orbits = button("Orbits (CSV)", self._saving(self.csv_file))
+        self.curves = button("Curves (CSV)", self._saving(self.curves_file))
         self.script = button("Python script", self._saving(self.python_file))
         self._enable()
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The buttons, in a column."""
-        return [self.link, self.side, self.picture, self.maps, self.orbits, self.script, self.saver]
+        return [self.link, self.side, self.picture, self.maps, self.orbits, self.curves, self.script, self.saver]
+
+    @property
+    def escape_map(self) -> EscapeMap | None:
+        """The complete map in view; None while it is computed."""
+        return self._frame
+
+    @property
+    def chosen_orbits(self) -> Sequence[ChosenOrbit]:
+        """The orbits in view."""
+        return self._orbits
 
     def show_map(self, frame: EscapeMap) -> None:
         """Set the map to download; files are made of complete maps only."""
@@ -59,6 +72,11 @@ class Downloads:
     def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Set the orbits to download."""
         self._orbits = orbits
+        self._enable()
+
+    def show_curves(self, curves: EnergyCurves | None) -> None:
+        """Set the curves against energy to download; None without any."""
+        self._curves = curves
         self._enable()
 
     async def save(self, file: File) -> None:
@@ -94,6 +112,12 @@ class Downloads:
         name = "orbits.csv" if self._frame is None else self._named("-orbits.csv")
         return name, lambda: orbits_csv(orbits, verdicts=verdicts).encode()
 
+    def curves_file(self) -> File:
+        """The curves against energy as a table."""
+        if self._curves is None:
+            raise ValueError(_NO_CURVES)
+        return f"escapes-{self._state.case}-curves.csv", partial(_encoded_csv, self._curves)
+
     def python_file(self) -> File:
         """A script that computes the map and the orbits."""
         specs = [self._state.orbit_spec(one.start) for one in self._orbits]
@@ -107,6 +131,7 @@ class Downloads:
     def _enable(self) -> None:
         for one in (self.picture, self.maps, self.script):
             one.disabled = self._frame is None
+        self.curves.disabled = self._curves is None
         self.orbits.disabled = not any(one.orbit is not None for one in self._orbits)
 
     def _named(self, ending: str) -> str:
@@ -116,3 +141,7 @@ class Downloads:
         if self._frame is None:
             raise ValueError(_NO_MAP)
         return self._frame
+
+
+def _encoded_csv(curves: EnergyCurves) -> bytes:
+    return curves_csv(curves).encode()

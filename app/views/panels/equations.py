@@ -6,9 +6,9 @@ from html import escape
 
 import panel as pn
 
-from app.rendering.mathml import equations
 from app.state.system import SYSTEM
 from app.state.view_state import ViewState
+from plots.mathml import equations
 
 
 def equations_pane(state: ViewState) -> pn.viewable.Viewable:

@@ -9,8 +9,8 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
-from app.rendering.map_images import TITLES
 from app.state.presets import GROUPS, PRESETS, Preset
+from plots.map_images import TITLES
 
 HINT = "Each card opens a view with orbits to compare. Its caption appears here."
 

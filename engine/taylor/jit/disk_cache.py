@@ -12,7 +12,7 @@ Numba has no public interface for caches, so this module uses internal names of 
 - ``numba.core.serialize.dumps``: Numba's pickling of these objects;
 - ``library.has_dynamic_globals``: whether code contains addresses that are valid in this process only;
 - ``codegen.magic_tuple()``: the target, processor and its features that code was compiled for;
-- ``target_context.refresh()``: registers implementations that the loaded code may need.
+- ``rtsys.initialize()``: prepares the memory management that the loaded code needs.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from typing import Any
 
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from engine.taylor.jit.kernel_files import SUFFIX, cache_folder, delete_kernels, read_kernel, write_kernel
@@ -55,7 +56,8 @@ class KernelCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The code for arguments of some types; None if there is no valid file."""
-        target_context.refresh()
+        # Running machine code needs Numba's memory management only; loading all that it can compile takes a second.
+        rtsys.initialize(target_context)
         path = self._path(sig, target_context.codegen())
         try:
             payload = read_kernel(path)

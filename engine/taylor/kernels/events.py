@@ -2,20 +2,17 @@
 
 An exit curve is a row of numbers. In coordinates from its saddle, u outward along the unstable direction and q across (90°
 counterclockwise from u), the Lyapunov orbit is the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond
-its ends, which lie on the zero-velocity curve, it is continued by straight lines through the forbidden region. A closed channel
-has f = 0.
+its ends, which lie on the zero-velocity curve, it is continued by straight lines through the forbidden region, up to |s| = reach.
+A closed channel is a short straight line across its saddle, in the forbidden region but for the saddle itself.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
-from engine.taylor.jit.decorator import kernel, subroutine
+from engine.taylor.jit.decorator import subroutine
 
 # Columns of an exit curve.
-SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(
-    11
-)
+SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, OPEN = range(8)
+MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 
 # Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
 BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
@@ -30,13 +27,17 @@ _ROOT_ACCURACY = 1e-15
 
 
 @subroutine
+def position_across(x, y, curve):
+    """s of a point, −1 and 1 at the ends of the exit."""
+    q = curve[OUTWARD_X] * (y - curve[SADDLE_Y]) - curve[OUTWARD_Y] * (x - curve[SADDLE_X])
+    return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
+
+
+@subroutine
 def exit_distance(x, y, curve):
     """Distance of (x, y) from an exit curve along the channel: positive outside, negative inside."""
-    dx = x - curve[SADDLE_X]
-    dy = y - curve[SADDLE_Y]
-    u = curve[OUTWARD_X] * dx + curve[OUTWARD_Y] * dy
-    q = curve[OUTWARD_X] * dy - curve[OUTWARD_Y] * dx
-    s = (q - curve[MIDDLE]) / curve[HALF_WIDTH]
+    u = curve[OUTWARD_X] * (x - curve[SADDLE_X]) + curve[OUTWARD_Y] * (y - curve[SADDLE_Y])
+    s = position_across(x, y, curve)
     beyond = 0.0
     if s < -1.0:
         beyond = curve[SLOPE_LOW] * (s + 1.0)
@@ -50,28 +51,22 @@ def exit_distance(x, y, curve):
     return u - (f + beyond)
 
 
-@kernel
-def outside_channel(x, y, curves):
-    """The channel beyond whose exit curve (x, y) lies, 0 for inside; only the saddle nearest in direction is considered."""
-    nearest = -1
-    largest = -np.inf
+@subroutine
+def crossed_exit(x0, y0, x1, y1, curves):
+    """The channel whose exit an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none."""
     for k in range(curves.shape[0]):
-        towards = curves[k, BEARING_X] * x + curves[k, BEARING_Y] * y
-        if towards > largest:
-            largest = towards
-            nearest = k
-    if nearest >= 0 and exit_distance(x, y, curves[nearest]) > 0.0:
-        return nearest + 1
+        curve = curves[k]
+        after = exit_distance(x1, y1, curve)
+        if not after > 0.0:
+            continue
+        before = exit_distance(x0, y0, curve)
+        if before > 0.0:
+            continue
+        s0 = position_across(x0, y0, curve)
+        s1 = position_across(x1, y1, curve)
+        if abs(s0 + (s1 - s0) * before / (before - after)) <= curve[REACH]:
+            return k + 1
     return 0
-
-
-@kernel
-def find_outside(x, y, curves, curve_row):
-    """(n,) the channel beyond which each point lies, 0 for inside; curves (rows, channels, columns), curve_row (n,)."""
-    channels = np.empty(x.shape[0], np.int8)
-    for i in range(x.shape[0]):
-        channels[i] = outside_channel(x[i], y[i], curves[curve_row[i]])
-    return channels
 
 
 @subroutine

@@ -23,16 +23,31 @@ _ROOT_ACCURACY = 1e-14
 
 @kernel
 def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
-    """Weighted averages of x² and y² over consecutive windows.
+    """Weighted averages of x² and y² over two consecutive windows, and over a third one that overlaps half of each.
 
-    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (windows, 2, lanes), zeros.
+    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes), zeros.
     """
-    for window in range(averages.shape[0]):
-        for weight in weights:
-            call_fixed_step(
-                fixed_step, coefficients, state.shape[1], h, weight, state[0], state[1], state[2], state[3],
-                averages[window, 0], averages[window, 1],
-            )  # fmt: skip
+    m = weights.shape[0]
+    for sample in range(2 * m):
+        sums = averages[sample // m]
+        call_fixed_step(
+            fixed_step,
+            coefficients,
+            state.shape[1],
+            h,
+            weights[sample % m],
+            state[0],
+            state[1],
+            state[2],
+            state[3],
+            sums[0],
+            sums[1],
+        )
+        if m // 2 <= sample < m // 2 + m:
+            weight = weights[sample - m // 2]
+            for i in range(state.shape[1]):
+                averages[2, 0, i] += weight * state[0, i] * state[0, i]
+                averages[2, 1, i] += weight * state[1, i] * state[1, i]
 
 
 @kernel

@@ -19,9 +19,10 @@ from engine.taylor.kernels.events import (
     BOUNDED,
     FAILED,
     NOT_COMPUTED,
+    OPEN,
     count_upward_crossings,
+    crossed_exit,
     find_exit_time,
-    outside_channel,
     series_slope,
     series_value,
 )
@@ -124,7 +125,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
             if flag[i] == 0:
                 continue
             j = lane_orbit[i]
-            ends, failed, has_events = _judge_step(flag[i], new[0, i], new[1, i], h[i], final, exits, j)
+            ends, failed, has_events = _judge_step(flag[i], now, new, i, h[i], final, exits, j)
             if ends:
                 _store_orbit(now, i, crossed, orbits, j)
                 orbits.pending[j] = 0
@@ -152,16 +153,16 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
 
 
 @subroutine
-def _judge_step(flags, x, y, h, final, exits, orbit):
+def _judge_step(flags, now, new, i, h, final, exits, orbit):
     """Whether an orbit ends in a flagged step, whether it has failed, and whether there are events to locate.
 
-    x, y: end of the step; h: its size.
+    now, new: lanes at the start and the end of the step; i: lane of the orbit; h: size of the step.
     """
-    failed = not (np.isfinite(x) and np.isfinite(y) and h > 0.0)
+    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and h > 0.0)
     late = flags & OVERSHOOT != 0
     channel = 0
     if not late and flags & GATE != 0:
-        channel = outside_channel(x, y, exits.curves[exits.curve_row[orbit]])
+        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], exits.curves[exits.curve_row[orbit]])
     ends = late or channel > 0 or failed
     has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
     return ends, failed, has_events and not failed
@@ -218,7 +219,7 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
             orbits.crossings[j] += count_upward_crossings(y_jet, i, h)
             continue
         curves = exits.curves[exits.curve_row[j]]
-        channel = outside_channel(series_value(x_jet, i, h), series_value(y_jet, i, h), curves)
+        channel = crossed_exit(start[0, i], start[1, i], series_value(x_jet, i, h), series_value(y_jet, i, h), curves)
         # The whole step decides, so that the escape time is the same to the bit for every horizon.
         tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
         if channel == 0 or orbits.t[j] + tau > horizon:
@@ -232,7 +233,8 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[j, 1] = series_value(y_jet, i, tau)
         orbits.state[j, 2] = series_slope(x_jet, i, tau)
         orbits.state[j, 3] = series_slope(y_jet, i, tau)
-        orbits.fate[j] = channel
+        # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
+        orbits.fate[j] = BOUNDED if curves[channel - 1, OPEN] == 0.0 else channel
 
 
 @kernel

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
-from engine.taylor.kernels.events import find_exit_time, find_extremum, outside_channel, series_slope, series_value
+from engine.taylor.kernels.events import crossed_exit, find_exit_time, find_extremum, series_slope, series_value
 from engine.taylor.kernels.propagate import VECTOR
 from engine.taylor.source.recurrence import GATE, HIDDEN, ORDER, OVERSHOOT
 
@@ -71,7 +71,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
             late = flag[i] & OVERSHOOT != 0
             channel = 0
             if not late and flag[i] & GATE != 0:
-                channel = outside_channel(new[0, i], new[1, i], curves)
+                channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves)
             if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
                     buffer.start[c, buffered] = now[c, i]

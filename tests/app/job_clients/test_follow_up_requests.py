@@ -11,7 +11,8 @@ import pytest
 
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.state.view_state import ViewState
-from engine import CASES, EscapeMap, Fate, Jobs, MapSpec, Plane, Regularity, RegularityMap, RegularityRequest, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map
+from engine.service import Jobs, RegularityRequest
 
 
 class Session:

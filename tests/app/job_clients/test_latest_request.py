@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from app.job_clients.latest_request import LatestRequest
-from engine import CASES, Jobs, Orbit, OrbitRequest
+from engine import CASES, Orbit
+from engine.service import Jobs, OrbitRequest
 
 SPEC = OrbitRequest(CASES["I"], (0.1, 0.0, 0.05, 0.5), 50.0)
 

@@ -11,8 +11,9 @@ import pytest
 
 from app.job_clients.map_requests import MapRequests
 from app.state.view_state import ViewState
-from engine import CASES, EscapeMap, Jobs, MapSpec, Plane, Subscription, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
 from engine.jobs.requests import Answer
+from engine.service import Jobs, Subscription
 
 
 class Recorder:
@@ -60,7 +61,7 @@ class Recorder:
 
 @pytest.fixture
 def session() -> Iterator[tuple[ViewState, MapRequests, Recorder, Jobs]]:
-    state, recorder, jobs = ViewState(case="I", energy=0.3, resolution=113, t_max=1e2), Recorder(), Jobs()
+    state, recorder, jobs = ViewState(case="I", energy=0.3, resolution=112, t_max=1e2), Recorder(), Jobs()
     requests = MapRequests(state, jobs, recorder, lambda function: function)
     yield state, requests, recorder, jobs
     requests.close()

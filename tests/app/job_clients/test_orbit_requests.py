@@ -13,7 +13,8 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
-from engine import IndicatorVerdict, Jobs, Plane, Separation, Verdict, integrate_orbit
+from engine import Plane, Separation, Verdict, integrate_orbit
+from engine.service import IndicatorVerdict, Jobs
 
 
 class Recorder:

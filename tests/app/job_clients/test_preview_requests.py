@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from app.job_clients.preview_requests import LoadPolicy, PreviewRequests
 from app.state.view_state import ViewState
-from engine import Jobs
+from engine.service import Jobs
 from tests.app.job_clients.test_map_requests import Recorder
 
 

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from app.job_clients.follow_up_requests import FollowUpRequests
-from app.rendering.map_analyses import MapAnalyses
 from app.session.analysis_presenter import SWEPT_ENERGIES, AnalysisPresenter
 from app.state.view_state import Analysis, ViewState
 from app.views.maps.map_plots import MapsView
-from engine import CASES, EscapeMap, Jobs, MapSpec, Plane, Trust, Window, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, Trust, Window, compute_map
+from engine.service import Jobs
+from plots.map_analyses import MapAnalyses
 
 
 class Session:
@@ -24,9 +25,9 @@ class Session:
         self.changed = threading.Condition()
         self.analyses = MapAnalyses()
         self.problems: list[str] = []
-        self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=113, t_max=1e3, **chosen), Jobs()
+        self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=112, t_max=1e3, **chosen), Jobs()
         self.maps = MapsView(lambda x, y: None, lambda window: None, lambda: None, lambda box: None)
-        self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, self.locked)
+        self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, lambda curves: None, self.locked)
         self.follow_ups = FollowUpRequests(self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, self.locked)
 
     def locked(self, function: Callable[..., None]) -> Callable[..., None]:
@@ -55,7 +56,7 @@ class Session:
 
 @pytest.fixture(scope="module")
 def frame() -> EscapeMap:
-    return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (113, 113), t_max=1e3))
+    return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (112, 112), t_max=1e3))
 
 
 @pytest.fixture
@@ -107,7 +108,7 @@ def test_analyses_are_removed_with_their_map(begin: Callable[..., Session], fram
     session = begin(trust=True)
     session.show(frame)
     session.wait_for(lambda: session.analyses.trust is not None)
-    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (113, 113), t_max=1e3))
+    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (112, 112), t_max=1e3))
     assert session.analyses == MapAnalyses()
     assert session.maps.overlays.doubts.data["doubt"] == []
 

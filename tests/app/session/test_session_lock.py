@@ -28,13 +28,13 @@ from tests.app.other_loop import run_on_new_loop
 
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
-    lambda explorer: explorer.playback.player.param.update(value=10),
+    lambda explorer: explorer.orbits.playback.player.param.update(value=10),
     lambda explorer: explorer.controls.exact_energy.param.update(value=0.3),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
     # As the lists do.
     lambda explorer: explorer.state.param.update(t_max=1e3),
-    lambda explorer: explorer.state.param.update(resolution=113),
+    lambda explorer: explorer.state.param.update(resolution=112),
     lambda explorer: explorer.state.param.update(palette="safe"),
     lambda explorer: explorer.controls.layers.switches.param.update(value=list(LAYERS)),
     lambda explorer: explorer.controls.layers.switches.param.update(value=[]),
@@ -60,8 +60,8 @@ async def with_session(change: Callable[[Explorer], Any]) -> None:
     def build(document: Document) -> None:
         with set_curdoc(document):
             built.append(Explorer())
-            built[0].inspector.follow(2, 2)
-            built[0].playback.follow(10.0)
+            built[0].orbits.inspector.follow(2, 2)
+            built[0].orbits.playback.follow((0.0, 10.0))
             explorer_page(built[0]).server_doc(document)
 
     context = ApplicationContext(Application(FunctionHandler(build)))
@@ -86,4 +86,4 @@ def test_widget_changes_need_no_lock(caplog: pytest.LogCaptureFixture) -> None:
 
 def test_bare_models_need_the_lock() -> None:
     with pytest.raises(RuntimeError, match="document lock"):
-        run_on_new_loop(lambda: with_session(lambda explorer: explorer.orbit_plots.set_time(1.0)))
+        run_on_new_loop(lambda: with_session(lambda explorer: explorer.orbits.plots.set_time(1.0)))

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.rendering.palette import MOST_ORBITS, PALETTES
 from app.state.permalink import LONGEST_VALUE, read_link, write_link
 from app.state.view_state import LAYERS, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
 from engine import CASES, Plane, Window
+from plots.palette import MOST_ORBITS, PALETTES
 
 numbers = st.floats(-1e3, 1e3, allow_nan=False)
 pairs = st.tuples(numbers, numbers).filter(lambda pair: pair[0] < pair[1])
@@ -69,7 +69,7 @@ def test_a_link_contains_the_view_state_at_full_precision(
         ("box", "1,0,0,1"),
         ("box", "0,1"),
         ("t_max", "7"),
-        ("resolution", "224"),
+        ("resolution", "225"),
         ("orbits", "0.1"),
         ("orbits", "0.1,0.2;0.3"),
         ("orbits", ";".join(["0.1,0.2"] * (MOST_ORBITS + 1))),
@@ -93,7 +93,7 @@ def test_an_invalid_value_is_named_and_ignored(name: str, text: str) -> None:
     ("link", "problem"),
     [
         ({"t_max": "7"}, "Ignored t_max=7: choose 100, 1 000, 10 000, 100 000 or 1 000 000."),
-        ({"resolution": "1e9"}, "Ignored resolution=1e9: choose 113, 225, 450 or 900."),
+        ({"resolution": "1e9"}, "Ignored resolution=1e9: choose 112, 224, 450 or 900."),
         ({"h": "nan"}, "Ignored h: choose a number, such as 0.25."),
         ({"case": "III", "h": "-5"}, "Ignored h=-5: choose an energy above 0, such as 0.35."),
         (
@@ -124,8 +124,8 @@ def test_a_link_counts_in_a_box() -> None:
 
 
 def test_an_invalid_potential_drops_what_belongs_to_it() -> None:
-    values, problems = read_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "113"})
-    assert values == {"resolution": 113}
+    values, problems = read_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "112"})
+    assert values == {"resolution": 112}
     assert len(problems) == 1
 
 

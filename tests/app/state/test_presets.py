@@ -12,13 +12,13 @@ import pytest
 from PIL import Image
 
 import app
-from app.rendering.map_images import TITLES
-from app.rendering.palette import MOST_ORBITS
 from app.state.permalink import LINKED, read_link, write_link
 from app.state.presets import GROUPS, PRESETS, Preset
 from app.state.view_state import ViewState
 from app.views.panels.gallery import Gallery
 from engine import CASES, Fate, Orbit, Plane, classify_orbits, compute_map, integrate_orbit, start_states
+from plots.map_images import TITLES
+from plots.palette import MOST_ORBITS
 
 THUMBNAILS = Path(app.__file__).parent / "static" / "gallery"
 LARGEST_THUMBNAIL = 15_000

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from app.rendering.palette import MOST_CHANNELS
 from app.state.energy_ranges import ENERGIES
 from app.state.system import TYPED, System, refusal
 from engine import CASES, POTENTIALS, channel_family, parse_formula, review_potential
+from plots.palette import MOST_CHANNELS
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 

@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.rendering.palette import MOST_ORBITS
 from app.state.energy_ranges import ENERGIES
 from app.state.view_state import ViewState
 from engine import CASES, Plane
+from plots.palette import MOST_ORBITS
 
 
 def test_the_map_has_the_chosen_parameters() -> None:
-    spec = ViewState(case="III", plane=Plane.X_Y, energy=0.45, t_max=1e3, resolution=113).map_spec()
+    spec = ViewState(case="III", plane=Plane.X_Y, energy=0.45, t_max=1e3, resolution=112).map_spec()
     assert (spec.potential, spec.plane, spec.energy, spec.resolution, spec.t_max) == (
         CASES["III"],
         Plane.X_Y,
         0.45,
-        (113, 113),
+        (112, 112),
         1e3,
     )
 

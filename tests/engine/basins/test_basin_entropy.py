@@ -88,7 +88,7 @@ def test_random_images_agree_with_a_loop_over_boxes(box: int, seed: int) -> None
     labels[:20] = np.minimum(labels[:20], -1)
     valid = np.random.default_rng(seed).random(labels.shape) > 0.02
     entropies = box_by_box(labels, valid, box)
-    result = compute_basin_entropy(labels, valid, box)
+    result = compute_basin_entropy(labels, valid, box=box)
     assert result.boxes == len(entropies)
     assert result.s_b == pytest.approx(np.mean(entropies), rel=1e-12)
     assert result.s_bb == pytest.approx(np.mean([entropy for entropy in entropies if entropy]), rel=1e-12)
@@ -200,7 +200,7 @@ def test_without_valid_pixels_there_is_no_entropy() -> None:
 )
 def test_invalid_parameters_are_named(parameter: str, labels: Any, valid: Any, box: Any) -> None:
     with pytest.raises(ValueError, match=f"^{parameter}"):
-        compute_basin_entropy(labels, valid, box)
+        compute_basin_entropy(labels, valid, box=box)
 
 
 # Descriptions and a map.

@@ -79,7 +79,7 @@ def test_near_the_escape_energy_the_boundary_nearly_fills_the_plane(henon_heiles
 
 def test_separations_range_from_a_pixel_to_1e_10(henon_heiles: UncertaintyExponent) -> None:
     window = HENON_HEILES.window
-    assert henon_heiles.separations[0] == pytest.approx((window.x_high - window.x_low) / 225, rel=1e-12)
+    assert henon_heiles.separations[0] == pytest.approx((window.x_high - window.x_low) / 224, rel=1e-12)
     assert henon_heiles.separations[-1] == pytest.approx(1e-10, rel=1e-12)
 
 

@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from engine import CHAOS_THRESHOLD, Fate, Regularity, describe_fate, judge_regularity
+from engine import CHAOS_THRESHOLD, Fate, Regularity
+from engine.service import describe_fate, judge_regularity
 
 
 def test_fates_are_not_channel_numbers() -> None:

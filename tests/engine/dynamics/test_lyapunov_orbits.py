@@ -5,9 +5,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves, exit_gates, find_outside_channels
+from engine.dynamics.lyapunov_orbits import exit_curves, exit_gates
 from engine.potentials.catalogue import POTENTIALS
-from engine.taylor.kernels.events import find_outside
 from tests.peers.dop853 import equations
 
 ENERGIES = [
@@ -155,14 +154,6 @@ def test_gates_lie_inside_every_exit(name: str, energy: float) -> None:
         assert np.min(a * orbit.x + b * orbit.y) > c
 
 
-@each_case
-def test_closed_channel_ends_at_its_saddle(name: str) -> None:
-    curves = closed_channel_curves(CASES[name])[None]
-    for channel, saddle in enumerate(CASES[name].saddles, start=1):
-        x, y = np.outer(saddle, [0.999, 1.001])
-        np.testing.assert_array_equal(find_outside(x, y, curves, np.zeros(2, np.int64)), [0, channel])
-
-
 @pytest.mark.parametrize("epsilon", [1 / 64, 32.0])
 def test_orbits_scale_with_the_well(epsilon: float) -> None:
     # For a cubic V1, V with strength ε at (x, y) is ε⁻² times V with strength 1 at (εx, εy); scaling by powers of 2 is exact.
@@ -171,13 +162,6 @@ def test_orbits_scale_with_the_well(epsilon: float) -> None:
         np.testing.assert_allclose(epsilon * orbit.x, usual.x, atol=1e-13)
         np.testing.assert_allclose(epsilon * orbit.y, usual.y, atol=1e-13)
         assert orbit.period == pytest.approx(usual.period, rel=1e-12)
-
-
-def test_outside_regions_scale_with_the_well() -> None:
-    large, energy = CASES["II"].with_parameters(epsilon=1 / 64), 0.2 * 64**2
-    x, y = np.random.default_rng(1).uniform(-1.5, 1.5, (2, 300))
-    expected = find_outside_channels(CASES["II"], 0.2, x, y)
-    np.testing.assert_array_equal(find_outside_channels(large, energy, 64 * x, 64 * y), expected)
 
 
 def test_merged_channels_are_refused() -> None:

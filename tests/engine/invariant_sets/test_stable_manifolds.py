@@ -27,7 +27,7 @@ each = pytest.mark.parametrize(("name", "energy"), SYSTEMS)
 
 @cache
 def manifolds(potential: Potential, energy: float, images: int = 2) -> StableManifolds:
-    return find_stable_manifolds(potential, energy, images)
+    return find_stable_manifolds(potential, energy, images=images)
 
 
 def points_with_normals(found: StableManifolds, channel: int, image: int) -> np.ndarray:
@@ -183,7 +183,7 @@ def test_images_of_a_channel_on_the_axis_start_at_its_orbit_and_join_end_to_end(
 
 
 def test_first_images_are_closed_curves_and_not_truncated() -> None:
-    found = find_stable_manifolds(CASES["I"], 0.15, 1)
+    found = find_stable_manifolds(CASES["I"], 0.15, images=1)
     assert not found.truncated
     for arc in found.arcs:
         assert (arc.x[0], arc.px[0]) == (arc.x[-1], arc.px[-1])
@@ -262,7 +262,7 @@ def test_there_are_no_arcs_at_or_below_the_escape_energy(name: str, below: float
 @pytest.mark.parametrize("images", [0, -1, MOST_IMAGES + 1])
 def test_number_of_images_out_of_range_raises(images: int) -> None:
     with pytest.raises(ValueError, match=f"images={images}"):
-        find_stable_manifolds(CASES["I"], 0.15, images)
+        find_stable_manifolds(CASES["I"], 0.15, images=images)
 
 
 @pytest.mark.parametrize("energy", [np.nan, np.inf])
@@ -273,7 +273,7 @@ def test_non_finite_energy_raises(energy: float) -> None:
 
 def test_result_does_not_depend_on_the_executor() -> None:
     with ThreadPoolExecutor(3) as pool:
-        found = find_stable_manifolds(CASES["I"], 0.15, 2, executor=pool)
+        found = find_stable_manifolds(CASES["I"], 0.15, images=2, executor=pool)
     for arc, other in zip(found.arcs, manifolds(CASES["I"], 0.15).arcs, strict=True):
         np.testing.assert_array_equal([arc.x, arc.px], [other.x, other.px])
 
@@ -301,7 +301,7 @@ def test_nbytes_is_the_size_of_the_arrays() -> None:
 
 def window_on_an_arc(half: float) -> Window:
     """A square of side 2 `half` around a point of an arc of I at h = 0.19."""
-    arc = next(arc for arc in find_stable_manifolds(CASES["I"], 0.19, 1).arcs if arc.channel == 1)
+    arc = next(arc for arc in find_stable_manifolds(CASES["I"], 0.19, images=1).arcs if arc.channel == 1)
     x, px = float(arc.x[arc.x.size // 3]), float(arc.px[arc.x.size // 3])
     return Window(x - half, x + half, px - half, px + half)
 
@@ -314,7 +314,7 @@ def points_inside(found: StableManifolds, window: Window) -> np.ndarray:
 
 def test_window_has_finer_curves_and_none_beyond_its_margin() -> None:
     window = window_on_an_arc(0.02)
-    whole, zoomed = (find_stable_manifolds(CASES["I"], 0.19, 2, window=part) for part in (None, window))
+    whole, zoomed = (find_stable_manifolds(CASES["I"], 0.19, images=2, window=part) for part in (None, window))
     assert len(points_inside(zoomed, window)) > 2 * len(points_inside(whole, window)) > 0
     enlarged = Window(window.x_low - 0.0041, window.x_high + 0.0041, window.ordinate_low - 0.0041, window.ordinate_high + 0.0041)
     assert len(points_inside(zoomed, enlarged)) == sum(arc.x.size for arc in zoomed.arcs)
@@ -322,7 +322,7 @@ def test_window_has_finer_curves_and_none_beyond_its_margin() -> None:
 
 def test_curves_in_a_window_lie_on_the_curves_of_the_whole_plane() -> None:
     window = window_on_an_arc(0.02)
-    whole, zoomed = (find_stable_manifolds(CASES["I"], 0.19, 1, window=part) for part in (None, window))
+    whole, zoomed = (find_stable_manifolds(CASES["I"], 0.19, images=1, window=part) for part in (None, window))
     lines = shapely.MultiLineString([np.column_stack([arc.x, arc.px]) for arc in whole.arcs])
     distance = shapely.distance(lines, shapely.points(points_inside(zoomed, window)))
     assert distance.size > 0
@@ -332,7 +332,7 @@ def test_curves_in_a_window_lie_on_the_curves_of_the_whole_plane() -> None:
 def test_curves_separate_the_basins_in_a_deep_zoom() -> None:
     half = 1e-6
     window = window_on_an_arc(half)
-    zoomed = find_stable_manifolds(CASES["I"], 0.19, 1, window=window)
+    zoomed = find_stable_manifolds(CASES["I"], 0.19, images=1, window=window)
     frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (40, 40), window, t_max=500.0))
     direct = (frame.fate == 1) & (frame.crossings == 0)
     assert 0.2 < direct.mean() < 0.8

@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from engine import CASES, JobClient, Jobs, MapSpec, OrbitRequest, Plane
+from engine import CASES, MapSpec, Plane
+from engine.service import JobClient, Jobs, OrbitRequest
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
 SLOW = [MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=t_max) for t_max in (1e6, 2e6, 3e6)]

@@ -13,23 +13,25 @@ import pytest
 
 from engine import (
     CASES,
-    Answer,
-    DivergentStartRequest,
     EscapeMap,
-    Jobs,
     MapSpec,
-    OrbitRequest,
     Plane,
-    PreviewRequest,
-    RegularityRequest,
-    SeparationRequest,
-    UnresolvedMapSpec,
-    WarmupRequest,
     compute_map,
     compute_regularity,
     compute_separation,
     find_divergent_start,
     integrate_orbit,
+)
+from engine.service import (
+    Answer,
+    DivergentStartRequest,
+    Jobs,
+    OrbitRequest,
+    PreviewRequest,
+    RegularityRequest,
+    SeparationRequest,
+    UnresolvedMapSpec,
+    WarmupRequest,
     preview_spec,
 )
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
@@ -207,7 +209,7 @@ def test_other_executors_can_be_used() -> None:
 
 def test_preview_is_delivered_once_and_cached() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
-    unresolved = UnresolvedMapSpec(CASES["I"], Plane.X_PX, 0.3, (225, 225), None, 1e5)
+    unresolved = UnresolvedMapSpec(CASES["I"], Plane.X_PX, 0.3, (224, 224), None, 1e5)
     jobs.request(PreviewRequest(unresolved), first.result, first.error)
     assert first.first.wait(30)
     wait_until_idle(jobs)

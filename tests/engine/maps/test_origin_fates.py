@@ -9,18 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import (
-    CASES,
-    Fate,
-    MapSpec,
-    OriginFateMap,
-    Plane,
-    classify_orbits,
-    compute_map,
-    compute_origin_fates,
-    join_origin_fates,
-    start_states,
-)
+from engine import CASES, Fate, MapSpec, OriginFateMap, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
+from engine.service import join_origin_fates
 
 # Channel numbers under y → −y; 0 is bounded.
 MIRRORED_IN_Y = {"I": [0, 2, 1], "II": [0, 1, 3, 2], "III": [0, 4, 3, 2, 1]}
@@ -128,4 +118,4 @@ def test_cancelling_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.26), cancel)
+        compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.26), cancel=cancel)

@@ -7,7 +7,8 @@ import threading
 import numpy as np
 import pytest
 
-from engine import CASES, PREVIEW_SIDE, PREVIEW_TIME, Fate, MapSpec, Plane, compute_map, compute_preview, preview_spec
+from engine import CASES, Fate, MapSpec, Plane, compute_map
+from engine.service import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
 
 
 @pytest.mark.parametrize("case", list(CASES))

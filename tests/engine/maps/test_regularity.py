@@ -17,9 +17,9 @@ from engine import (
     compute_map,
     compute_regularity,
     integrate_orbit,
-    judge_regularity,
     start_states,
 )
+from engine.service import judge_regularity
 
 
 def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1e4) -> tuple[EscapeMap, RegularityMap]:
@@ -77,7 +77,7 @@ def test_short_maps_are_judged_by_sali_at_t_max() -> None:
 def test_later_frames_keep_the_judged_pixels() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.16, (13, 13), t_max=2e4))
     frames = []
-    compute_regularity(whole, frames.append)
+    compute_regularity(whole, on_frame=frames.append)
     for before, after in pairwise(frames):
         judged = before.character != Regularity.NOT_JUDGED
         np.testing.assert_array_equal(before.character[judged], after.character[judged])

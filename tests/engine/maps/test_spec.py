@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CASES, LARGEST_SIDE, LONGEST_TIME, MapSpec, Plane, Window
+from engine import CASES, MapSpec, Plane, Window
+from engine.service import LARGEST_SIDE, LONGEST_TIME
 
 I = CASES["I"]  # noqa: E741  # named like the case
 WINDOW = (-1.0, 1.0, -1.0, 1.0)

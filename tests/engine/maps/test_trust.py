@@ -241,7 +241,7 @@ def test_result_does_not_depend_on_the_executor() -> None:
 def test_later_frames_keep_the_decided_pixels() -> None:
     whole, trust = map_and_trust()
     frames: list[TrustMap] = []
-    compute_trust(whole, frames.append)
+    compute_trust(whole, on_frame=frames.append)
     assert len(frames) > 4
     assert not frames[0].complete
     for before, after in pairwise(frames):
@@ -253,7 +253,7 @@ def test_later_frames_keep_the_decided_pixels() -> None:
 def test_cancelling_leaves_the_rest_not_tested() -> None:
     whole, trust = map_and_trust()
     cancel = threading.Event()
-    partial = compute_trust(whole, lambda _frame: cancel.set(), cancel)
+    partial = compute_trust(whole, on_frame=lambda _frame: cancel.set(), cancel=cancel)
     assert not partial.complete
     assert Trust.NOT_TESTED in partial.trust
     decided = partial.trust != Trust.NOT_TESTED

@@ -9,10 +9,8 @@ from scipy import optimize
 
 from engine import (
     CASES,
-    DecayLaw,
     DecayLaws,
     EscapeStatistics,
-    LawFit,
     MapSpec,
     Plane,
     Potential,
@@ -20,11 +18,11 @@ from engine import (
     classify_orbits,
     compute_map,
     compute_statistics,
-    compute_survival,
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.dynamics.lyapunov_orbits import find_outside_channels
+from engine.dynamics.interior import find_outside_channels
+from engine.service import DecayLaw, LawFit, compute_survival
 from engine.statistics.decay_laws import MIN_ESCAPES
 from engine.statistics.escape_statistics import MAX_SURVIVAL_POINTS
 

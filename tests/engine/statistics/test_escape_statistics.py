@@ -60,6 +60,12 @@ def test_shares_are_the_fractions_of_the_map(whole: EscapeMap, statistics: Escap
     assert statistics.shares == whole.fractions()
 
 
+def test_each_share_lies_in_its_interval(statistics: EscapeStatistics) -> None:
+    for code, (low, high) in statistics.share_intervals.items():
+        assert low <= statistics.shares[code] <= high
+        assert high - low < 4.0 / np.sqrt(statistics.starts)
+
+
 def test_direct_escapes_have_no_crossing(whole: EscapeMap, statistics: EscapeStatistics) -> None:
     assert statistics.direct == np.count_nonzero((whole.fate >= 1) & (whole.crossings == 0))
     assert 0 < statistics.direct < statistics.escaped

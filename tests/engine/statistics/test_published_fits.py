@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import PAPER_FITS, HyperbolicTangent, Polynomial
+from engine import PAPER_FITS
+from engine.service import HyperbolicTangent, Polynomial
 
 
 # ½[1 + tanh u] = 1 / (1 + exp(−2u)).

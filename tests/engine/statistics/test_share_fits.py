@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import HyperbolicTangent, Polynomial, ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine.service import HyperbolicTangent, Polynomial
 
 MANY = 10**9
 ENERGIES = np.linspace(0.26, 0.6, 25)
@@ -69,7 +70,9 @@ def test_intervals_of_a_tangent_have_about_95_percent_coverage() -> None:
 
 def test_intervals_of_a_polynomial_have_about_95_percent_coverage() -> None:
     rng = np.random.default_rng(4)
-    held = coverage([fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), rng), 2) for _ in range(400)], PARABOLA.parameters)
+    held = coverage(
+        [fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), rng), degree=2) for _ in range(400)], PARABOLA.parameters
+    )
     assert all(0.91 <= share <= 0.99 for share in held.values()), held
 
 
@@ -121,7 +124,7 @@ def test_the_largest_deviation_has_its_energy_and_sign() -> None:
 
 
 def test_the_description_has_formula_and_deviation() -> None:
-    fit = fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), np.random.default_rng(6)), 2)
+    fit = fit_direct_shares(ENERGIES, *drawn(PARABOLA(ENERGIES), np.random.default_rng(6)), degree=2)
     text = fit.describe()
     assert text.startswith(f"{fit.curve.formula} with c0 = −1.")
     assert f"at h = {fit.deviation.energy:g}" in text
@@ -155,4 +158,4 @@ def test_energies_too_few_for_a_fit_raise(energies: list[float]) -> None:
 @pytest.mark.parametrize("degree", [0, 7])
 def test_degrees_out_of_range_raise(degree: int) -> None:
     with pytest.raises(ValueError, match="degree="):
-        fit_direct_shares(ENERGIES, np.full(25, 5), np.full(25, 10), degree)
+        fit_direct_shares(ENERGIES, np.full(25, 5), np.full(25, 10), degree=degree)

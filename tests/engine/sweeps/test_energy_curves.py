@@ -12,15 +12,14 @@ from engine import (
     CASES,
     EnergyCurves,
     EnergyCurvesSpec,
-    EnergyPoint,
-    EnergyPointSpec,
+    Fate,
     MapSpec,
     Plane,
     compute_energy_curves,
-    compute_energy_point,
     compute_map,
     compute_statistics,
 )
+from engine.service import EnergyPoint, EnergyPointSpec, compute_energy_point
 
 SPEC = EnergyCurvesSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), 500.0, exponent=False)
 
@@ -50,6 +49,11 @@ def test_below_the_escape_energy_all_orbits_are_bounded(curves: EnergyCurves) ->
     assert np.isnan(curves.curve("mean_escape_time")[0])
 
 
+def test_orbits_that_stay_on_a_symmetry_line_have_no_share() -> None:
+    curves = compute_energy_curves(EnergyCurvesSpec(CASES["III"], Plane.X_Y, (0.6, 1.0), t_max=1e4, exponent=False))
+    np.testing.assert_array_equal(curves.shares[:, Fate.BOUNDED], 0.0)
+
+
 def test_median_escape_time_decreases_with_energy(curves: EnergyCurves) -> None:
     assert np.all(np.diff(curves.curve("median_escape_time")[1:]) < 0)
 
@@ -62,7 +66,7 @@ def test_frames_come_after_each_energy_from_coarse_to_fine() -> None:
         return EnergyPoint(spec.map_spec.energy, (1.0, 0.0, 0.0, 0.0), 0.0, 1.0, 1.0, 0.0, 0.0)
 
     spec = EnergyCurvesSpec(CASES["II"], Plane.X_PX, tuple(np.linspace(0.2, 0.4, 9)), exponent=False)
-    compute_energy_curves(spec, lambda frame: seen.append(frame.energies.tolist()), measure=measure)
+    compute_energy_curves(spec, on_frame=lambda frame: seen.append(frame.energies.tolist()), measure=measure)
     assert [len(energies) for energies in seen] == list(range(1, 10))
     np.testing.assert_allclose(seen[2], [0.2, 0.3, 0.4])
     np.testing.assert_allclose(seen[4], [0.2, 0.25, 0.3, 0.35, 0.4])

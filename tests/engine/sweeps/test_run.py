@@ -22,9 +22,10 @@ import pytest
 import xarray as xr
 
 import engine.sweeps.run
-from engine import CASES, EscapeMap, MapSpec, Plane, SweepPlan, SweepSpec, Window, compute_map, plan_sweep, run_sweep
+from engine import CASES, EscapeMap, MapSpec, Plane, SweepSpec, Window, compute_map, run_sweep
 from engine.dynamics.planes import default_window
 from engine.execution import SerialExecutor, count_workers
+from engine.service import SweepPlan, plan_sweep
 from tests.forked import Finished, run
 
 ARRAYS = ("fate", "escape_time", "crossings", "certificate", "outside", "energy_error")

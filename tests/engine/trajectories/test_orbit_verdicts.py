@@ -8,19 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import (
-    CASES,
-    BirkhoffDigits,
-    Certificate,
-    Fate,
-    Orbit,
-    Plane,
-    Verdict,
-    evaluate_indicators,
-    integrate_orbit,
-    judge_orbit,
-    start_states,
-)
+from engine import CASES, BirkhoffDigits, Certificate, Fate, Orbit, Plane, Verdict, integrate_orbit, judge_orbit, start_states
+from engine.service import evaluate_indicators
 
 # An island and the chaotic sea of Hénon & Heiles below the escape energy.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]

@@ -15,7 +15,10 @@ ESCAPING = start_states(CASES["I"], Plane.X_PX, 0.15, np.array([0.1]), np.array(
 
 
 def test_it_encloses_the_samples_of_the_orbit_tightly() -> None:
-    orbit, envelope = integrate_orbit(CASES["III"], BOUNDED, 2000.0), compute_radius_envelope(CASES["III"], BOUNDED, 2000.0, 40)
+    orbit, envelope = (
+        integrate_orbit(CASES["III"], BOUNDED, 2000.0),
+        compute_radius_envelope(CASES["III"], BOUNDED, 2000.0, intervals=40),
+    )
     place = np.clip(np.searchsorted(envelope.t, orbit.t, side="right") - 1, 0, 39)
     assert np.all(orbit.r2 <= envelope.high[place] + 1e-3)
     assert np.all(orbit.r2 >= envelope.low[place] - 1e-3)
@@ -25,7 +28,7 @@ def test_it_encloses_the_samples_of_the_orbit_tightly() -> None:
 
 
 def test_the_envelope_of_an_escaping_orbit_ends_on_the_lyapunov_orbit() -> None:
-    orbit, envelope = integrate_orbit(CASES["I"], ESCAPING, 1e4), compute_radius_envelope(CASES["I"], ESCAPING, 1e4, 25)
+    orbit, envelope = integrate_orbit(CASES["I"], ESCAPING, 1e4), compute_radius_envelope(CASES["I"], ESCAPING, 1e4, intervals=25)
     exits = {exit_.channel: exit_.x**2 + exit_.y**2 for exit_ in find_lyapunov_orbits(CASES["I"], 0.15)}
     assert (envelope.fate, envelope.escape_time) == (orbit.fate, orbit.escape_time)
     assert envelope.t[-1] == orbit.escape_time
@@ -33,15 +36,15 @@ def test_the_envelope_of_an_escaping_orbit_ends_on_the_lyapunov_orbit() -> None:
 
 
 def test_the_chunk_size_does_not_affect_the_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = compute_radius_envelope(CASES["III"], BOUNDED, 500.0, 10)
+    whole = compute_radius_envelope(CASES["III"], BOUNDED, 500.0, intervals=10)
     monkeypatch.setattr(dense_output, "_CHUNK", 17)
-    pieces = compute_radius_envelope(CASES["III"], BOUNDED, 500.0, 10)
+    pieces = compute_radius_envelope(CASES["III"], BOUNDED, 500.0, intervals=10)
     np.testing.assert_allclose(pieces.high, whole.high, atol=1e-3)
     np.testing.assert_allclose(pieces.low, whole.low, atol=1e-3)
 
 
 def test_intervals_shorter_than_the_sample_interval_have_values() -> None:
-    envelope = compute_radius_envelope(CASES["III"], BOUNDED, 1.0, 400)
+    envelope = compute_radius_envelope(CASES["III"], BOUNDED, 1.0, intervals=400)
     assert np.isfinite(envelope.low).all()
     assert np.all(envelope.low <= envelope.high)
 
@@ -53,7 +56,7 @@ def test_an_outside_start_raises() -> None:
 
 def test_zero_intervals_raise() -> None:
     with pytest.raises(ValueError, match="intervals=0"):
-        compute_radius_envelope(CASES["III"], BOUNDED, 10.0, 0)
+        compute_radius_envelope(CASES["III"], BOUNDED, 10.0, intervals=0)
 
 
 def test_a_cancelled_integration_raises() -> None:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, LONGEST_SEPARATION, Plane, classify_orbits, compute_separation, start_states
+from engine import CASES, Plane, classify_orbits, compute_separation, start_states
+from engine.service import LONGEST_SEPARATION
 
 
 def state_at(case: str, h: float, x: float, px: float) -> np.ndarray:

@@ -8,6 +8,7 @@ from app.views.analysis.statistics import StatisticsView
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
 
+COPIED: list[str] = []
 BOX = Window(-0.1, 0.1, 0.2, 0.4)
 
 
@@ -18,7 +19,7 @@ def frame() -> EscapeMap:
 
 @pytest.fixture
 def view(frame: EscapeMap) -> StatisticsView:
-    view = StatisticsView(lambda: None)
+    view = StatisticsView(lambda: None, COPIED.append)
     view.build()
     view.show(frame)
     return view
@@ -44,3 +45,12 @@ def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -
     statistics = compute_statistics(frame)
     assert view._times.handles["source"].data["top"].sum() == statistics.escaped
     assert view._probabilities.handles["source"].data["p"][0] == pytest.approx(statistics.direct_share)
+
+
+def test_the_table_is_copied_with_shares_at_full_precision(view: StatisticsView, frame: EscapeMap) -> None:
+    view.activate(True)
+    view.copy.clicks += 1
+    rows = [line.split("\t") for line in COPIED[-1].splitlines()]
+    statistics = compute_statistics(frame)
+    assert rows[0] == ["fate", "share", "95 % low", "95 % high"]
+    assert [float(value) for value in rows[1][1:]] == [statistics.shares[1], *statistics.share_intervals[1]]

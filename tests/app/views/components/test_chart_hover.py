@@ -14,7 +14,7 @@ from app.views.analysis.statistics import StatisticsView
 
 def chart_hovers() -> list[HoverTool]:
     """The hover tools of all charts."""
-    statistics, measures = StatisticsView(lambda: None), BasinMeasuresView(lambda: None)
+    statistics, measures = StatisticsView(lambda: None, lambda text: None), BasinMeasuresView(lambda: None)
     statistics.build()
     curves = EnergyCurvesView(lambda: None, lambda energy: None)
     plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]

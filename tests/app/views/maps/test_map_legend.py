@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
 from app.views.maps.map_legend import MapLegend
 from engine import CASES, Fate, MapSpec, Plane
+from plots.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
 
 PATCH = re.compile(r"background:(#[0-9a-f]+)'></span>([^<]+)")
 

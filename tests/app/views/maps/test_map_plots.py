@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from bokeh.models import BoxSelectTool, BoxZoomTool, PanTool
 
-from app.rendering.map_images import ON_DEMAND, TITLES
 from app.views.maps.map_plots import SHORT_TITLES, MapsView
 from app.views.maps.map_toolbar import Drag
+from plots.map_images import ON_DEMAND, TITLES
 
 ALWAYS = [name for name in TITLES if name not in ON_DEMAND]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.rendering.palette import COLOUR_BLIND_SAFE, PAPER
 from app.views.maps.overlays import Overlays
 from engine import CASES, MapSpec, Plane, StableManifolds, Trust, TrustMap, compute_map, compute_trust, find_stable_manifolds
+from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 
 @pytest.fixture(scope="module")
 def manifolds() -> StableManifolds:
-    return find_stable_manifolds(CASES["II"], 0.3, 1)
+    return find_stable_manifolds(CASES["II"], 0.3, images=1)
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.rendering.image_columns import longest_typical_time, map_columns
 from app.views.maps.map_plots import MapsView
 from engine import CASES, MapSpec, Plane, compute_map
+from plots.image_columns import longest_typical_time, map_columns
 
 
 def maps_view() -> MapsView:

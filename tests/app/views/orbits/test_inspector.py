@@ -13,7 +13,7 @@ from app.views.orbits.separation_plot import SeparationPlot
 
 def make_inspector() -> Inspector:
     nothing = OrbitActions(*[lambda *_: None] * len(fields(OrbitActions)))
-    return Inspector(OrbitControls(nothing), Playback(lambda t: None), OrbitPlots(), SeparationPlot())
+    return Inspector(OrbitControls(nothing), Playback(lambda t: None), OrbitPlots(lambda interval: None), SeparationPlot())
 
 
 def test_values_and_plots_are_added_and_removed_with_the_orbits() -> None:

@@ -26,7 +26,7 @@ def events(calls: list[tuple[Any, ...]]) -> BrowserEvents:
 def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[Any, ...]]) -> None:
     messages = [
         {"key": "h"},
-        {"link": "?case=II", "entry": 3},
+        {"link": "?case=II", "entry": 3, "steps": 1},
         {"dark": True},
         {"touch": True},
         {"first_visit": True},
@@ -36,7 +36,7 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
         events._receive(message)
     assert calls == [
         ("key", "h"),
-        ("navigate", "?case=II", 3),
+        ("navigate", "?case=II", 3, 1),
         ("dark", True),
         ("touch",),
         ("first_visit",),
@@ -45,7 +45,8 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
 
 
 @pytest.mark.parametrize(
-    "message", [None, 7, "h", [], {}, {"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1}]
+    "message",
+    [None, 7, "h", [], {}, {"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
 )
 def test_other_messages_are_ignored(events: BrowserEvents, calls: list[tuple[Any, ...]], message: Any) -> None:
     events._receive(message)
@@ -62,3 +63,12 @@ def test_the_same_link_twice_is_two_changes(events: BrowserEvents) -> None:
     for _ in range(2):
         events.write_link("?case=II", 1)
     assert [(address["link"], address["entry"]) for address in written] == [("?case=II", 1)] * 2
+
+
+def test_an_address_says_which_steps_through_the_history_it_knows(events: BrowserEvents) -> None:
+    written: list[Any] = []
+    events.layout().param.watch(lambda event: written.append(event.new["steps"]), "address")
+    events.write_link("?case=II", 1)
+    events.follow_steps(3)
+    events.write_link("?case=III", 2)
+    assert written == [0, 3]

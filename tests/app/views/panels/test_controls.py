@@ -118,8 +118,8 @@ def open_quality(page: Page) -> dict[str, pn.widgets.Select]:
 
 def test_the_lists_follow_a_preset(page: Page) -> None:
     lists = open_quality(page)
-    page.state.param.update(t_max=1e3, resolution=113, palette="safe")
-    assert {label: box.value for label, box in lists.items()} == {"t_max": 1e3, "Resolution": 113, "Colours": "safe"}
+    page.state.param.update(t_max=1e3, resolution=112, palette="safe")
+    assert {label: box.value for label, box in lists.items()} == {"t_max": 1e3, "Resolution": 112, "Colours": "safe"}
 
 
 def test_the_lists_change_the_state(page: Page) -> None:

@@ -13,11 +13,11 @@ import pytest
 import xarray as xr
 
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.rendering.orbit_curves import compute_orbit_curves
 from app.state.view_state import ViewState
 from app.views.panels import downloads
 from app.views.panels.downloads import Downloads
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, integrate_orbit
+from plots.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 
 STATE = (0.1, 0.0, 0.05, 0.6)
@@ -70,7 +70,7 @@ def test_a_file_holds_the_map_at_the_moment_of_the_click(
     downloads_view.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (3, 3), t_max=10.0)))
     run_on_new_loop(lambda: downloads_view.save(file))
     (name, content), *_ = saved
-    assert name == "escapes-I-x_px-h0.19.nc"
+    assert name == "escapes-I-x_px-h0.19-t100.nc"
     with xr.open_dataset(BytesIO(content), engine="h5netcdf") as dataset:
         np.testing.assert_array_equal(dataset["fate"], escape_map.fate)
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from engine import CASES, find_lyapunov_orbits
-from engine.taylor.kernels.events import count_upward_crossings, exit_distance, find_exit_time, find_outside
+from engine.taylor.kernels.events import count_upward_crossings, exit_distance, find_exit_time
 from engine.taylor.source.recurrence import ORDER
 
 
@@ -142,10 +142,3 @@ def test_exit_time_of_a_straight_line_is_that_of_its_intersection_with_the_lyapu
 def test_a_step_that_starts_outside_has_exit_time_zero() -> None:
     curve = find_lyapunov_orbits(CASES["II"], 0.3)[0].curve
     assert find_exit_time(*orbit_through(1.5, 0.0, 1.0, 0.0), 0, 0.1, curve) == 0.0
-
-
-def test_the_origin_is_inside_and_twice_each_saddle_is_outside() -> None:
-    potential = CASES["III"]
-    curves = np.array([[o.curve for o in find_lyapunov_orbits(potential, 0.5)]])
-    x, y = np.vstack([[0.0, 0.0], 2 * potential.saddles]).T
-    np.testing.assert_array_equal(find_outside(x, y, curves, np.zeros(5, np.int64)), [0, 1, 2, 3, 4])

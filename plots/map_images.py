@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from app.rendering.image_columns import character_column, doubt_tones, longest_typical_time, map_columns, passage_column
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.palette import DOUBT, Palette, rgba
 from engine import EscapeMap
+from plots.image_columns import character_column, doubt_tones, longest_typical_time, map_columns, passage_column
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.palette import DOUBT, Palette, rgba
 
 TITLES = {
     "curves": "Zero-velocity curve and exits",

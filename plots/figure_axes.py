@@ -24,7 +24,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, NullFormatter
 from matplotlib.transforms import Bbox
 
-from app.rendering.palette import LIGHT, PATCH_EDGE, Entry
+from plots.palette import LIGHT, PATCH_EDGE, Entry
 
 RENDER_LOCK = threading.Lock()
 """Held by a thread while it draws and saves a figure."""

@@ -13,11 +13,6 @@ from matplotlib.colors import to_hex
 from matplotlib.font_manager import FontProperties, findfont
 from PIL import Image, ImageColor
 
-from app.rendering.figure_axes import label_axis, save_figure
-from app.rendering.map_analyses import MapAnalyses
-from app.rendering.map_figure import draw_map_figure, provenance_line
-from app.rendering.map_images import TITLES, picture_pixels
-from app.rendering.palette import DOUBT, PALETTES, PAPER, Palette
 from engine import (
     CASES,
     EscapeMap,
@@ -31,6 +26,11 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.figure_axes import label_axis, save_figure
+from plots.map_analyses import MapAnalyses
+from plots.map_figure import draw_map_figure, provenance_line
+from plots.map_images import TITLES, picture_pixels
+from plots.palette import DOUBT, PALETTES, PAPER, Palette
 
 SIDE = 240
 
@@ -268,14 +268,14 @@ def test_doubtful_pixels_are_marked() -> None:
 @pytest.mark.parametrize(("picture", "drawn_over"), [("basins", True), ("crossings", True), ("times", False)])
 def test_manifolds_are_drawn_over_exits_basins_and_crossings(picture: str, drawn_over: bool) -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
-    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, 1))
+    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, images=1))
     plain, printed = (draw(whole, picture, PAPER, SIDE, analyses=analyses) for analyses in (MapAnalyses(), found))
     assert (plain.tobytes() != printed.tobytes()) is drawn_over
 
 
 def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
-    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, 1))
+    found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, images=1))
     figure = draw_map_figure(whole, ["crossings"], PAPER, SIDE, analyses=found)
     colours = [to_hex(curve.get_edgecolor()[0]) for curve in figure.axes[0].collections if isinstance(curve, LineCollection)]
     assert set(PAPER.channels[:3]) <= set(colours)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import sympy
 
-from app.rendering.mathml import equations, potential_formula
 from engine import CASES, POTENTIALS, Potential, parse_formula
+from plots.mathml import equations, potential_formula
 
 X, Y = sympy.symbols("x y")
 

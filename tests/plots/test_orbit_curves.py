@@ -5,8 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.rendering.orbit_curves import MOST_LINE_POINTS, TRAIL, OrbitCurves, compute_orbit_curves, envelope, moment
 from engine import CASES, Plane, integrate_orbit, start_states
+from plots.orbit_curves import (
+    MOST_LINE_POINTS,
+    TRAIL,
+    OrbitCurves,
+    compute_orbit_curves,
+    envelope,
+    moment,
+    restrict_curves,
+)
 
 
 def curves_of(t_max: float) -> OrbitCurves:
@@ -43,6 +51,32 @@ def test_the_density_image_has_the_colour_of_the_orbit(long: OrbitCurves) -> Non
     pixels = long.shaded("#102030").view(np.uint8).reshape(*long.visits.shape, 4)  # type: ignore[union-attr]
     assert set(map(tuple, pixels[..., :3].reshape(-1, 3).tolist())) == {(0x10, 0x20, 0x30)}
     np.testing.assert_array_equal(pixels[..., 3], long.visits)
+
+
+def test_an_interval_of_a_long_orbit_has_every_sample(long: OrbitCurves) -> None:
+    part = restrict_curves(long, 1000.0, 1030.0)
+    inside = (long.orbit.t >= 1000.0) & (long.orbit.t <= 1030.0)
+    times, values = part.r2
+    np.testing.assert_array_equal(times, long.orbit.t[inside])
+    np.testing.assert_array_equal(values, long.orbit.r2[inside])
+    assert part.visits is None
+    assert part.path[0].size == times.size
+
+
+def test_an_interval_at_the_start_has_no_logarithm_of_zero(long: OrbitCurves) -> None:
+    part = restrict_curves(long, 0.0, 10.0)
+    assert part.sali[0][0] > 0.0
+    assert part.exponent[0][0] > 0.0
+
+
+def test_an_interval_after_the_end_is_empty(short: OrbitCurves) -> None:
+    part = restrict_curves(short, 1e6, 2e6)
+    assert [history[0].size for history in (part.sali, part.exponent, part.r2, part.path)] == [0, 0, 0, 0]
+
+
+def test_an_interval_can_be_chosen_within_another(long: OrbitCurves) -> None:
+    twice = restrict_curves(restrict_curves(long, 100.0, 900.0), 500.0, 1500.0)
+    assert twice.part == restrict_curves(long, 500.0, 1500.0).part
 
 
 def test_the_section_has_a_point_for_each_crossing(short: OrbitCurves) -> None:

@@ -7,7 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-from app.rendering.palette import (
+from app.views.components.legends import passage_legend
+from plots.palette import (
     CROSSING_CLASSES,
     DARK,
     DOUBT,
@@ -17,8 +18,7 @@ from app.rendering.palette import (
     PALETTES,
     Palette,
 )
-from app.views.components.legends import passage_legend
-from tests.app.rendering.colour_vision import VISIONS, contrast, differences, lab
+from tests.plots.colour_vision import VISIONS, contrast, differences, lab
 
 # Differences CIEDE2000: 2 is just visible, 10 is clear at a glance.
 CLEAR = 10.0

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from engine import Fate, OriginFateMap, Regularity, RegularityMap, StableManifolds, Trust, TrustMap, describe_codes
+from engine import OriginFateMap, RegularityMap, StableManifolds, TrustMap
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,15 +22,8 @@ class MapAnalyses:
 
     def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
         """Add the variables ``character``, ``trust`` and ``origin`` to the dataset of a map, as far as they are known."""
-        images: dict[str, tuple[np.ndarray, type[IntEnum]]] = {}
-        if self.regularity is not None:
-            images["character"] = self.regularity.character, Regularity
-        if self.trust is not None:
-            images["trust"] = self.trust.trust, Trust
-        if self.origins is not None:
-            images["origin"] = self.origins.origin, Fate
-        dims = dataset["fate"].dims
-        return dataset.assign({name: (dims, image, describe_codes(codes)) for name, (image, codes) in images.items()})
+        analyses = {"character": self.regularity, "trust": self.trust, "origin": self.origins}
+        return dataset.assign({name: found.to_xarray()[name].variable for name, found in analyses.items() if found is not None})
 
 
 NO_ANALYSES = MapAnalyses()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.app.rendering.colour_vision import ciede2000, contrast, differences
+from tests.plots.colour_vision import ciede2000, contrast, differences
 
 
 @pytest.mark.parametrize(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from app.rendering.manifold_strokes import manifold_strokes, select_image
 from engine import CASES, StableManifolds, find_stable_manifolds
+from plots.manifold_strokes import manifold_strokes, select_image
 
 
 @pytest.fixture(scope="module")
 def manifolds() -> StableManifolds:
-    return find_stable_manifolds(CASES["III"], 0.45, 2)
+    return find_stable_manifolds(CASES["III"], 0.45, images=2)
 
 
 def test_first_images_are_in_front_wider_and_with_a_halo(manifolds: StableManifolds) -> None:

@@ -24,7 +24,18 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
 
-from app.rendering.figure_axes import (
+from engine import (
+    CASES,
+    EscapeMap,
+    Fate,
+    Plane,
+    Potential,
+    StableManifolds,
+    Window,
+    find_lyapunov_orbits,
+    trace_zero_velocity_curve,
+)
+from plots.figure_axes import (
     LETTER,
     POINTS_PER_INCH,
     SMALL,
@@ -38,10 +49,10 @@ from app.rendering.figure_axes import (
     size_in_points,
     style_axes,
 )
-from app.rendering.image_columns import longest_typical_time
-from app.rendering.manifold_strokes import Stroke, manifold_strokes
-from app.rendering.map_analyses import NO_ANALYSES, MapAnalyses
-from app.rendering.map_images import (
+from plots.image_columns import longest_typical_time
+from plots.manifold_strokes import Stroke, manifold_strokes
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.map_images import (
     CROSSED_BY_MANIFOLDS,
     DOUBTED,
     LARGEST_PICTURE,
@@ -50,18 +61,7 @@ from app.rendering.map_images import (
     TITLES,
     picture_pixels,
 )
-from app.rendering.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
-from engine import (
-    CASES,
-    EscapeMap,
-    Fate,
-    Plane,
-    Potential,
-    StableManifolds,
-    Window,
-    find_lyapunov_orbits,
-    trace_zero_velocity_curve,
-)
+from plots.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
 
 # Letters have a fixed size in points. Pixels per inch grow with the side of a map, so that letters grow with it, and are never
 # fewer than these, so that letters stay legible.
@@ -129,7 +129,7 @@ def draw_map_figure(
     left = 0.0
     for picture in pictures:
         axes = figure.add_axes((left, 0.0, side / dpi, side / dpi))
-        _draw_picture(axes, frame, picture, palette, analyses, longest)
+        draw_picture(axes, frame, picture, palette, analyses, longest)
         mark_starts(axes, starts, palette, frame.spec.window)
         _explain_picture(axes, frame, picture, palette, analyses, longest)
         width = max(side / dpi, _LEGEND_INCHES) + _width_of_labels(axes) + _PANEL_GAP
@@ -137,13 +137,20 @@ def draw_map_figure(
     return figure
 
 
-def _draw_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses, longest: float) -> None:
-    """Title, pixels, curves and axes."""
+def draw_picture(
+    axes: Axes,
+    frame: EscapeMap,
+    picture: str,
+    palette: Palette,
+    analyses: MapAnalyses = NO_ANALYSES,
+    longest: float | None = None,
+) -> None:
+    """Title, pixels, curves and axes of one of `TITLES`; `longest` as for `picture_pixels`."""
     spec = frame.spec
     draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, longest), spec.window, spec.window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
     if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
-        _draw_manifolds(axes, analyses.manifolds, spec.window, palette)
+        draw_manifolds(axes, analyses.manifolds, spec.window, palette)
     show_window(axes, spec.window, "x", spec.plane.ordinate)
     name_panel(axes, TITLES[picture])
 
@@ -210,7 +217,7 @@ def draw_limits(
         draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.channel}", halo=True, **style)
 
 
-def _draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
+def draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
     """Draw the manifolds in the colours of their channels."""
     strokes = manifold_strokes(manifolds)
     for stroke in strokes:

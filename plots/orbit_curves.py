@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,6 +46,8 @@ class OrbitCurves:
         (n, 2) x and px of its upward crossings of y = 0.
     visits
         (n, n) uint8 opacity of the density of a long path over the window, row 0 lowest; None for shorter paths.
+    part
+        Samples of the orbit that path and histories show; all by default.
     """
 
     orbit: Orbit
@@ -55,6 +57,12 @@ class OrbitCurves:
     r2: History
     section: np.ndarray
     visits: np.ndarray | None
+    part: slice = slice(None)
+
+    @property
+    def path(self) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of the path."""
+        return self.orbit.x[self.part], self.orbit.y[self.part]
 
     def shaded(self, colour: str) -> np.ndarray:
         """RGBA image of the visits, (n, n) uint32."""
@@ -67,11 +75,39 @@ class OrbitCurves:
 def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
     """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
     window = default_window(potential, Plane.X_Y, orbit.energy)
-    sali = envelope(orbit.t[1:], np.maximum(orbit.sali[1:], LEAST_SALI), logarithmic=True)
-    visits = _visits(orbit, window) if orbit.t.size > MOST_LINE_POINTS else None
-    r2 = envelope(orbit.t, orbit.r2, logarithmic=False)
-    exponent = envelope(orbit.t[1:], np.maximum(orbit.lyapunov_exponent[1:], LEAST_EXPONENT), logarithmic=True)
-    return OrbitCurves(orbit, window, sali, exponent, r2, find_section_crossings(potential, orbit), visits)
+    everything = slice(None)
+    section = find_section_crossings(potential, orbit)
+    return OrbitCurves(orbit, window, *_histories(orbit, everything), section, _visits(orbit, window, everything))
+
+
+def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurves:
+    """Restrict path and histories to an interval of time, at full resolution; slow like `compute_orbit_curves`.
+
+    Parameters
+    ----------
+    curves
+        Curves of an orbit, restricted or not.
+    begin, end
+        The interval, ``begin < end``; without samples in it, path and histories are empty.
+    """
+    t = curves.orbit.t
+    part = slice(int(np.searchsorted(t, begin)), int(np.searchsorted(t, end, side="right")))
+    sali, exponent, r2 = _histories(curves.orbit, part)
+    visits = _visits(curves.orbit, curves.window, part)
+    return replace(curves, sali=sali, exponent=exponent, r2=r2, visits=visits, part=part)
+
+
+def _histories(orbit: Orbit, part: slice) -> tuple[History, History, History]:
+    """Envelopes of SALI, of the Lyapunov exponent and of R² over some samples; the first two begin after t = 0."""
+    t = orbit.t[part]
+    later = slice(int(t.size > 0 and t[0] == 0.0), None)
+    sali = np.maximum(orbit.sali[part], LEAST_SALI)[later]
+    exponent = np.maximum(orbit.lyapunov_exponent[part], LEAST_EXPONENT)[later]
+    return (
+        envelope(t[later], sali, logarithmic=True),
+        envelope(t[later], exponent, logarithmic=True),
+        envelope(t, orbit.r2[part], logarithmic=False),
+    )
 
 
 def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
@@ -79,7 +115,11 @@ def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
     return float(orbit.x[0]), float(orbit.y[0]), float(orbit.px[0]), float(orbit.py[0])
 
 
-def _visits(orbit: Orbit, window: Window) -> np.ndarray:
+def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
+    """Density image of a long path; None for a short one."""
+    x, y = orbit.x[part], orbit.y[part]
+    if x.size <= MOST_LINE_POINTS:
+        return None
     # Slow to import, and needed for long paths only.
     import datashader
     import pandas as pd
@@ -88,7 +128,7 @@ def _visits(orbit: Orbit, window: Window) -> np.ndarray:
     canvas = datashader.Canvas(
         _SHADED_PIXELS, _SHADED_PIXELS, (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
     )
-    counts = canvas.line(pd.DataFrame({"x": orbit.x, "y": orbit.y}), "x", "y")
+    counts = canvas.line(pd.DataFrame({"x": x, "y": y}), "x", "y")
     shaded = transfer_functions.shade(counts, cmap="#000000", how="eq_hist", min_alpha=_FAINTEST)
     image = transfer_functions.dynspread(shaded, max_px=1).to_numpy()
     return np.ascontiguousarray((image >> 24).astype(np.uint8))

@@ -7,9 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.rendering import palette
-from app.rendering.image_columns import character_column, longest_typical_time, map_columns, passage_column
-from app.rendering.palette import PAPER
 from engine import (
     CASES,
     Certificate,
@@ -22,6 +19,9 @@ from engine import (
     compute_origin_fates,
     compute_regularity,
 )
+from plots import palette
+from plots.image_columns import character_column, longest_typical_time, map_columns, passage_column
+from plots.palette import PAPER
 
 
 @pytest.fixture(scope="module")

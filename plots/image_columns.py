@@ -6,8 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from app.rendering.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
 from engine import Certificate, EscapeMap, Fate, OriginFateMap, Regularity, RegularityMap, Trust, TrustMap
+from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
+
+NO_LAYER = [np.zeros((1, 1), np.uint8)]
+"""Column of a layer that is off."""
 
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 _FIRST_CLASS = len(OUTCOMES)
@@ -25,14 +28,14 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
     classes = np.searchsorted(_LEAST_CROSSINGS, crossings, side="right") - 1
     # Bounded pixels are classified by their certificate.
     classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["certificate"][fate == Fate.BOUNDED]
-    character = _codes(fate, _certified_characters(images), bounded_too=True) if characters else np.zeros((1, 1), np.uint8)
+    character = [_codes(fate, _certified_characters(images), bounded_too=True)] if characters else NO_LAYER
     return {
         "fate": [_codes(fate, fate - 1)],
         "crossing_class": [_codes(fate, classes, bounded_too=True)],
         "crossings": [crossings.astype(np.min_scalar_type(crossings.max(initial=0)))],
         "escape_time": [images["escape_time"].astype(np.float32)],
-        "character": [character],
-        "passage": [np.zeros((1, 1), np.uint8)],
+        "character": character,
+        "passage": NO_LAYER,
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],

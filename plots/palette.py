@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from bokeh.palettes import Cividis256, interp_palette
 
 from engine import Certificate, Fate, Regularity, StableManifolds
 
@@ -76,8 +75,8 @@ class Palette:
         Of bounded orbits.
     classes
         Of each of `CROSSING_CLASSES`, from light to dark.
-    escape_time
-        256 colours, from fast to slow escapes.
+    times
+        Of escape times, from fast to slow: colours at even distances of a scale, or empty for the scale cividis.
     characters
         Of escaping, regular and chaotic orbits; others have the colour of bounded ones.
     orbits
@@ -88,9 +87,17 @@ class Palette:
     channels: tuple[str, ...]
     bounded: str
     classes: tuple[str, ...]
-    escape_time: tuple[str, ...]
+    times: tuple[str, ...]
     characters: tuple[str, str, str]
     orbits: tuple[str, ...]
+
+    @cached_property
+    def escape_time(self) -> tuple[str, ...]:
+        """256 colours, from fast to slow escapes."""
+        # Slow to import, and needed for pictures only.
+        from bokeh.palettes import Cividis256, interp_palette
+
+        return tuple(interp_palette(list(self.times), 256) if self.times else reversed(Cividis256))
 
     @cached_property
     def outcomes(self) -> dict[Fate, Entry]:
@@ -184,7 +191,7 @@ PAPER = Palette(
     channels=("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf"),
     bounded="#8f8f8f",
     classes=("#e2e3fe", "#7db3f4", "#0787b6", "#005769", "#002a2d"),
-    escape_time=tuple(interp_palette(["#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"], 256)),
+    times=("#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"),
     characters=("#f4ead2", "#40e8e6", "#d81fa4"),
     orbits=("#c30066", "#6987e7", "#43bea5", "#fa8f63", "#4b6d00"),
 )
@@ -195,7 +202,7 @@ COLOUR_BLIND_SAFE = Palette(
     channels=("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
     bounded="#a6a6a6",
     classes=("#f8e1ff", "#dc9af4", "#93759c", "#703783", "#381543"),
-    escape_time=tuple(reversed(Cividis256)),
+    times=(),
     characters=("#f3efe2", "#87e9f1", "#ff234a"),
     orbits=("#af2593", "#00c700", "#8e5700", "#99a7f0", "#2b6e60"),
 )

@@ -1,0 +1,107 @@
+"""The page in a notebook: served by this process to a frame in the cell, with the job manager that all sessions share."""
+
+from __future__ import annotations
+
+import asyncio
+import html
+import threading
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+from bokeh.document import Document
+from panel.io.state import set_curdoc
+
+from app.session import explorer as session
+from app.session.page import TITLE, explorer_page
+from app.state.permalink import write_link
+from app.state.system import TYPED
+from app.state.view_state import ViewState
+from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, write_formula
+
+_STARTS_WITHIN = 60.0
+
+
+class Explorer:
+    """The live page in a notebook cell; show it as the last line of a cell.
+
+    It runs in this process: the page computes with the same threads and cache as later calls of this notebook's explorers. The
+    browser must reach this machine, as with a local JupyterLab.
+
+    Parameters
+    ----------
+    spec
+        The map to open: its potential, plane, energy, window and t_max, rounded to the choices of the page; None for the first
+        view of the page.
+    height
+        Of the frame in the cell, in pixels.
+    """
+
+    def __init__(self, spec: MapSpec | None = None, *, height: int = 900) -> None:
+        self.height = height
+        self._link = "" if spec is None else write_link(_view_of(spec))
+        self._session: session.Explorer | None = None
+        self._port = 0
+        self._started = threading.Event()
+        threading.Thread(target=self._serve, name="explorer", daemon=True).start()
+        if not self._started.wait(_STARTS_WITHIN):
+            raise RuntimeError("the server of the page did not start")
+
+    @property
+    def address(self) -> str:
+        """Address of the page, for a browser on this machine."""
+        return f"http://localhost:{self._port}/app{self._link}"
+
+    @property
+    def map(self) -> EscapeMap | None:
+        """The map in view; None while it is computed."""
+        return self._session.downloads.escape_map if self._session is not None else None
+
+    @property
+    def orbits(self) -> tuple[Orbit, ...]:
+        """The clicked orbits that are computed."""
+        chosen = self._session.downloads.chosen_orbits if self._session is not None else ()
+        return tuple(one.orbit for one in chosen if one.orbit is not None)
+
+    def close(self) -> None:
+        """Stop serving the page."""
+        self._loop.call_soon_threadsafe(self._server.stop)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+
+    def _repr_html_(self) -> str:
+        return f"<iframe src='{html.escape(self.address)}' style='width:100%;height:{self.height}px;border:0'></iframe>"
+
+    def _serve(self) -> None:
+        self._loop = asyncio.new_event_loop()
+        asyncio.set_event_loop(self._loop)
+        static = Path(__file__).with_name("static")
+        self._server: Any = pn.io.server.get_server(
+            {"app": self._open}, port=0, start=False, show=False, title=TITLE, static_dirs={"app/static": static}
+        )
+        self._server.start()
+        self._port = self._server.port
+        self._started.set()
+        self._loop.run_forever()
+
+    def _open(self) -> Any:
+        # Bokeh calls functions in a thread, but an explorer belongs to the event loop.
+        return asyncio.run_coroutine_threadsafe(self._build(pn.state.curdoc), self._loop).result()
+
+    async def _build(self, document: Document) -> Any:
+        with set_curdoc(document):
+            pn.extension()
+            self._session = session.Explorer()
+            return explorer_page(self._session)
+
+
+def _view_of(spec: MapSpec) -> ViewState:
+    """The view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
+    known = next((name for name, entry in POTENTIALS.items() if entry.potential == spec.potential), TYPED)
+    view = ViewState(case=known, formula=write_formula(spec.potential) if known == TYPED else "")
+    energy = {} if isinstance(spec.energy, tuple) else {"energy": spec.energy}
+    nearest = {
+        "t_max": min(view.param.t_max.objects, key=lambda choice: abs(choice - spec.t_max)),
+        "resolution": min(view.param.resolution.objects, key=lambda choice: abs(choice - spec.resolution[0])),
+    }
+    view.param.update(plane=spec.plane, window=spec.window, **energy, **nearest)
+    return view

@@ -1,0 +1,181 @@
+"""The orbits: requested for the starts of the view state, drawn, marked on the maps, judged, and played."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import panel as pn
+
+from app.job_clients.divergent_start_requests import DivergentStartRequests
+from app.job_clients.indicators_requests import IndicatorsRequests
+from app.job_clients.locking import Locked
+from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
+from app.job_clients.separation_requests import SeparationRequests
+from app.state.view_state import ViewState
+from app.views.maps.markers import NO_POINTS, Markers
+from app.views.orbits.inspector import Inspector
+from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
+from app.views.orbits.orbit_plots import OrbitPlots
+from app.views.orbits.playback import Playback
+from app.views.orbits.separation_plot import SeparationPlot
+from engine import Plane
+from engine.service import IndicatorVerdict, JobSubmitter
+from plots.orbit_curves import OrbitCurves, restrict_curves
+from plots.palette import Palette
+
+Interval = tuple[float, float]
+"""Begin and end of an interval of time."""
+
+
+class OrbitPresenter:
+    """Orbits of one session.
+
+    Parameters
+    ----------
+    state, jobs
+        Of the session.
+    marks
+        Marks on the maps.
+    on_start
+        Called with x and ordinate of a start that is typed.
+    on_verdicts
+        Called with the orbits when what is known of them changes.
+    locked, latest
+        Wrap functions that change the document; of the calls of the second kind only the latest runs.
+    """
+
+    def __init__(
+        self,
+        state: ViewState,
+        jobs: JobSubmitter,
+        marks: Markers,
+        on_start: Callable[[float, float], None],
+        on_verdicts: Callable[[Sequence[ChosenOrbit]], None],
+        locked: Locked,
+        latest: Locked,
+    ) -> None:
+        self._state, self._marks, self._on_verdicts = state, marks, on_verdicts
+        self._shown: tuple[ChosenOrbit, ...] = ()
+        # The interval of time in view, and the curves restricted to it; None is the whole duration.
+        self._interval: Interval | None = None
+        self._restricted: list[OrbitCurves | None] = []
+        self._show_restricted = locked(self._on_restricted)
+        actions = OrbitActions(
+            add=locked(on_start),
+            choose=lambda place: state.param.update(chosen=place),
+            remove=locked(lambda: state.remove_start(state.chosen)),
+            clear=locked(lambda: state.param.update(starts=(), chosen=0)),
+            find_divergent_start=locked(lambda: self._divergent_start.search()),
+            open_plane=locked(self._open_plane),
+            show_all_times=locked(lambda: self._brush(None)),
+        )
+        self.controls: OrbitControls = OrbitControls(actions)
+        self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
+        # A server under load skips times instead of falling behind the player.
+        self.playback = Playback(latest(self.plots.set_time))
+        self._separation_plot: SeparationPlot = SeparationPlot()
+        self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot)
+        self._orbits = OrbitRequests(state, jobs, self._show, locked)
+        self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
+        self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
+        self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)
+        state.param.watch(lambda event: self.controls.follow_plane(event.new), "plane")
+        state.param.watch(lambda event: self._show(self._shown), "chosen")
+        self.controls.follow_plane(state.plane)
+
+    def begin(self) -> None:
+        """Request the orbits of the state."""
+        self._orbits.follow()
+
+    def find_divergent_start(self) -> None:
+        """Search for the nearest start that escapes elsewhere than the chosen orbit."""
+        self._divergent_start.search()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Change the colours."""
+        for view in (self.plots, self.controls, self._separation_plot):
+            view.set_palette(palette)
+        self._show(self._shown)
+
+    def begin_touch(self) -> None:
+        """The page is used by touch."""
+        self.plots.begin_touch()
+
+    def close(self) -> None:
+        """Cancel all requests at the end of the session."""
+        for requests in (self._orbits, self._divergent_start, self._separation, self._indicators):
+            requests.close()
+
+    def _open_plane(self) -> None:
+        """Open the (x, px) plane at the energy of the chosen orbit, with that orbit."""
+        start = self._state.chosen_start
+        if start is not None and self._state.plane is Plane.X_H:
+            self._state.param.update(plane=Plane.X_PX, energy=start[1], window=None, starts=((start[0], 0.0),), chosen=0)
+
+    def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
+        """Show the orbits that are known."""
+        chosen = self._state.chosen
+        if [one.drawing for one in orbits] != [one.drawing for one in self._shown]:
+            self._interval, self._restricted = None, []
+        self._shown = tuple(orbits)
+        if chosen >= len(orbits) and orbits:
+            return
+        with pn.io.hold():
+            self._mark()
+            self._draw()
+            # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
+            self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
+            self._separation.follow(orbits)
+            self._indicators.follow(orbits)
+
+    def _mark(self) -> None:
+        """Mark starts and sections on the maps."""
+        self._marks.show_starts([one.start for one in self._shown])
+        on_section = self._state.plane is Plane.X_PX
+        drawings = [one.drawing for one in self._shown]
+        self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
+
+    def _draw(self) -> None:
+        """Draw the orbits in the interval of time in view."""
+        drawings, chosen = self._restricted or [one.drawing for one in self._shown], self._state.chosen
+        drawing = drawings[chosen] if drawings else None
+        duration = (0.0, float(drawing.orbit.t[-1])) if drawing is not None else None
+        self.plots.show(self._state.potential, drawings, chosen, self._interval)
+        self.playback.follow(self._interval or duration)
+        self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
+
+    def _show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
+        """Show what is known of the orbits in words."""
+        with pn.io.hold():
+            self.controls.show(orbits, self._state.chosen)
+            self.controls.show_indicators(verdicts)
+            self._on_verdicts(orbits)
+
+    def _brush(self, interval: Interval | None) -> None:
+        """Restrict the curves to an interval of time; None shows the whole duration."""
+        drawings = [one.drawing for one in self._shown]
+        if interval is None:
+            self._interval, self._restricted = None, []
+            with pn.io.hold():
+                self._draw()
+        else:
+            # Curves of long orbits take up to a second.
+            pn.state.execute(partial(self._restrict, drawings, interval))
+
+    async def _restrict(self, drawings: list[OrbitCurves | None], interval: Interval) -> None:
+        self._show_restricted(drawings, interval, await asyncio.to_thread(_restrict_all, drawings, interval))
+
+    def _on_restricted(
+        self, drawings: list[OrbitCurves | None], interval: Interval, restricted: list[OrbitCurves | None]
+    ) -> None:
+        # The orbits may have changed meanwhile.
+        if drawings == [one.drawing for one in self._shown]:
+            self._interval, self._restricted = interval, restricted
+            with pn.io.hold():
+                self._draw()
+
+
+def _restrict_all(drawings: Sequence[OrbitCurves | None], interval: Interval) -> list[OrbitCurves | None]:
+    return [restrict_curves(drawing, *interval) if drawing is not None else None for drawing in drawings]

@@ -1,0 +1,70 @@
+"""A root of a function of one variable between two points of opposite sign."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+_MOST_STEPS = 100
+
+
+def find_root(function: Callable[[float], float], low: float, high: float, *, absolute: float, relative: float) -> float:
+    """A root by Brent's method (Brent 1973, Algorithms for Minimization without Derivatives, chapter 4).
+
+    It makes the same steps as `scipy.optimize.brentq`, which takes longer to import than a whole search takes.
+
+    Parameters
+    ----------
+    function
+        Continuous function.
+    low, high
+        The ends of the bracket; the function has different signs there.
+    absolute, relative
+        The root has an error of at most ``absolute + relative * abs(root)``.
+
+    Raises
+    ------
+    ValueError
+        If the function has the same sign at both ends, or is NaN somewhere.
+    """
+    before, here = low, high
+    value_before, value = function(before), function(here)
+    if value_before * value > 0.0:
+        raise ValueError(f"bracket=({low}, {high}): the function must have different signs at its ends")
+    across, value_across = before, value_before
+    last_step = step = here - before
+    for _ in range(_MOST_STEPS):
+        if math.isnan(value):
+            raise ValueError(f"bracket=({low}, {high}): the function is NaN at {here}")
+        if value_before and value and (value_before < 0.0) != (value < 0.0):
+            across, value_across = before, value_before
+            last_step = step = here - before
+        if abs(value_across) < abs(value):
+            before, here, across = here, across, here
+            value_before, value, value_across = value, value_across, value
+        tolerance = (absolute + relative * abs(here)) / 2.0
+        half = (across - here) / 2.0
+        if value == 0.0 or abs(half) < tolerance:
+            return here
+        trial = math.inf
+        if abs(last_step) > tolerance and abs(value) < abs(value_before):
+            trial = _interpolate((before, value_before), (here, value), (across, value_across))
+        if 2.0 * abs(trial) < min(abs(last_step), 3.0 * abs(half) - tolerance):
+            last_step, step = step, trial
+        else:
+            last_step = step = half
+        before, value_before = here, value
+        here += step if abs(step) > tolerance else math.copysign(tolerance, half)
+        value = function(here)
+    return here
+
+
+def _interpolate(before: tuple[float, float], here: tuple[float, float], across: tuple[float, float]) -> float:
+    """The step to the root of the line through two points, or of the inverse parabola through three; infinite if undefined."""
+    (x0, f0), (x, f), (x1, f1) = before, here, across
+    if x0 == x1:
+        return -f * (x - x0) / (f - f0)
+    slope, other = (f0 - f) / (x0 - x), (f1 - f) / (x1 - x)
+    divisor = other * slope * (f1 - f0)
+    # The product of small values can underflow.
+    return -f * (f1 * other - f0 * slope) / divisor if divisor else math.inf

@@ -1,0 +1,150 @@
+"""Names for the programs of this repository: background jobs, warm-up, single steps of analyses, limits, and words.
+
+They are not part of the public interface of `engine` and may change with any version.
+"""
+
+from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
+from engine.basins.uncertainty_exponent import fit_uncertainty
+from engine.dynamics.certificates import describe_certificate
+from engine.dynamics.fates import describe_fate, judge_regularity
+from engine.dynamics.planes import trace_equipotentials
+from engine.execution import count_cores
+from engine.file_lock import hold_lock
+from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
+from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
+from engine.jobs.context import JobRequest
+from engine.jobs.manager import Jobs
+from engine.jobs.requests import (
+    Answer,
+    BasinMeasures,
+    BasinMeasuresRequest,
+    BirkhoffDigitsRequest,
+    DecayLawsRequest,
+    DivergentStartRequest,
+    EnergyCurvesRequest,
+    EnergyPointRequest,
+    OrbitRequest,
+    OriginFateRequest,
+    PotentialReviewRequest,
+    PreviewRequest,
+    RegularityRequest,
+    SeparationRequest,
+    StableManifoldsRequest,
+    TrustRequest,
+    UncertaintyExponentRequest,
+    UnresolvedMapSpec,
+    WarmupRequest,
+)
+from engine.jobs.stats import JobStats
+from engine.jobs.subscription import Subscription
+from engine.maps.origin_fates import join_origin_fates
+from engine.maps.preview import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
+from engine.maps.result import describe_codes
+from engine.maps.spec import LARGEST_SIDE
+from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
+from engine.potentials.catalogue import PotentialEntry
+from engine.potentials.formula_parser import LONGEST_TEXT
+from engine.potentials.potential import FREQUENCIES, STRENGTHS
+from engine.potentials.validation_report import CriticalPoint, PointKind
+from engine.statistics.decay_laws import DecayLaw, LawFit
+from engine.statistics.escape_statistics import compute_survival
+from engine.statistics.published_fits import HyperbolicTangent, PaperFits, Polynomial
+from engine.statistics.share_fits import Deviation
+from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
+from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
+from engine.sweeps.run import SweepPlan, plan_sweep
+from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
+from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
+from engine.trajectories.separation import LONGEST_SEPARATION
+from engine.validation import LONGEST_TIME
+from engine.warmup import (
+    is_ready_for_maps,
+    prepare_for_certificates,
+    prepare_for_maps,
+    prepare_kernels,
+    seconds_until_ready_for_maps,
+)
+from engine.wording import format_number, format_time, format_whole
+
+__all__ = [
+    "ENTROPY_COUNTS_BOUNDED",
+    "FREQUENCIES",
+    "LARGEST_SIDE",
+    "LONGEST_SEPARATION",
+    "LONGEST_TEXT",
+    "LONGEST_TIME",
+    "MOST_IMAGES",
+    "MOST_REQUESTS",
+    "PREVIEW_SIDE",
+    "PREVIEW_TIME",
+    "STRENGTHS",
+    "WADA_COUNTS_BOUNDED",
+    "Answer",
+    "BasinMeasures",
+    "BasinMeasuresRequest",
+    "BirkhoffDigitsRequest",
+    "CriticalPoint",
+    "DecayLaw",
+    "DecayLawsRequest",
+    "Deviation",
+    "DivergentStartRequest",
+    "EnergyCurvesRequest",
+    "EnergyPoint",
+    "EnergyPointRequest",
+    "EnergyPointSpec",
+    "HyperbolicTangent",
+    "IndicatorVerdict",
+    "JobClient",
+    "JobRequest",
+    "JobStats",
+    "JobSubmitter",
+    "Jobs",
+    "LawFit",
+    "ManifoldArc",
+    "OrbitRequest",
+    "OriginFateRequest",
+    "PaperFits",
+    "PointKind",
+    "Polynomial",
+    "PotentialEntry",
+    "PotentialReviewRequest",
+    "PreviewRequest",
+    "RadiusEnvelope",
+    "RegularityRequest",
+    "SeparationRequest",
+    "StableManifoldsRequest",
+    "Subscription",
+    "SuperStickySearch",
+    "SweepPlan",
+    "TrustRequest",
+    "UncertaintyExponentRequest",
+    "UnresolvedMapSpec",
+    "WarmupRequest",
+    "compute_energy_point",
+    "compute_preview",
+    "compute_radius_envelope",
+    "compute_survival",
+    "count_cores",
+    "describe_certificate",
+    "describe_codes",
+    "describe_fate",
+    "evaluate_indicators",
+    "exit_labels",
+    "find_super_sticky_orbits",
+    "fit_uncertainty",
+    "format_number",
+    "format_time",
+    "format_whole",
+    "hold_lock",
+    "is_ready_for_maps",
+    "join_origin_fates",
+    "judge_regularity",
+    "plan_sweep",
+    "prepare_for_certificates",
+    "prepare_for_maps",
+    "prepare_kernels",
+    "preview_spec",
+    "seconds_until_ready_for_maps",
+    "tabulate_crossing_statistics",
+    "trace_equipotentials",
+]

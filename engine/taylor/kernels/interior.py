@@ -1,0 +1,146 @@
+"""Which points of the Hill region lie inside the exits: connected to the origin below the energy without crossing an exit.
+
+A path leads downhill from the point. As soon as the straight line to the origin is below the energy as well, it is complete,
+and the point is inside if the path crosses the exits an even number of times. A path to another minimum, or to a value of V below
+that at the origin, ends outside, and the point is inside if the path crosses the exits an odd number of times.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.taylor.jit.decorator import kernel, subroutine
+from engine.taylor.kernels.events import BEARING_X, BEARING_Y, OPEN, exit_distance, position_across
+
+# Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
+_LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
+_MOST_STEPS = 10_000
+# The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
+_COS, _SIN = np.cos(0.1), np.sin(0.1)
+# Smallest decrease of V in a step, relative to that along the gradient.
+_DECREASE = 0.25
+# Lines to the origin stay below the energy by this, so that they do not pass over a saddle of the same energy.
+_ENERGY_MARGIN = 1e-12
+# Largest slope at a critical point.
+_NO_SLOPE = 1e-9
+
+
+@subroutine
+def _expand(powers, coefficients, x, y, work):
+    """V, V_x and V_y; row 2 of `work` becomes the series of V(t x, t y) in t."""
+    x_power = 1.0
+    y_power = 1.0
+    for k in range(work.shape[1]):
+        work[0, k] = x_power
+        work[1, k] = y_power
+        work[2, k] = 0.0
+        x_power *= x
+        y_power *= y
+    value = 0.0
+    slope_x = 0.0
+    slope_y = 0.0
+    for m in range(coefficients.shape[0]):
+        i = powers[m, 0]
+        j = powers[m, 1]
+        term = coefficients[m] * work[0, i] * work[1, j]
+        value += term
+        work[2, i + j] += term
+        if i > 0:
+            slope_x += coefficients[m] * i * work[0, i - 1] * work[1, j]
+        if j > 0:
+            slope_y += coefficients[m] * j * work[0, i] * work[1, j - 1]
+    return value, slope_x, slope_y
+
+
+@subroutine
+def _is_below(work, bernstein, level):
+    """Whether all Bernstein coefficients of the series on [0, 1], and with them V on the line, are at most a level."""
+    for i in range(bernstein.shape[0]):
+        b = 0.0
+        for k in range(i + 1):
+            b += bernstein[i, k] * work[2, k]
+        if b > level:
+            return False
+    return True
+
+
+@subroutine
+def _crosses_exits(x0, y0, x1, y1, curves):
+    """Whether the line from (x0, y0) to (x1, y1) crosses the open exits an odd number of times."""
+    odd = False
+    for k in range(curves.shape[0]):
+        curve = curves[k]
+        if curve[OPEN] == 0.0:
+            continue
+        s0 = position_across(x0, y0, curve)
+        s1 = position_across(x1, y1, curve)
+        # The part of the line with −1 ≤ s ≤ 1.
+        low = 0.0
+        high = 1.0
+        if s0 != s1:
+            one = (-1.0 - s0) / (s1 - s0)
+            other = (1.0 - s0) / (s1 - s0)
+            low = max(low, min(one, other))
+            high = min(high, max(one, other))
+        elif abs(s0) > 1.0:
+            continue
+        if low < high:
+            at_low = exit_distance((1.0 - low) * x0 + low * x1, (1.0 - low) * y0 + low * y1, curve)
+            at_high = exit_distance((1.0 - high) * x0 + high * x1, (1.0 - high) * y0 + high * y1, curve)
+            odd ^= (at_low > 0.0) != (at_high > 0.0)
+    return odd
+
+
+@subroutine
+def _is_outside(powers, coefficients, bernstein, x, y, energy, curves, work):
+    level = energy - _ENERGY_MARGIN
+    odd = False
+    step = _LONGEST_STEP
+    for _ in range(_MOST_STEPS):
+        value, slope_x, slope_y = _expand(powers, coefficients, x, y, work)
+        slope = np.sqrt(slope_x * slope_x + slope_y * slope_y)
+        if value < work[2, 0]:
+            break
+        if slope < _NO_SLOPE and value >= level:
+            # A saddle of this energy belongs to the well.
+            return False
+        if _is_below(work, bernstein, level):
+            return odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
+        direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
+        direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
+        step = min(2.0 * step, _LONGEST_STEP)
+        while step > _SHORTEST_STEP:
+            below, _, _ = _expand(powers, coefficients, x + step * direction_x, y + step * direction_y, work)
+            if below < value - _DECREASE * step * slope:
+                break
+            step *= 0.5
+        if step <= _SHORTEST_STEP:
+            break
+        odd ^= _crosses_exits(x, y, x + step * direction_x, y + step * direction_y, curves)
+        x += step * direction_x
+        y += step * direction_y
+    return not odd
+
+
+@kernel
+def find_outside(powers, coefficients, bernstein, x, y, energy, curves, curve_row):
+    """(n,) the channel whose saddle is nearest in direction for each point outside, 0 inside and in the forbidden region.
+
+    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix from `bernstein_matrix`; x, y, energy (n,);
+    curves (rows, channels, columns); curve_row (n,).
+    """
+    work = np.zeros((3, bernstein.shape[0]))
+    channels = np.zeros(x.shape[0], np.int8)
+    for i in range(x.shape[0]):
+        row = curves[curve_row[i]]
+        value, _, _ = _expand(powers, coefficients, x[i], y[i], work)
+        forbidden = not value <= energy[i] + _ENERGY_MARGIN
+        if forbidden or not _is_outside(powers, coefficients, bernstein, x[i], y[i], energy[i], row, work):
+            continue
+        largest = -np.inf
+        for k in range(row.shape[0]):
+            towards = row[k, BEARING_X] * x[i] + row[k, BEARING_Y] * y[i]
+            if towards > largest:
+                largest = towards
+                channels[i] = k + 1
+    return channels

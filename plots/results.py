@@ -1,0 +1,280 @@
+"""The pictures of results of the engine on Matplotlib axes, as HTML for notebooks, and as HoloViews elements."""
+
+from __future__ import annotations
+
+import base64
+import html
+from functools import singledispatch
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from engine import (
+    BirkhoffDigits,
+    DecayLaws,
+    EnergyCurves,
+    EscapeMap,
+    EscapeStatistics,
+    LyapunovOrbit,
+    Orbit,
+    OriginFateMap,
+    Plane,
+    Potential,
+    PotentialReview,
+    RegularityMap,
+    Result,
+    Separation,
+    ShareFit,
+    StableManifolds,
+    TrustMap,
+    UncertaintyExponent,
+    WadaTest,
+    Window,
+    default_window,
+)
+from engine.service import RadiusEnvelope, SuperStickySearch, format_number
+from plots.curve_figures import draw_decay_laws, draw_line, draw_shares
+from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
+from plots.image_columns import passage_column
+from plots.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, show_window
+from plots.map_images import TITLES
+from plots.orbit_curves import compute_orbit_curves
+from plots.orbit_figure import draw_path, draw_r2, draw_sali
+from plots.palette import LIGHT, MEASURED, PALETTES, Entry, Palette, rgba
+from plots.potential_figure import draw_equipotentials, enlarge
+
+_INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
+_BINS = 40
+TRUST_COLOURS = ("#ffffff", "#dfe6ee", "#7da7c9", "#d1495b", "#b0b0b0")
+"""Of the codes of `Trust`."""
+_MOST_DECADES = 16
+
+
+def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
+    """Draw a result, as `engine.representation.Result.plot` describes."""
+    if palette not in PALETTES:
+        raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
+    if ax is None:
+        from matplotlib import pyplot
+
+        _, ax = pyplot.subplots(figsize=_INCHES, layout="constrained")
+    _draw(result, ax, PALETTES[palette], **options)
+    return ax
+
+
+def to_html(result: Result) -> str:
+    """What a notebook shows: the picture if there is one, the sentence that describes the result, and a table of its numbers."""
+    describe = getattr(result, "describe", None)
+    numbers = result.numbers()
+    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{_shown(value)}</td></tr>" for name, value in numbers.items())
+    sentence = f"<p>{html.escape(describe())}</p>" if describe is not None else ""
+    return (
+        f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='display:flex;gap:1em;flex-wrap:wrap'>"
+        f"{_picture(result)}<table>{rows}</table></div></div>"
+    )
+
+
+def to_holoviews(result: Result) -> Any:
+    """The HoloViews element of `engine.representation.Result.to_holoviews`."""
+    import holoviews as hv
+
+    if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
+        return hv.Dataset(result.to_xarray()).to(hv.Image, ["x", result.spec.plane.ordinate])
+    table = result.to_pandas()
+    index, *others = table.columns
+    return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
+
+
+def _shown(value: Any) -> str:
+    return format_number(value) if isinstance(value, float) else html.escape(str(value))
+
+
+def _picture(result: Result) -> str:
+    file = BytesIO()
+    figure = Figure(figsize=_INCHES, dpi=_NOTEBOOK_DPI, layout="constrained")
+    with RENDER_LOCK:
+        try:
+            _draw(result, figure.subplots(), PALETTES["paper"])
+        except TypeError:
+            return ""
+        set_font(figure)
+        figure.savefig(file, format="png")
+    return f"<img alt='{type(result).__name__}' src='data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}'>"
+
+
+@singledispatch
+def _draw(result: Result, axes: Axes, palette: Palette) -> None:
+    raise TypeError(f"{type(result).__name__} has no picture; its numbers are in to_pandas()")
+
+
+def _panel(axes: Axes, window: Window) -> Axes:
+    """Axes behind `axes` for drawings in shares of a window; `axes` itself gets the coordinates of the window."""
+    panel = axes.inset_axes((0.0, 0.0, 1.0, 1.0), zorder=-1.0)
+    axes.set_xlim(window.x_low, window.x_high)
+    axes.set_ylim(window.ordinate_low, window.ordinate_high)
+    axes.patch.set_visible(False)
+    axes.tick_params(bottom=False, left=False, labelbottom=False, labelleft=False)
+    return panel
+
+
+@_draw.register
+def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
+    if picture not in TITLES:
+        raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
+    draw_picture(_panel(axes, result.spec.window), result, picture, palette)
+
+
+def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], palette: Palette) -> Axes:
+    """Draw the codes of the pixels of an analysis in their colours."""
+    spec = result.spec
+    panel = _panel(axes, spec.window)
+    draw_pixels(panel, rgba(colours)[codes][::-1], spec.window, spec.window)
+    draw_limits(panel, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
+    show_window(panel, spec.window, "x", spec.plane.ordinate)
+    return panel
+
+
+@_draw.register
+def _draw_regularity(result: RegularityMap, axes: Axes, palette: Palette) -> None:
+    entries = palette.character_entries
+    panel = _draw_codes(axes, result, result.character, [entry.colour for entry in entries], palette)
+    panel.legend(handles=patches(entries[1:3]))
+
+
+@_draw.register
+def _draw_trust(result: TrustMap, axes: Axes, palette: Palette) -> None:
+    panel = _draw_codes(axes, result, result.trust, list(TRUST_COLOURS), palette)
+    names = [code.name.lower().replace("_", " ") for code in result.codes]
+    panel.legend(handles=patches(Entry(name, colour) for name, colour in zip(names[1:4], TRUST_COLOURS[1:4], strict=True)))
+
+
+@_draw.register
+def _draw_origins(result: OriginFateMap, axes: Axes, palette: Palette) -> None:
+    panel = _draw_codes(axes, result, passage_column(result)["passage"][0], palette.passage_colours, palette)
+    name_panel(panel, TITLES["origins"])
+
+
+@_draw.register
+def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
+    if result.potential is None:
+        raise TypeError("this orbit has no potential, so its exits are unknown")
+    curves = compute_orbit_curves(result.potential, result)
+    if show == "path":
+        axes.set_box_aspect(1.0)
+        draw_path(_panel(axes, curves.window), result.potential, curves, palette)
+        axes.set_box_aspect(axes.child_axes[-1].get_box_aspect())
+    elif show in ("sali", "r2"):
+        (draw_sali if show == "sali" else draw_r2)(axes, curves, palette.orbits[0])
+    else:
+        raise ValueError(f"show={show!r}: must be one of path, sali, r2")
+
+
+@_draw.register
+def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
+    axes.plot(*result.half_path.T, color=palette.channels[result.channel - 1], linewidth=2.2)
+    axes.set_aspect("equal", adjustable="datalim")
+    style_axes(axes)
+    label_axes(axes, "x", "y")
+    name_panel(axes, f"Lyapunov orbit {result.channel} at h = {result.energy:.6g}")
+
+
+@_draw.register
+def _draw_stable_manifolds(result: StableManifolds, axes: Axes, palette: Palette) -> None:
+    window = default_window(result.potential, Plane.X_PX, result.energy)
+    panel = _panel(axes, window)
+    draw_limits(panel, result.potential, Plane.X_PX, result.energy, window, palette.channels)
+    draw_manifolds(panel, result, window, palette)
+    show_window(panel, window, "x", Plane.X_PX.ordinate)
+    name_panel(panel, f"Stable manifolds at h = {result.energy:.6g}")
+
+
+@_draw.register
+def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
+    if not result.channels:
+        raise TypeError(f"the potential {result.name} has no exits and therefore no window to draw")
+    window = enlarge(default_window(result, Plane.X_Y, result.escape_energy))
+    draw_equipotentials(axes, result, window)
+    for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
+        axes.plot(x, y, "o", color=palette.channels[channel - 1], markeredgecolor=LIGHT.halo, zorder=3)
+    axes.set_xlim(window.x_low, window.x_high)
+    axes.set_ylim(window.ordinate_low, window.ordinate_high)
+    axes.set_aspect("equal")
+    style_axes(axes)
+    label_axes(axes, "x", "y")
+    name_panel(axes, f"{result.name}: escape energy {result.escape_energy:.6g}")
+
+
+@_draw.register
+def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
+    if result.refusal is not None:
+        raise TypeError("a potential that cannot be used has no picture")
+    _draw_potential(result.potential, axes, palette)
+
+
+@_draw.register
+def _draw_energy_curves(result: EnergyCurves, axes: Axes, palette: Palette) -> None:
+    draw_shares(axes, result.energies, result.shares, result.spec.potential)
+    label_axes(axes, "h", "percentage of starts")
+    add_panel_legend(axes, "center right")
+
+
+@_draw.register
+def _draw_laws(result: DecayLaws, axes: Axes, palette: Palette) -> None:
+    draw_decay_laws(axes, result, float(max(result.times[-1:], default=10.0)))
+    label_axes(axes, "t", "S(t)")
+
+
+@_draw.register
+def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> None:
+    edges, counts = result.time_histogram(_BINS)
+    axes.stairs(counts, edges, fill=True, color=MEASURED)
+    axes.set_xscale("log")
+    style_axes(axes, grid=True)
+    label_axes(axes, "escape time", "starts")
+
+
+@_draw.register
+def _draw_share_fit(result: ShareFit, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.energies, result.shares, "h", "share of starts")
+    fine = np.linspace(result.energies[0], result.energies[-1], 400)
+    axes.plot(fine, result.curve(fine), color=LIGHT.text, linewidth=1.2, label="fit")
+
+
+@_draw.register
+def _draw_uncertainty(result: UncertaintyExponent, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.separations, result.shares, "ε", "share of uncertain pairs", logarithmic="xy")
+    axes.plot(result.separations, result.amplitude * result.separations**result.exponent, "--", color=LIGHT.text, linewidth=1.2)
+
+
+@_draw.register
+def _draw_wada(result: WadaTest, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, np.arange(result.shares.size), result.shares, "r (pixels)", "share of the boundary within r")
+
+
+@_draw.register
+def _draw_separation(result: Separation, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.t, np.maximum(result.distance, 10.0**-_MOST_DECADES), "t", "distance", logarithmic="y")
+
+
+@_draw.register
+def _draw_envelope(result: RadiusEnvelope, axes: Axes, palette: Palette) -> None:
+    axes.fill_between(result.t[: result.low.size], result.low, result.high, color=palette.orbits[0])
+    style_axes(axes)
+    label_axes(axes, "t", "R² = x² + y²")
+
+
+@_draw.register
+def _draw_digits(result: BirkhoffDigits, axes: Axes, palette: Palette) -> None:
+    draw_line(axes, result.windows, result.digits, "window", "digits", logarithmic="x")
+
+
+@_draw.register
+def _draw_sticky(result: SuperStickySearch, axes: Axes, palette: Palette) -> None:
+    window = result.spec.window
+    panel = _panel(axes, window)
+    draw_limits(panel, result.spec.potential, result.spec.plane, result.spec.energy, window, palette.channels)
+    show_window(panel, window, "x", result.spec.plane.ordinate)
+    axes.scatter(result.x, result.ordinate, s=9.0, color=palette.characters[2])

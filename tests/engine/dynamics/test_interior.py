@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from engine import CASES, Fate, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, find_lyapunov_orbits
+from engine.dynamics.interior import find_outside_channels
+from engine.dynamics.lyapunov_orbits import exit_curves
+from engine.taylor.kernels.events import BEARING_X, BEARING_Y, exit_distance
+
+# Beyond the exit the outer region turns back and passes behind the line on which the exit lies.
+CURLED = Potential("", ((2, 0, 0.6389), (0, 2, 0.2833), (3, 0, 0.72), (2, 1, -0.077), (1, 2, 0.3877), (0, 3, -0.1425)))
+CURLED_QUINTIC = Potential(
+    "",
+    (
+        *((2, 0, 1.0711), (0, 2, 0.249), (1, 1, -0.2849), (3, 0, 0.1143), (0, 3, 0.3622), (0, 5, -0.2048)),
+        *((5, 1, 0.3346), (4, 2, 0.0506), (3, 3, 0.303), (2, 4, -0.2891)),
+    ),
+)
+
+
+def flood_filled(potential: Potential, energy: float, window: Window, side: int) -> tuple[np.ndarray, ...]:
+    """(side, side) x, y, whether below the energy, and whether connected with the origin, on a grid with the exits drawn."""
+    x, y = np.meshgrid(*window.pixel_centres(side, side))
+    allowed = potential.value(x, y) <= energy
+    barrier = np.zeros_like(allowed)
+    for orbit in find_lyapunov_orbits(potential, energy):
+        along, dense = np.arange(101), np.linspace(0.0, 100.0, 20 * side)
+        path = [np.interp(dense, along, axis) for axis in orbit.half_path.T]
+        columns, rows = (np.clip(((axis - x[0, 0]) / (x[0, 1] - x[0, 0])).round().astype(int), 0, side - 1) for axis in path)
+        barrier[rows, columns] = True
+    barrier = ndimage.binary_dilation(barrier, np.ones((3, 3)))
+    labels = ndimage.label(allowed & ~barrier)[0]
+    return x, y, allowed & ~barrier, labels == labels[np.unravel_index(np.argmin(np.hypot(x, y)), x.shape)]
+
+
+def test_a_start_in_an_outer_region_behind_an_exit_line_is_outside() -> None:
+    x, y, energy = -1.1685, -1.1724, 0.0649
+    py = np.sqrt(2.0 * (energy - CURLED.value(x, y)))
+    assert classify_orbits(CURLED, energy, [[x, y, 0.0, py]], t_max=10.0).fate[0] == Fate.OUTSIDE
+
+
+def test_an_outer_region_in_a_default_window_is_outside() -> None:
+    escape_map = compute_map(MapSpec(CURLED_QUINTIC, Plane.X_Y, 0.435296, (151, 151), t_max=1.0))
+    x, y = np.meshgrid(escape_map.x, escape_map.ordinate)
+    curves, places = exit_curves(CURLED_QUINTIC, 0.435296), np.column_stack([x.ravel(), y.ravel()])
+    nearest = np.argmax(places @ curves[:, [BEARING_X, BEARING_Y]].T, axis=1)
+    behind = [exit_distance(*place, curve) <= 0.0 for place, curve in zip(places, curves[nearest], strict=True)]
+    assert np.count_nonzero(behind & (escape_map.fate.ravel() == Fate.OUTSIDE)) == 349
+
+
+@pytest.mark.parametrize(
+    ("potential", "energy"),
+    [
+        (CURLED, 0.0649),
+        (CURLED_QUINTIC, 0.435296),
+        (CASES["I"], 0.12),
+        (CASES["I"], 0.3),
+        (CASES["II"], 0.17),
+        (CASES["III"], 0.26),
+        (CASES["III"], 1.0),
+    ],
+)
+def test_the_interior_is_connected_with_the_origin(potential: Potential, energy: float) -> None:
+    x, y, allowed, connected = flood_filled(potential, energy, Window(-2.0, 2.0, -2.0, 2.0), 600)
+    outside = find_outside_channels(potential, energy, x[::3, ::3], y[::3, ::3])
+    known = allowed[::3, ::3]
+    np.testing.assert_array_equal(outside[known] == 0, connected[::3, ::3][known])
+
+
+@pytest.mark.parametrize("name", ["I", "II", "III"])
+def test_a_point_beyond_a_saddle_is_outside_if_the_channel_is_open_and_if_it_is_closed(name: str) -> None:
+    potential = CASES[name]
+    x, y = (potential.saddles * 1.2).T
+    for factor in (0.99, 1.0, 1.2):
+        outside = find_outside_channels(potential, factor * potential.escape_energy, x, y)
+        np.testing.assert_array_equal(outside, 1 + np.arange(potential.channels))
+
+
+@pytest.mark.parametrize("name", ["I", "II", "III"])
+def test_an_orbit_at_rest_on_a_saddle_is_bounded_at_the_energy_of_the_saddle(name: str) -> None:
+    potential = CASES[name]
+    states = np.hstack([potential.saddles, np.zeros_like(potential.saddles)])
+    assert np.all(classify_orbits(potential, potential.escape_energy, states, t_max=1000.0).fate == Fate.BOUNDED)
+
+
+def test_outside_regions_scale_with_the_well() -> None:
+    large, energy = CASES["II"].with_parameters(epsilon=1 / 64), 0.2 * 64**2
+    x, y = np.random.default_rng(1).uniform(-1.5, 1.5, (2, 300))
+    expected = find_outside_channels(CASES["II"], 0.2, x, y)
+    np.testing.assert_array_equal(find_outside_channels(large, energy, 64 * x, 64 * y), expected)

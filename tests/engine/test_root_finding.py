@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import pytest
+from scipy import optimize
+
+from engine.root_finding import find_root
+
+FUNCTIONS: dict[str, tuple[Callable[[float], float], float, float]] = {
+    "line": (lambda x: 2.0 * x - 0.3, -1.0, 5.0),
+    "cosine": (lambda x: math.cos(x) - x, 0.0, 1.0),
+    "steep": (lambda x: math.tanh(50.0 * (x - 0.123)) - 0.5, -2.0, 3.0),
+    "root at an end": (lambda x: x, 0.0, 1.0),
+    "downward": (lambda x: 1.0 - math.exp(x - 2.0), -5.0, 40.0),
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("relative", [1e-15, 1e-6])
+def test_root_is_that_of_scipy_to_the_bit(name: str, relative: float) -> None:
+    function, low, high = FUNCTIONS[name]
+    assert find_root(function, low, high, absolute=1e-17, relative=relative) == optimize.brentq(
+        function, low, high, xtol=1e-17, rtol=relative
+    )
+
+
+def test_equal_signs_at_the_ends_are_refused() -> None:
+    with pytest.raises(ValueError, match="different signs"):
+        find_root(lambda x: x * x + 1.0, -1.0, 1.0, absolute=1e-12, relative=1e-12)
+
+
+def test_a_function_that_is_nan_is_refused() -> None:
+    with pytest.raises(ValueError, match="NaN"):
+        find_root(lambda x: x if abs(x) == 1.0 else math.nan, -1.0, 1.0, absolute=1e-12, relative=1e-12)

@@ -1,0 +1,133 @@
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Callable
+from io import BytesIO
+
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+
+from engine import (
+    CASES,
+    EnergyCurvesSpec,
+    MapSpec,
+    Orbit,
+    Plane,
+    Result,
+    compute_basin_entropy,
+    compute_birkhoff_digits,
+    compute_energy_curves,
+    compute_map,
+    compute_origin_fates,
+    compute_regularity,
+    compute_separation,
+    compute_statistics,
+    compute_trust,
+    compute_uncertainty_exponent,
+    compute_wada_test,
+    find_lyapunov_orbits,
+    find_stable_manifolds,
+    fit_decay_laws,
+    fit_escape_shares,
+    integrate_orbit,
+    judge_orbit,
+    review_potential,
+)
+from engine.service import compute_radius_envelope, exit_labels
+
+POTENTIAL, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
+SPEC = MapSpec(POTENTIAL, Plane.X_PX, 0.36, (40, 40), t_max=200.0)
+LARGEST = 100_000
+
+RESULTS: dict[str, Callable[[], Result]] = {
+    "potential": lambda: POTENTIAL,
+    "review": lambda: review_potential(POTENTIAL),
+    "map": lambda: compute_map(SPEC),
+    "regularity": lambda: compute_regularity(compute_map(SPEC)),
+    "trust": lambda: compute_trust(compute_map(SPEC)),
+    "origins": lambda: compute_origin_fates(SPEC),
+    "orbit": lambda: integrate_orbit(POTENTIAL, STATE, t_max=50.0),
+    "lyapunov": lambda: find_lyapunov_orbits(POTENTIAL, 0.36)[0],
+    "manifolds": lambda: find_stable_manifolds(POTENTIAL, 0.36, images=1),
+    "statistics": lambda: compute_statistics(compute_map(SPEC)),
+    "decay": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), SPEC.t_max),
+    "wada": lambda: compute_wada_test(*exit_labels(compute_map(SPEC).fate, bounded=False)),
+    "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20),
+    "curves": lambda: compute_energy_curves(EnergyCurvesSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36, 0.4), (20, 20), 100.0)),
+    "shares": lambda: fit_escape_shares([0.3, 0.35, 0.4, 0.45, 0.5], [20, 45, 60, 80, 85], [100] * 5),
+    "separation": lambda: compute_separation(POTENTIAL, STATE, (0.1, 0.0, 0.05, 0.60001), 20.0),
+    "envelope": lambda: compute_radius_envelope(POTENTIAL, STATE, 20.0),
+    "digits": lambda: compute_birkhoff_digits(POTENTIAL, STATE, 1e3),
+}
+PICTURELESS: dict[str, Callable[[], Result]] = {
+    "entropy": lambda: compute_basin_entropy(*exit_labels(compute_map(SPEC).fate, bounded=True)),
+    "verdict": lambda: judge_orbit(integrate_orbit(POTENTIAL, STATE, t_max=50.0)),
+}
+
+
+def shown_picture(result: Result) -> Image.Image:
+    (png,) = re.findall(r"data:image/png;base64,([^']*)", result._repr_html_())
+    return Image.open(BytesIO(base64.b64decode(png)))
+
+
+@pytest.mark.parametrize("name", RESULTS)
+class TestEveryResult:
+    def test_notebook_shows_a_light_picture(self, name: str) -> None:
+        result = RESULTS[name]()
+        with shown_picture(result) as picture:
+            colours = picture.convert("RGB").getcolors(maxcolors=picture.width * picture.height)
+        assert colours is not None
+        assert len(colours) > 20
+        assert len(result._repr_html_()) < LARGEST
+
+    def test_tables_have_the_same_columns(self, name: str) -> None:
+        result = RESULTS[name]()
+        table, dataset = result.to_pandas(), result.to_xarray()
+        variable = dataset[table.columns[-1]]
+        assert len(table) == variable.size
+        assert table.attrs.keys() == result.numbers().keys()
+
+    def test_holoviews_element_has_data(self, name: str) -> None:
+        assert len(RESULTS[name]().to_holoviews()) > 0
+
+
+@pytest.mark.parametrize("name", PICTURELESS)
+def test_result_without_a_picture_shows_its_sentence_and_its_numbers(name: str) -> None:
+    result = PICTURELESS[name]()
+    html = result._repr_html_()
+    assert "<img" not in html
+    assert all(f"<th>{number}</th>" in html for number in result.numbers())
+    with pytest.raises(TypeError, match="has no picture"):
+        result.plot(Figure().subplots())
+
+
+def test_plot_returns_axes_in_the_coordinates_of_the_map() -> None:
+    axes = compute_map(SPEC).plot(Figure().subplots(), picture="times", palette="safe")
+    assert axes.get_xlim() == (SPEC.window.x_low, SPEC.window.x_high)
+    assert axes.get_ylim() == (SPEC.window.ordinate_low, SPEC.window.ordinate_high)
+
+
+@pytest.mark.parametrize("show", ["path", "sali", "r2"])
+def test_each_picture_of_an_orbit_is_drawn(show: str) -> None:
+    figure = Figure()
+    integrate_orbit(POTENTIAL, STATE, t_max=20.0).plot(figure.subplots(), show=show)
+    drawn = [line for axes in (*figure.axes, *figure.axes[0].child_axes) for line in (*axes.lines, *axes.collections)]
+    assert drawn
+
+
+def test_invalid_options_are_named() -> None:
+    axes = Figure().subplots()
+    with pytest.raises(ValueError, match="picture='basin'"):
+        compute_map(SPEC).plot(axes, picture="basin")
+    with pytest.raises(ValueError, match="show='p'"):
+        integrate_orbit(POTENTIAL, STATE, t_max=20.0).plot(axes, show="p")
+    with pytest.raises(ValueError, match="palette='blue'"):
+        POTENTIAL.plot(axes, palette="blue")
+
+
+def test_orbit_without_potential_has_numbers_only() -> None:
+    orbit = integrate_orbit(POTENTIAL, STATE, t_max=20.0)
+    bare = Orbit(*(getattr(orbit, name) for name in list(vars(orbit))[:-1]))
+    assert "<img" not in bare._repr_html_()
