@@ -53,6 +53,7 @@ from engine.statistics.share_fits import Deviation
 from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
 from engine.sweeps.run import SweepPlan, plan_sweep
+from engine.taylor.jit.compiled_operations import compiled_operations
 from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
 from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
 from engine.trajectories.separation import LONGEST_SEPARATION
@@ -120,6 +121,7 @@ __all__ = [
     "UncertaintyExponentRequest",
     "UnresolvedMapSpec",
     "WarmupRequest",
+    "compiled_operations",
     "compute_energy_point",
     "compute_preview",
     "compute_radius_envelope",

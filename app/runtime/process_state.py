@@ -11,7 +11,7 @@ from typing import Any
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.settings import Settings, read_settings
-from engine.service import Jobs
+from engine.service import Jobs, compiled_operations
 
 # Waiting calls per thread above which the process is overloaded; the map of one session queues two.
 _MOST_WAITING = 4
@@ -51,6 +51,7 @@ class ProcessState:
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
 
     def __post_init__(self) -> None:
+        compiled_operations.most = self.settings.compiled_operations
         self.jobs = Jobs(
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,

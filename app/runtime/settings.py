@@ -78,6 +78,8 @@ class Settings:
         Maximum number of concurrent jobs of a session.
     most_sessions
         Maximum number of sessions; further requests for the page get status 503.
+    compiled_operations
+        Maximum number of compiled operations of the integrators of all potentials, about 4 kB each; code is never unloaded.
     cache_bytes
         Size limit of the result cache, in bytes.
     memory_ceiling
@@ -104,6 +106,7 @@ class Settings:
     most_orbits: int = _setting(4 * MIB, _integer(1000, 10**9))
     jobs_per_session: int = _setting(MOST_REQUESTS, _integer(1, 1000))
     most_sessions: int = _setting(200, _integer(1, 100_000))
+    compiled_operations: int = _setting(250_000, _integer(50_000, 10**9))
     cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})

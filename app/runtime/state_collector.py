@@ -10,6 +10,7 @@ from prometheus_client.registry import Collector
 from app.runtime.health import not_ready_reason, resident_bytes
 from app.runtime.metrics import NAMESPACE
 from app.runtime.process_state import ProcessState
+from engine.service import compiled_operations
 
 
 class StateCollector(Collector):
@@ -44,6 +45,8 @@ def _job_metrics(state: ProcessState) -> Iterator[Metric]:
         ended.add_metric([outcome], getattr(stats, outcome))
     yield ended
     yield _gauge("cache_bytes", "Size of the result cache", stats.cache_bytes)
+    yield _gauge("compiled_operations", "Compiled operations of integrators", compiled_operations.used)
+    yield _gauge("compiled_operations_limit", "Maximum number of compiled operations", state.settings.compiled_operations)
     yield _gauge("cache_limit_bytes", "Size limit of the result cache", stats.cache_limit)
     yield _gauge("orbits_held", "Orbits of large running jobs", stats.orbits_held)
     yield _gauge("orbits_limit", "Maximum number of orbits of large running jobs", stats.orbits_limit)

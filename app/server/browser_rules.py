@@ -113,7 +113,7 @@ def _check_range(changed: Range1d, **values: float) -> None:
 def _check_change(model: Model, name: str, value: Any) -> None:
     place = f"{type(model).__name__}.{name}"
     checks = [checks[name] for kind, checks in _EDITABLE.items() if isinstance(model, kind) and name in checks]
-    if not checks:
+    if not checks or name not in model.properties():
         raise RefusedMessageError(f"{place} is not a property that a browser changes")
     if not model.lookup(name).property.is_valid(value) or not all(check(model, value) for check in checks):
         raise RefusedMessageError(f"{place} cannot be {_quote(value)}")

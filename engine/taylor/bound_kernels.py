@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
+from engine.taylor.jit.compiled_operations import compiled_operations
 from engine.taylor.jit.decorator import kernel
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.jit.llvm_emitter import straight_line, table_reader
@@ -84,6 +85,7 @@ class GeneratedKernel:
         return self._address
 
     def _compile(self) -> int:
+        compiled_operations.add(self.operations)
         self._dispatcher.compile(self._signature)
         self._dispatcher.disable_compile()
         compiled = self._dispatcher.get_compile_result(self._signature)

@@ -117,9 +117,9 @@ async def open_page(address: str) -> None:
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    monkeypatch.setenv("ESCAPE_EXPLORER_SESSION_SECONDS", "5")
+    monkeypatch.setenv("ESCAPE_EXPLORER_CACHE_BYTES", str(32 * 2**20))
     log = tmp_path / "log"
-    with running_app(log) as app:
+    with running_app(log, "--unused-session-lifetime", "1000", "--check-unused-sessions", "500") as app:
         yield app, log
 
 

@@ -85,6 +85,7 @@ def test_properties_of_components_follow_their_parameters() -> None:
         ("running", [True], [0, "yes"]),
         ("steps", [], [[]]),
         ("name", [], ["x"]),
+        ("nothing", [], [1]),
         ("tags", [], [[]]),
     ]:
         assert [value for value in accepted if not is_accepted(document, change(data, name, value))] == []
