@@ -42,13 +42,6 @@ _MOST_STEPS = 400
 _CLOSED_HALF_WIDTH = 1e-3
 # The lines beyond the ends of an exit are sampled from this |s| − 1 on.
 _FIRST_BEYOND, _SAMPLES_BEYOND = 1e-3, 400
-# Column k holds the power series of the Chebyshev polynomial T_k.
-_CHEBYSHEV_TO_POWER = np.column_stack(
-    [
-        np.pad(chebyshev.cheb2poly(row[: k + 1]), (0, events.CURVE_DEGREE - k))
-        for k, row in enumerate(np.eye(events.CURVE_DEGREE + 1))
-    ]
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,13 +252,11 @@ def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: n
     fit = np.linalg.lstsq(basis, u, rcond=None)[0]
     if np.max(np.abs(basis @ fit - u)) > _LARGEST_FIT_ERROR:
         return None
-    coefficients = _CHEBYSHEV_TO_POWER @ fit
-    degrees = np.arange(events.CURVE_DEGREE + 1)
-    end_slopes = [float(np.sum(coefficients * degrees * end ** (degrees - 1))) for end in (-1.0, 1.0)]
+    end_slopes = chebyshev.chebval([-1.0, 1.0], chebyshev.chebder(fit))
     curve = _straight_curve(saddle, outward)
     curve[events.OPEN] = 1.0
     curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
-    curve[events.COEFFICIENTS :] = coefficients
+    curve[events.COEFFICIENTS :] = fit
     return curve
 
 
@@ -276,7 +267,7 @@ def _find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float
     farthest = _LARGEST_OFFSET * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
     beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
     for end, slope in ((-1.0, curve[events.SLOPE_LOW]), (1.0, curve[events.SLOPE_HIGH])):
-        u = np.polynomial.polynomial.polyval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
+        u = chebyshev.chebval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
         q = curve[events.MIDDLE] + curve[events.HALF_WIDTH] * end * (1.0 + beyond)
         x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
         reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
@@ -321,7 +312,7 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
     channels, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), channels, columns)
     s = np.linspace(-1.0, 1.0, 201)
-    lowest = np.polynomial.polynomial.polyval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))
+    lowest = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))
     outward = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
     saddles = rows[0, :, events.SADDLE_X : events.SADDLE_Y + 1]
     length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*saddles.T).tolist()])

@@ -17,7 +17,8 @@ MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 # Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
 BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
 
-CURVE_DEGREE = 16
+# Degree of the polynomial f, a sum of Chebyshev polynomials.
+CURVE_DEGREE = 40
 CURVE_COLUMNS = COEFFICIENTS + CURVE_DEGREE + 1
 
 # Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
@@ -45,10 +46,12 @@ def exit_distance(x, y, curve):
     elif s > 1.0:
         beyond = curve[SLOPE_HIGH] * (s - 1.0)
         s = 1.0
-    f = curve[COEFFICIENTS + CURVE_DEGREE]
-    for k in range(CURVE_DEGREE - 1, -1, -1):
-        f = f * s + curve[COEFFICIENTS + k]
-    return u - (f + beyond)
+    # Clenshaw's recurrence.
+    f = 0.0
+    last = 0.0
+    for k in range(CURVE_DEGREE, 0, -1):
+        f, last = 2.0 * s * f - last + curve[COEFFICIENTS + k], f
+    return u - (s * f - last + curve[COEFFICIENTS] + beyond)
 
 
 @subroutine

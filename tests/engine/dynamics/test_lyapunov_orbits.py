@@ -181,3 +181,10 @@ def test_exits_of_a_separable_well_are_straight() -> None:
 def test_no_gates_without_channels() -> None:
     harmonic = Potential("harmonic", ((2, 0, 0.5), (0, 2, 0.5)))
     assert exit_gates(exit_curves(harmonic, 1.0)[None]).shape == (0, 3)
+
+
+def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None:
+    # Polynomials of degree 16 deviate from this orbit by 2e-10.
+    terms = ((2, 0, 1.1195), (0, 2, 0.3893), (1, 5, -0.6884), (2, 1, 0.8214), (4, 0, -0.2547), (3, 0, 0.5214))
+    potential = Potential("", terms)
+    assert len(find_lyapunov_orbits(potential, 2.0 * potential.escape_energy)) == 2

@@ -135,3 +135,26 @@ def test_review_is_fast(formula: str) -> None:
     begin = time.process_time()
     review_potential(potential)
     assert time.process_time() - begin < 3.0
+
+
+@pytest.mark.parametrize(
+    ("terms", "channels", "escape_energy"),
+    [
+        # Saddles at x = −1 and 150.
+        (((2, 0, 0.5), (0, 2, 0.5), (3, 0, (1 - 1 / 150) / 3), (4, 0, -1 / 600)), 2, 1 / 6 + 1 / 1800),
+        # A well 140 times as long as wide.
+        (((2, 0, 0.5), (0, 2, 0.5), (1, 1, -0.9999), (2, 2, -1.0)), 4, 2.5e-9),
+        # Saddles at (0, 1/9) and (33.3, 0).
+        (((2, 0, 0.5), (0, 2, 0.5), (3, 0, -0.01), (0, 3, -3.0)), 2, 1 / 486),
+        # ½y² + ½x²(1 − xy)² tends to 0 along xy = 1, where rounding errors exceed its slope.
+        (((0, 2, 0.5), (2, 0, 0.5), (3, 1, -1.0), (4, 2, 0.5)), 2, 0.25),
+    ],
+    ids=["far apart", "narrow", "far saddle", "valley"],
+)
+def test_unusual_wells_are_accepted_with_all_exits(
+    terms: tuple[tuple[int, int, float], ...], channels: int, escape_energy: float
+) -> None:
+    review = review_potential(Potential("", terms))
+    assert review.refusal is None
+    assert review.channels == channels
+    assert review.escape_energy == pytest.approx(escape_energy, rel=1e-9)
