@@ -149,7 +149,8 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
     def sides(line: np.ndarray, points: np.ndarray) -> np.ndarray:
         """(segments, points) on which side of each segment of a line the points lie."""
         along, apart = np.diff(line, axis=0)[:, None], points - line[:-1, None]
-        return along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+        left: np.ndarray = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+        return left
 
     first, second = sides(one, other), sides(other, one).T
     return bool(np.any((first[:, 1:] != first[:, :-1]) & (second[1:] != second[:-1])))
