@@ -145,9 +145,10 @@ def test_random_messages_are_survived(served: tuple[RunningApp, Path]) -> None:
     assert tracebacks(log) == []
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [100_000])
-def test_a_hundred_thousand_random_messages_leave_no_memory_behind(count: int, served: tuple[RunningApp, Path]) -> None:
+@pytest.mark.parametrize(
+    "count", [pytest.param(5_000, marks=pytest.mark.slow), pytest.param(100_000, marks=pytest.mark.exhaustive)]
+)
+def test_many_random_messages_leave_no_memory_behind(count: int, served: tuple[RunningApp, Path]) -> None:
     app, log = served
     attack(app, count // 10, seed=100)
     early = app.figure("resident_memory_bytes")
