@@ -71,7 +71,7 @@ def test_certified_orbits_are_bounded_for_ever_in_all_texts(open_explorer: OpenE
 
 
 def test_a_link_restores_the_box_and_says_what_to_do_about_a_problem(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link="?case=I&h=0.25&t_max=7&resolution=1.13e2&box=-0.1,0.2,-0.05,0.3&analysis=statistics")
+    explorer = open_explorer(link="?case=I&h=0.25&t_max=7&resolution=1.12e2&box=-0.1,0.2,-0.05,0.3&analysis=statistics")
     expect(explorer.text("Ignored t_max=7: choose 100, 1 000, 10 000, 100 000 or 1 000 000.")).to_be_visible()
     expect(explorer.text("Interior starts in the box drawn on the maps")).to_be_visible()
     assert explorer.model_data("box")["left"] == [-0.1]

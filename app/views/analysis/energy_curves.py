@@ -14,7 +14,7 @@ from bokeh.plotting import figure
 from app.views.components.chart_hover import chart_hover
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.legends import legend
-from app.views.components.plots import set_decades, set_range, square_figure
+from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
 from app.views.components.widgets import button
 from engine import EnergyCurves
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
@@ -146,7 +146,12 @@ class EnergyCurvesView:
             "escapes": [_key({"mean": MEASURED, "median": _SECOND})],
         }
         return [
-            pn.Column(pn.pane.Bokeh(plot, margin=0), *below[name], margin=0, sizing_mode="stretch_width")
+            pn.Column(
+                FigurePane(plot, {Tap: lambda event: self.open_near(event.x)}),
+                *below[name],
+                margin=0,
+                sizing_mode="stretch_width",
+            )
             for name, plot in self._draw().items()
         ]
 
@@ -160,7 +165,6 @@ class EnergyCurvesView:
         }
         for plot in figures.values():
             plot.add_layout(self._here)
-            plot.on_event(Tap, lambda event: self.open_near(event.x))
         shares = figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         values = {"$snap_x": "number", "$snap_y": "percent"}
         figures["shares"].add_tools(chart_hover(_SHARES_TEXT, values, [shares], line_policy="nearest"))

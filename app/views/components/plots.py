@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
+from types import MappingProxyType
 from typing import Any
 
+import panel as pn
+from bokeh.events import Event
+from bokeh.model import Model
 from bokeh.models import Range1d
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
@@ -40,6 +44,27 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     plot.css_classes = [name]
     plot.elements = [HTML(html=title_with_help(title, name))]
     return plot
+
+
+class FigurePane(pn.pane.Bokeh):
+    """A figure whose events reach the server as often as it is on the page; Panel removes the callbacks when it leaves the page.
+
+    Parameters
+    ----------
+    plot
+        The figure.
+    events
+        Callback of each event.
+    """
+
+    def __init__(self, plot: figure, events: Mapping[type[Event], Callable[[Any], None]] = MappingProxyType({})) -> None:
+        super().__init__(plot, margin=0)
+        self._events = events
+
+    def _get_model(self, *arguments: Any, **options: Any) -> Model:
+        for event, callback in self._events.items():
+            self.object.on_event(event, callback)
+        return super()._get_model(*arguments, **options)
 
 
 @contextmanager

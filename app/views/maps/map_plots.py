@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-from bokeh.events import DoubleTap, RangesUpdate, SelectionGeometry, Tap
+from bokeh.events import DoubleTap, Event, PointEvent, RangesUpdate, SelectionGeometry, Tap
 from bokeh.models import (
     BoxSelectTool,
     BoxZoomTool,
@@ -30,7 +30,7 @@ from bokeh.plotting import figure
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.numbers import percent
-from app.views.components.plots import square_figure
+from app.views.components.plots import FigurePane, square_figure
 from app.views.components.widgets import SegmentedControl
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_legend import MapLegend
@@ -260,10 +260,13 @@ class MapsView:
         self._gesture_timer = None
         self._on_rest()
 
-    def _boxed(self, event: SelectionGeometry, on_box: Callable[[Window], None]) -> None:
+    def _tapped(self, event: PointEvent) -> None:
+        self._on_tap(*self.snapped(event.x, event.y))
+
+    def _boxed(self, event: SelectionGeometry) -> None:
         edges = event.geometry
         if event.final and edges["x0"] < edges["x1"] and edges["y0"] < edges["y1"]:
-            on_box(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
+            self._on_box(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
 
     def _go_to(self, window: Window) -> None:
         x, y = self._ranges
@@ -314,13 +317,15 @@ class MapsView:
         plot.toolbar = self._toolbar
         self._paint(name)
         # Two quick clicks, even at two places, are one tap and one double tap.
-        for tap in (Tap, DoubleTap):
-            plot.on_event(tap, lambda event: self._on_tap(*self.snapped(event.x, event.y)))
-        plot.on_event(SelectionGeometry, lambda event: self._boxed(event, self._on_box))
+        events: dict[type[Event], Callable[[Any], None]] = {
+            Tap: self._tapped,
+            DoubleTap: self._tapped,
+            SelectionGeometry: self._boxed,
+        }
         if name == "curves":
             # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
-            plot.on_event(RangesUpdate, lambda event: self._end_gesture())
-        self._panes[name] = pn.pane.Bokeh(plot, margin=0)
+            events[RangesUpdate] = lambda event: self._end_gesture()
+        self._panes[name] = FigurePane(plot, events)
 
     def _paint(self, name: str) -> None:
         """Add the images and lines of a picture, from back to front."""

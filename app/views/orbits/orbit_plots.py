@@ -22,7 +22,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.views.components.curve_layers import CurveLayers
-from app.views.components.plots import set_decades, set_range, square_figure
+from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
 from engine.service import format_number
 from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
@@ -69,7 +69,8 @@ class OrbitPlots:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the figures: path, SALI, R² and Lyapunov exponent."""
-        return [pn.pane.Bokeh(plot, margin=0) for plot in (self._draw_path(), *self._draw_histories())]
+        events = {SelectionGeometry: self._brushed, DoubleTap: lambda event: self._on_brush(None)}
+        return [FigurePane(self._draw_path()), *(FigurePane(plot, events) for plot in self._draw_histories())]
 
     def begin_touch(self) -> None:
         """The page is used by touch: dragging over a history scrolls the page."""
@@ -138,8 +139,6 @@ class OrbitPlots:
         }
         for name, plot in plots.items():
             plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
-            plot.on_event(SelectionGeometry, self._brushed)
-            plot.on_event(DoubleTap, lambda event: self._on_brush(None))
             plot.add_glyph(self._histories[name], MultiLine(**self._style()))
             plot.add_layout(self._now)
         plots["r2"].xaxis.formatter = BasicTickFormatter(use_scientific=False)
