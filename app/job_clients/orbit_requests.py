@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -43,16 +44,21 @@ class ChosenOrbit:
 
 
 class OrbitRequests:
-    """Orbits of one session; `show(orbits)` is called after every change, under the session's lock."""
+    """Orbits of one session; `show(orbits)` is called after changes, under the session's lock.
+
+    `latest` wraps a function so that of the calls that wait only the latest runs: results that arrive together are shown once.
+    """
 
     def __init__(
-        self, state: ViewState, jobs: JobSubmitter, show: Callable[[tuple[ChosenOrbit, ...]], None], locked: Locked
+        self, state: ViewState, jobs: JobSubmitter, show: Callable[[tuple[ChosenOrbit, ...]], None], latest: Locked
     ) -> None:
         self._state, self._jobs, self._show = state, jobs, show
         self._subscriptions: dict[OrbitRequest, Subscription | None] = {}
         self._results: dict[OrbitRequest, OrbitCurves | str] = {}
         self._shown: tuple[ChosenOrbit, ...] = ()
-        self._deliver = locked(self._on_result)
+        # Results that are not shown yet; threads append to it.
+        self._arrived: deque[tuple[OrbitRequest, OrbitCurves | str]] = deque()
+        self._show_arrived = latest(self._take_arrived)
         state.param.watch(lambda *events: self.follow(), ["starts", *SYSTEM, "plane", "energy", "t_max"])
 
     def follow(self) -> None:
@@ -84,11 +90,17 @@ class OrbitRequests:
         if spec in self._subscriptions:
             self._subscriptions[spec] = subscription
 
-    def _on_result(self, spec: OrbitRequest, result: OrbitCurves | str) -> None:
-        if spec in self._subscriptions:
-            del self._subscriptions[spec]
-            self._results[spec] = result
-            self._notify()
+    def _deliver(self, spec: OrbitRequest, result: OrbitCurves | str) -> None:
+        self._arrived.append((spec, result))
+        self._show_arrived()
+
+    def _take_arrived(self) -> None:
+        while self._arrived:
+            spec, result = self._arrived.popleft()
+            if spec in self._subscriptions:
+                del self._subscriptions[spec]
+                self._results[spec] = result
+        self._notify()
 
     def _notify(self) -> None:
         orbits = tuple(self._orbit_of(start) for start in self._state.starts)

@@ -77,7 +77,7 @@ class OrbitPresenter:
         self.playback = Playback(latest(self.plots.set_time))
         self._separation_plot: SeparationPlot = SeparationPlot()
         self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot)
-        self._orbits = OrbitRequests(state, jobs, self._show, locked)
+        self._orbits = OrbitRequests(state, jobs, self._show, latest)
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)

@@ -65,13 +65,17 @@ class Markers:
             self._draw("starts")
         x, y = ([float(start[axis]) for start in starts] for axis in (0, 1))
         numbers = list(range(len(starts)))
-        self._starts.data = {"x": x, "y": y, "slot": numbers, "text": [str(number + 1) for number in numbers]}
+        marks = {"x": x, "y": y, "slot": numbers, "text": [str(number + 1) for number in numbers]}
+        if marks != dict(self._starts.data):
+            self._starts.data = marks
 
     def show_sections(self, sections: Sequence[np.ndarray]) -> None:
         """Draw the section points of each orbit, arrays of shape (n, 2)."""
         shown = [points[:MOST_SECTION_POINTS] for points in sections]
         if any(len(points) for points in shown):
             self._draw("sections")
+        elif not len(self._sections.data["x"]):
+            return
         points = np.concatenate([NO_POINTS, *shown]).astype(np.float32)
         slot = np.repeat(np.arange(len(shown), dtype=np.uint8), [len(points) for points in shown])
         self._sections.data = {"x": points[:, 0], "y": points[:, 1], "slot": slot}
