@@ -156,8 +156,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
     }  # fmt: skip
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [200])
+@pytest.mark.parametrize("count", [pytest.param(20, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.exhaustive)])
 def test_the_page_shows_the_state_of_its_address(open_explorer: Callable[..., ExplorerPage], count: int) -> None:
     chance = random.Random(count)
     explorer = open_explorer(link=OPENED)
