@@ -8,11 +8,14 @@ WORKDIR /srv/escape-explorer
 # Install the dependencies before copying the sources, so that this layer is cached when only the sources change.
 COPY pyproject.toml README.md LICENSE ./
 RUN uv sync --no-dev --no-install-project
+COPY hatch_build.py ./
 COPY engine engine
+COPY plots plots
 COPY app app
 COPY reproduction reproduction
 COPY cli cli
-RUN uv sync --no-dev && /opt/venv/bin/python -m compileall -q app cli engine reproduction
+COPY escape_explorer escape_explorer
+RUN uv sync --no-dev && /opt/venv/bin/python -m compileall -q app cli engine escape_explorer plots reproduction
 
 FROM ${BASE}
 COPY --from=build /opt/venv /opt/venv
