@@ -157,9 +157,7 @@ class OrbitPresenter:
         """Restrict the curves to an interval of time; None shows the whole duration."""
         drawings = [one.drawing for one in self._shown]
         if interval is None:
-            self._interval, self._restricted = None, []
-            with pn.io.hold():
-                self._draw()
+            self._on_restricted(drawings, None, [])
         else:
             # Curves of long orbits take up to a second.
             pn.state.execute(partial(self._restrict, drawings, interval))
@@ -168,7 +166,7 @@ class OrbitPresenter:
         self._show_restricted(drawings, interval, await asyncio.to_thread(_restrict_all, drawings, interval))
 
     def _on_restricted(
-        self, drawings: list[OrbitCurves | None], interval: Interval, restricted: list[OrbitCurves | None]
+        self, drawings: list[OrbitCurves | None], interval: Interval | None, restricted: list[OrbitCurves | None]
     ) -> None:
         # The orbits may have changed meanwhile.
         if drawings == [one.drawing for one in self._shown]:

@@ -33,6 +33,9 @@ IMAGES = 3
 IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
 """Images of the stable manifolds that can be drawn."""
 
+DEFAULT_SIDE = 224
+"""Columns and rows of the map at the opening."""
+
 RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}
 
 
@@ -87,7 +90,7 @@ class ViewState(param.Parameterized):
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
     energy = param.Number(default=ENERGIES["I"].first, doc="h; not used on (x, h)")
     t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
-    resolution = param.Selector(default=224, objects=list(RESOLUTION_CHOICES.values()))
+    resolution = param.Selector(default=DEFAULT_SIDE, objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(
         class_=Window, default=None, allow_None=True, doc="part of the plane; None for the whole interior"
     )
@@ -109,7 +112,7 @@ class ViewState(param.Parameterized):
 
     def __init__(self, **values: Any) -> None:
         t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
-        super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(224, resolutions[-1]))
+        super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(DEFAULT_SIDE, resolutions[-1]))
         self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
         self.param.update(**values)
 

@@ -19,6 +19,9 @@ from engine.validation import LARGEST_NUMBER, checked_array, checked_number, che
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
 
+DEFAULT_RESOLUTION = (224, 224)
+"""Columns and rows of a map by default: even, so that no pixel lies on a line of symmetry."""
+
 FINEST_PIXEL = 1e-15
 """Smallest distance of neighbouring pixels in units of the well: a few units in the last place of coordinates of order 1."""
 
@@ -59,7 +62,7 @@ class MapSpec:
     potential: Potential
     plane: Plane
     energy: float | tuple[float, float]
-    resolution: tuple[int, int] = (224, 224)
+    resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: Window = None  # type: ignore[assignment]  # None is replaced in __post_init__
     t_max: float = 1e5
     certify: bool = True

@@ -14,7 +14,7 @@ from engine.dynamics.fates import Fate
 from engine.dynamics.planes import Plane, Window
 from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap, describe_codes
-from engine.maps.spec import MapSpec
+from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.potentials.potential import Potential
 from engine.progress import shows_progress
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
@@ -32,7 +32,7 @@ def compute_crossing_statistics(
     potential: Potential,
     plane: Plane,
     energies: Sequence[float],
-    resolution: tuple[int, int] = (224, 224),
+    resolution: tuple[int, int] = DEFAULT_RESOLUTION,
     t_max: float = 1e5,
     *,
     window: Window | None = None,

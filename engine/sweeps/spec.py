@@ -10,7 +10,7 @@ import numpy as np
 
 from engine.dynamics.planes import Plane, Window
 from engine.maps.compute import LARGEST_RUN
-from engine.maps.spec import MapSpec
+from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.potentials.potential import Potential
 from engine.sweeps.energy_grid import checked_sweep
 
@@ -55,7 +55,7 @@ class SweepSpec:
     potential: Potential
     plane: Plane
     energies: tuple[float, ...]
-    resolution: tuple[int, int] = (224, 224)
+    resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: Window | None = None
     t_max: float = 1e5
     certify: bool = True
