@@ -58,14 +58,14 @@ class FairScheduler:
         self._pool = pool or default_executor()
         self.threads = count_workers(self._pool)
         self._lock = threading.Lock()
-        # By client, in round-robin order; clients without pending calls are removed.
-        self._pending: OrderedDict[Hashable, deque[_Call]] = OrderedDict()
+        # By client, in round-robin order, then by executor, oldest first; those without pending calls are removed.
+        self._pending: OrderedDict[Hashable, dict[QueueExecutor, deque[_Call]]] = OrderedDict()
+        # Threads of the pool that run calls.
+        self._active_threads = 0
         self._running_long_calls = 0
         self._background_paused = False
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
-        # Pool tasks that ended without a call while background calls were paused.
-        self._unused_runs = 0
 
     def executor(self, client: Hashable, priority: Callable[[], Priority]) -> QueueExecutor:
         """Create an executor for one job.
@@ -83,7 +83,7 @@ class FairScheduler:
     def pending_calls(self) -> int:
         """Number of calls that no thread has started."""
         with self._lock:
-            return sum(map(len, self._pending.values()))
+            return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
 
     def pause_background(self, paused: bool) -> None:
         """Pause or resume `Priority.BACKGROUND` calls, to relieve an overloaded process.
@@ -92,60 +92,73 @@ class FairScheduler:
         about every 0.1 s during the pause.
         """
         with self._lock:
-            self._background_paused = paused
-            runs = min(1, self._unused_runs) if paused else self._unused_runs
-            self._unused_runs -= runs
-        for _ in range(runs):
-            self._pool.submit(self._run_next)
+            resumed, self._background_paused = self._background_paused and not paused, paused
+        if resumed or paused:
+            self._start_threads(self.threads if resumed else 1)
 
     def add(self, call: _Call) -> None:
         """Queue a call."""
         with self._lock:
-            self._pending.setdefault(call.executor.client, deque()).append(call)
-        self._pool.submit(self._run_next)
+            self._pending.setdefault(call.executor.client, {}).setdefault(call.executor, deque()).append(call)
+        self._start_threads(1)
 
     def cancel_futures(self, executor: QueueExecutor) -> None:
         """Cancel the calls of an executor that no thread has started."""
         with self._lock:
-            cancelled = [call for call in self._pending.get(executor.client, ()) if call.executor is executor]
-            for call in cancelled:
-                self._remove(call)
+            cancelled = self._pending.get(executor.client, {}).pop(executor, ())
+            self._forget_if_empty(executor.client)
         for call in cancelled:
             call.future.cancel()
             # Wakes the threads that wait for the future.
             call.future.set_running_or_notify_cancel()
 
-    def _run_next(self) -> None:
-        """Run the next eligible call, if any. The pool holds one task of this kind per pending call."""
+    def _start_threads(self, most: int) -> None:
+        """Let up to `most` more threads run calls, if calls are pending."""
         with self._lock:
-            chosen = self._take_next()
-            if chosen is None:
-                # If not paused, the pending calls are long ones, and a running long call submits the next run when it ends.
-                self._unused_runs += self._background_paused
-                return
-        call, priority = chosen
-        begun = time.monotonic()
-        try:
+            count = min(most, self.threads - self._active_threads) if self._pending else 0
+            self._active_threads += count
+        for _ in range(count):
+            self._pool.submit(self._run_calls)
+
+    def _run_calls(self) -> None:
+        """Run calls until none may start."""
+        while chosen := self._take_next():
+            call, priority = chosen
+            begun = time.monotonic()
             call.run()
-        finally:
             if priority is Priority.LONG_CALL:
-                with self._lock:
-                    self._running_long_calls -= 1
-                    now = time.monotonic()
-                    self._next_long_call = now + _PAUSE_PER_LONG_CALL * (now - begun)
-                self._pool.submit(self._run_next)
+                self._end_long_call(time.monotonic() - begun)
+
+    def _end_long_call(self, duration: float) -> None:
+        with self._lock:
+            self._running_long_calls -= 1
+            self._next_long_call = time.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
-        for priority in filter(self._may_start, Priority):
-            for client, calls in self._pending.items():
-                for call in calls:
-                    if call.executor.priority() is priority:
-                        self._remove(call)
-                        if client in self._pending:
-                            self._pending.move_to_end(client)
-                        self._running_long_calls += priority is Priority.LONG_CALL
-                        return call, priority
-        return None
+        """The next call that may start; without one, the thread is no longer active."""
+        with self._lock:
+            chosen = self._find_next()
+            if chosen is None:
+                self._active_threads -= 1
+                return None
+            executor, priority = chosen
+            self._running_long_calls += priority is Priority.LONG_CALL
+            queues = self._pending[executor.client]
+            call = queues[executor].popleft()
+            if not queues[executor]:
+                del queues[executor]
+            self._pending.move_to_end(executor.client)
+            self._forget_if_empty(executor.client)
+            return call, priority
+
+    def _find_next(self) -> tuple[QueueExecutor, Priority] | None:
+        candidates = [(executor, executor.priority()) for queues in self._pending.values() for executor in queues]
+        priority = min((priority for _, priority in candidates if self._may_start(priority)), default=None)
+        return next((candidate for candidate in candidates if candidate[1] is priority), None)
+
+    def _forget_if_empty(self, client: Hashable) -> None:
+        if not self._pending.get(client, True):
+            del self._pending[client]
 
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
@@ -155,12 +168,6 @@ class FairScheduler:
         if self._background_paused:
             return self._running_long_calls == 0 and time.monotonic() >= self._next_long_call
         return self._running_long_calls < max(self.threads - 1, 1)
-
-    def _remove(self, call: _Call) -> None:
-        client = call.executor.client
-        self._pending[client].remove(call)
-        if not self._pending[client]:
-            del self._pending[client]
 
 
 class QueueExecutor(Executor):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from typing import Any
 
 import pytest
 
@@ -152,3 +153,30 @@ def test_paused_background_calls_wait_and_others_run() -> None:
     assert not wait(background, 0.2).done
     recorder.scheduler.pause_background(False)
     assert not wait(background, SECONDS).not_done
+
+
+def test_calls_of_all_clients_run_after_a_pause() -> None:
+    recorder = Recorder(threads=2)
+    recorder.released.set()
+    recorder.scheduler.pause_background(True)
+    calls = [call for name in "abc" for call in recorder.submit(recorder.executor(name), *(f"{name}{n}" for n in range(50)))]
+    recorder.scheduler.pause_background(False)
+    assert not wait(calls, SECONDS).not_done
+    assert len(recorder.order) == 150
+
+
+def test_the_pool_has_no_more_tasks_than_threads() -> None:
+    class CountingPool(ThreadPoolExecutor):
+        submitted = 0
+
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            self.submitted += 1
+            return super().submit(fn, *args, **kwargs)
+
+    pool = CountingPool(2)
+    scheduler, released = FairScheduler(pool), threading.Event()
+    executor = scheduler.executor("a", lambda: Priority.BACKGROUND)
+    calls = [executor.submit(released.wait, SECONDS) for _ in range(100)]
+    assert pool.submitted == 2
+    released.set()
+    assert not wait(calls, SECONDS).not_done
