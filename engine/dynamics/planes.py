@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -208,7 +209,13 @@ def default_window(potential: Potential, plane: Plane, energy: float | tuple[flo
     ValueError
         If an energy is out of range, or there is no interior at this energy.
     """
-    highest, plane, units = _checked_highest_energy(energy), Plane(plane), potential.units
+    _checked_highest_energy(energy)
+    return _default_window(potential, Plane(plane), tuple(energy) if isinstance(energy, tuple) else float(energy))
+
+
+@functools.lru_cache(maxsize=1024)
+def _default_window(potential: Potential, plane: Plane, energy: float | tuple[float, float]) -> Window:
+    highest, units = _checked_highest_energy(energy), potential.units
     # An error about the exits is to name the energy as it is given.
     find_lyapunov_orbits(potential, highest)
     well, well_energy = potential.in_well_units, highest / units.energy

@@ -8,7 +8,7 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.models import InlineStyleSheet
-from panel.theme.base import Design, Inherit
+from panel.theme.base import Design, Inherit, Theme
 from panel.viewable import Viewable
 
 THEME_KEY = "escape-explorer-theme"
@@ -23,13 +23,22 @@ def theme_css() -> str:
     return _STYLESHEET.read_text(encoding="utf-8")
 
 
+class PlainTheme(Theme):
+    """A theme without stylesheets of its own; Panel's themes look for their files at each change of a component."""
+
+    _name = "default"
+
+
 class ExplorerDesign(Design):
     """Gives each component of a page the stylesheet, as one Bokeh model that they share."""
 
     modifiers = {Viewable: {"stylesheets": [Inherit, "theme"]}}  # noqa: RUF012
+    _themes = {"default": PlainTheme, "dark": PlainTheme}  # noqa: RUF012
 
     @classmethod
     def _patch_modifiers(cls, doc: Document | None, modifiers: dict[str, Any], cache: dict[str, Any] | None) -> None:
         if "stylesheets" in modifiers:
             sheets = cache if cache is not None else {}
-            modifiers["stylesheets"] = [sheets.setdefault("theme", InlineStyleSheet(css=theme_css()))]
+            if "theme" not in sheets:
+                sheets["theme"] = InlineStyleSheet(css=theme_css())
+            modifiers["stylesheets"] = [sheets["theme"]]

@@ -179,7 +179,7 @@ class OrbitPlots:
         window, (x, y) = drawn.window, self._place
         outlined = (potential, drawn.orbit.energy, self._palette)
         if outlined != self._outlined:
-            self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy))
+            self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy, window=window))
             self._outlined = outlined
         for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
             set_range(edges, low, high)
