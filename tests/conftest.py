@@ -16,7 +16,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
 TIMEOUT_MS = 30_000
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=25, database=None)
 settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
@@ -28,7 +28,7 @@ def chromium() -> Iterator[Browser]:
     """A running Chromium; without one, browser tests are skipped, or fail in CI."""
     path = next(filter(None, map(shutil.which, BROWSERS)), None)
     if path is None:
-        message = f"no browser: none of {', '.join(BROWSERS)} is on PATH (Debian: apt-get install chromium)"
+        message = f"no browser: none of {', '.join(BROWSERS)} is on PATH (Debian: apt-get install chromium-headless-shell)"
         if os.environ.get("CI"):
             pytest.fail(message)
         pytest.skip(message)

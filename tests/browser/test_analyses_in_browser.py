@@ -50,6 +50,7 @@ def test_doubtful_pixels_are_those_of_the_engine_and_follow_the_switch(explorer:
     explorer.wait_for_data("doubts", "data.doubt.length == 0")
 
 
+@pytest.mark.slow
 def test_manifolds_lie_on_the_section_and_follow_the_energy(explorer: ExplorerPage) -> None:
     switch(explorer, "Stable manifolds")
     explorer.wait_for_data("manifolds", "data.xs.length > 2")

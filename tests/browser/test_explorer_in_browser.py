@@ -40,7 +40,7 @@ def test_the_first_map_is_that_of_the_engine(shared: ExplorerPage, first_map: Es
     assert Fate.FAILED not in np.unique(shared.column("fate"))
 
 
-@pytest.mark.parametrize(("case", "channels"), [("II", 3), ("III", 4)])
+@pytest.mark.parametrize(("case", "channels"), [pytest.param("II", 3, marks=pytest.mark.slow), ("III", 4)])
 def test_the_case_can_be_changed(explorer: ExplorerPage, case: str, channels: int) -> None:
     explorer.pick(case)
     explorer.wait_for_view(f"case={case}&")

@@ -35,6 +35,7 @@ def expect_tooltip(explorer: ExplorerPage, *texts: str) -> None:
         expect(explorer.page.locator(".bk-Tooltip").get_by_text(text).first).to_be_visible()
 
 
+@pytest.mark.slow
 def test_manifolds_have_the_colours_and_the_image_that_is_chosen(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW)
     expect(explorer.page.get_by_role("radiogroup", name="Image of the manifolds")).to_have_count(0)
@@ -51,6 +52,7 @@ def test_manifolds_have_the_colours_and_the_image_that_is_chosen(open_explorer: 
     expect(explorer.text("Lyapunov orbits, image 1:")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{VIEW}&judge=yes&trust=yes&origins=yes")
     explorer.wait_for_data("doubts", "data.trust.length == 1")

@@ -113,7 +113,7 @@ def test_on_a_middling_screen_the_maps_stand_in_two_rows_beside_the_inspector(mi
     assert hint["y"] < places[2][1]
 
 
-@pytest.mark.parametrize("page", ["wide", "middling", "phone"])
+@pytest.mark.parametrize("page", ["wide", pytest.param("middling", marks=pytest.mark.slow), "phone"])
 def test_the_maps_do_not_move_when_an_orbit_is_clicked(page: str, request: pytest.FixtureRequest) -> None:
     explorer: ExplorerPage = request.getfixturevalue(page)
     names = ["basins"] if page == "phone" else PICTURES
@@ -158,7 +158,10 @@ def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
     phone.return_home()
 
 
-@pytest.mark.parametrize(("width", "touch"), [(1600, False), (1280, False), (420, True)])
+@pytest.mark.parametrize(
+    ("width", "touch"),
+    [(1600, False), pytest.param(1280, False, marks=pytest.mark.slow), pytest.param(420, True, marks=pytest.mark.slow)],
+)
 def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
     explorer = open_explorer(width, 900, f"{QUICK}&orbits=0.1,0.05;0.2,0.1&analysis=measures&origins=yes", touch=touch)
     explorer.wait_for_data("separation_source", "data.t.length > 1")

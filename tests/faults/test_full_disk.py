@@ -80,6 +80,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", str(disk)], check=False)
 
 
+@pytest.mark.slow
 def test_sweep_resumes_after_space_is_made_on_a_full_disk(
     small_disk: Path, tmp_path: Path, run_limited: Callable[..., Finished]
 ) -> None:

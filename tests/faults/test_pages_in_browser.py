@@ -11,6 +11,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import RunningApp, running_app
 
@@ -80,7 +81,7 @@ def test_closed_page_cancels_its_job_and_ends_its_session(open_page: Callable[..
 
 
 def test_failing_callback_does_not_affect_pages(open_page: Callable[..., Page], served: RunningApp, log: Path) -> None:
-    broken, other = ExplorerPage(open_page()), ExplorerPage(open_page())
+    broken, other = ExplorerPage(open_page(QUICK)), ExplorerPage(open_page(QUICK))
     for explorer in (broken, other):
         explorer.wait_until_complete()
     broken.open_fold("Quality and colours")
@@ -112,7 +113,7 @@ def test_hostile_formulas_are_shown_and_not_executed(open_page: Callable[..., Pa
 
 def test_lost_connection_is_shown(open_page: Callable[..., Page], served: RunningApp) -> None:
     # Must be the last test in this file, as it kills the server.
-    page = open_page()
+    page = open_page(QUICK)
     ExplorerPage(page).wait_until_complete()
     served.process.send_signal(signal.SIGKILL)
     served.process.wait(30)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import base64
+import functools
 import re
 from collections.abc import Callable
 from io import BytesIO
@@ -67,6 +68,12 @@ PICTURELESS: dict[str, Callable[[], Result]] = {
 }
 
 
+@functools.cache
+def example(name: str) -> Result:
+    """One of the results, computed once."""
+    return RESULTS[name]()
+
+
 def shown_picture(result: Result) -> Image.Image:
     (png,) = re.findall(r"data:image/png;base64,([^']*)", result._repr_html_())
     return Image.open(BytesIO(base64.b64decode(png)))
@@ -75,7 +82,7 @@ def shown_picture(result: Result) -> Image.Image:
 @pytest.mark.parametrize("name", RESULTS)
 class TestEveryResult:
     def test_notebook_shows_a_light_picture(self, name: str) -> None:
-        result = RESULTS[name]()
+        result = example(name)
         with shown_picture(result) as picture:
             colours = picture.convert("RGB").getcolors(maxcolors=picture.width * picture.height)
         assert colours is not None
@@ -83,14 +90,14 @@ class TestEveryResult:
         assert len(result._repr_html_()) < LARGEST
 
     def test_tables_have_the_same_columns(self, name: str) -> None:
-        result = RESULTS[name]()
+        result = example(name)
         table, dataset = result.to_pandas(), result.to_xarray()
         variable = dataset[table.columns[-1]]
         assert len(table) == variable.size
         assert table.attrs.keys() == result.numbers().keys()
 
     def test_holoviews_element_has_data(self, name: str) -> None:
-        assert len(RESULTS[name]().to_holoviews()) > 0
+        assert len(example(name).to_holoviews()) > 0
 
 
 @pytest.mark.parametrize("name", PICTURELESS)

@@ -31,7 +31,7 @@ def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1
     ("name", "energy", "side"),
     [
         ("I", 0.12, 5),
-        ("III", 0.3, 5),
+        pytest.param("III", 0.3, 5, marks=pytest.mark.slow),
         pytest.param("I", 0.12, 9, marks=pytest.mark.slow),
         pytest.param("III", 0.27, 9, marks=pytest.mark.slow),
     ],
