@@ -144,6 +144,7 @@ class SimulatedSession:
         self._accepted = True
         self._opened = asyncio.Event()
         self._closing = False
+        self._steps = 0
         self._reader: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
@@ -180,6 +181,28 @@ class SimulatedSession:
             self._reader.cancel()
             await asyncio.wait([self._reader])
 
+    @property
+    def is_open(self) -> bool:
+        """Whether the page is connected."""
+        return self._reader is not None and not self._reader.done()
+
+    def follow_link(self, link: str) -> None:
+        """Show the view of a link, as the browser's Back does."""
+        self._steps += 1
+        entries = [["link", link], ["entry", 0], ["steps", self._steps]]
+        model = {"id": self._models["BrowserListener"]}
+        self._open_channel.emit("data_event", model=model, data={"type": "map", "entries": entries})
+
+    def press(self, label: str) -> None:
+        """Press a button, if it is on the page."""
+        if label in self._models:
+            self._open_channel.emit("button_click", model={"id": self._models[label]})
+
+    def click(self, x: float, ordinate: float) -> None:
+        """Click a point of the map."""
+        figure = {"id": self._models["basins"]}
+        self._open_channel.emit("tap", model=figure, sx=0.0, sy=0.0, x=x, y=ordinate, modifiers={"type": "map", "entries": []})
+
     async def _act_slider(self) -> None:
         low, high = CHEAP_ENERGIES[self._case]
         # Between the steps of the slider, so that hardly any map is cached.
@@ -203,10 +226,8 @@ class SimulatedSession:
         self._open_channel.set(self._models["Plane"], active=planes.index(self._plane))
 
     async def _act_click(self) -> None:
-        x, y = (self._random.uniform(-0.3, 0.3) for _ in range(2))
         self._record.clicks += 1
-        figure = {"id": self._models["basins"]}
-        self._open_channel.emit("tap", model=figure, sx=0.0, sy=0.0, x=x, y=y, modifiers={"type": "map", "entries": []})
+        self.click(self._random.uniform(-0.3, 0.3), self._random.uniform(-0.3, 0.3))
 
     @property
     def _open_channel(self) -> Channel:
@@ -273,11 +294,15 @@ class SimulatedSession:
 
 
 def _named_models(part: Any) -> Iterator[tuple[str, str]]:
-    """Names and accessible names of the models of a serialized document, with their ids."""
+    """Names, labels and accessible names of the models of a serialized document, with their ids."""
     if isinstance(part, dict):
         attributes = part.get("attributes")
         if "id" in part and isinstance(attributes, dict):
-            names = [attributes.get("name"), dict(attributes.get("html_attributes", {}).get("entries", ())).get("aria-label")]
+            names = [
+                attributes.get("name"),
+                attributes.get("label"),
+                dict(attributes.get("html_attributes", {}).get("entries", ())).get("aria-label"),
+            ]
             yield from ((name, part["id"]) for name in names if isinstance(name, str))
         part = list(part.values())
     if isinstance(part, list):
