@@ -32,6 +32,8 @@ default_role = "py:obj"
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 python_maximum_signature_line_length = 100
 napoleon_attr_annotations = False
+# Sentences, not a list of types.
+napoleon_custom_sections = ["Returns"]
 
 html_theme = "furo"
 html_title = project
