@@ -59,6 +59,12 @@ def test_modules_named_in_text_exist(page: Path) -> None:
     assert [name for name in named if not _is_defined(name)] == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_programs_named_in_text_exist(page: Path) -> None:
+    named = re.findall(r"python -m ([a-z_.]+)|`(benchmarks\.\w+)", page.read_text(encoding="utf-8"))
+    assert [name for name in map("".join, named) if not (ROOT / f"{name.replace('.', '/')}.py").exists()] == []
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example_of_a_docstring_prints_what_it_says(name: str) -> None:
     (test,) = doctest.DocTestFinder(recurse=False).find(inspect.unwrap(getattr(engine, name)), name)
