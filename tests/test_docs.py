@@ -7,14 +7,14 @@ import inspect
 import json
 import pkgutil
 import re
-import runpy
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from types import ModuleType
 
 import pytest
 
 import engine
+from engine import service
 
 ROOT = Path(__file__).parents[1]
 PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "benchmarks" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -26,49 +26,18 @@ def page_name(path: Path) -> str:
     return path.relative_to(ROOT).with_suffix("").as_posix()
 
 
-@pytest.fixture(scope="module")
-def make_api() -> dict[str, Any]:
-    """Names defined by docs/make_api.py."""
-    return runpy.run_path(str(ROOT / "docs" / "make_api.py"))
+def test_every_public_name_has_a_docstring() -> None:
+    assert [name for name in engine.__all__ if callable(one := getattr(engine, name)) and not one.__doc__] == []
 
 
-@pytest.fixture(scope="module")
-def site(make_api: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The generated pages; warnings are errors."""
-    folder = tmp_path_factory.mktemp("site") / "new"
-    make_api["make_site"](folder, run=False)
-    return folder
+def test_every_public_function_has_an_example() -> None:
+    assert [name for name in engine.__all__ if inspect.isfunction(getattr(engine, name)) and name not in EXAMPLES] == []
 
 
-def test_every_public_name_has_a_docstring(make_api: dict[str, Any]) -> None:
-    module = make_api["document_engine"]()
-    assert [name for name in engine.__all__ if not module.get(name).docstring.strip()] == []
-
-
-def test_constant_has_the_docstring_of_its_module(make_api: dict[str, Any]) -> None:
-    assert "Zotos" in make_api["document_engine"]().get("CASES").docstring
-
-
-def test_every_public_name_is_in_the_pages(site: Path) -> None:
-    found = set(re.findall(r'id="([\w.]+)"', (site / "engine.html").read_text(encoding="utf-8")))
-    assert set(engine.__all__) <= found
-    assert "EscapeMap.to_xarray" in found
-
-
-def test_pages_contain_no_private_modules(site: Path) -> None:
-    assert {path.name for path in site.rglob("*") if path.is_dir()} == {"deploy", "examples", "screenshots"}
-
-
-def test_links_between_pages_are_valid(site: Path) -> None:
-    for path in site.glob("*.html"):
-        text = path.read_text(encoding="utf-8")
-        targets = set(re.findall(r'(?:href|src)="([^"#:]+)(?:#[^"]*)?"', text))
-        assert {target for target in targets if not (site / target).exists()} == set(), path.name
-    assert 'href="certificates.html"' in (site / "index.html").read_text(encoding="utf-8")
-
-
-def test_markdown_tables_become_html_tables(site: Path) -> None:
-    assert "<table" in (site / "certificates.html").read_text(encoding="utf-8")
+@pytest.mark.parametrize(("page", "module"), [("api", engine), ("service", service)])
+def test_every_name_is_in_the_reference(page: str, module: ModuleType) -> None:
+    documented = re.findall(r"^\.\. auto\w+:: (\w+)$", (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(documented) == sorted(module.__all__)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
@@ -90,10 +59,20 @@ def test_modules_named_in_text_exist(page: Path) -> None:
     assert [name for name in named if not _is_defined(name)] == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_programs_named_in_text_exist(page: Path) -> None:
+    named = re.findall(r"python -m ([a-z_.]+)|`(benchmarks\.\w+)", page.read_text(encoding="utf-8"))
+    assert [name for name in map("".join, named) if not (ROOT / f"{name.replace('.', '/')}.py").exists()] == []
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example_of_a_docstring_prints_what_it_says(name: str) -> None:
     (test,) = doctest.DocTestFinder(recurse=False).find(inspect.unwrap(getattr(engine, name)), name)
     assert doctest.DocTestRunner().run(test).failed == 0
+
+
+def test_examples_of_the_start_page_print_what_it_says() -> None:
+    assert doctest.testfile(str(ROOT / "docs" / "start.md"), module_relative=False).failed == 0
 
 
 def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
@@ -102,14 +81,6 @@ def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
     assert kinds[0] == "markdown"
     assert ("code", "code") not in pairwise(kinds)
     assert not any(cell.get("outputs") for cell in cells)
-
-
-@pytest.mark.slow
-def test_tutorial_in_the_pages_shows_results_and_figures(make_api: dict[str, Any], tmp_path: Path) -> None:
-    make_api["make_site"](tmp_path)
-    text = (tmp_path / "tutorial.html").read_text(encoding="utf-8")
-    assert text.count("data:image/png;base64,") >= 8
-    assert text.count("<strong>EscapeMap</strong>") == 1
 
 
 def test_python_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

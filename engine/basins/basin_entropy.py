@@ -110,6 +110,13 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     ------
     ValueError
         If a parameter is out of range.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_basin_entropy, compute_map
+    >>> entropy = compute_basin_entropy(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (80, 80), t_max=1e3)))
+    >>> round(entropy.s_b, 2), round(entropy.s_bb, 2), entropy.beyond_ln2
+    (0.5, 1.06, True)
     """
     labels, valid = checked_labels(labels, valid, bounded=ENTROPY_COUNTS_BOUNDED)
     box = checked_count("box", box, 2, min(labels.shape))

@@ -113,6 +113,13 @@ def compute_uncertainty_exponent(
         If cancelled.
     ValueError
         If a parameter is out of range, or the pixels are too small to resolve starts below them.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_uncertainty_exponent
+    >>> result = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.25), work=1e6)
+    >>> round(result.low, 2), round(result.exponent, 2), round(result.high, 2)
+    (0.21, 0.23, 0.25)
     """
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)

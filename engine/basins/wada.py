@@ -96,6 +96,12 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     ------
     ValueError
         If `labels` or `valid` has a wrong shape or type.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_wada_test
+    >>> print(compute_wada_test(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (80, 80), t_max=1e3))).describe())
+    The boundaries of the 4 basins coincide within 9 pixels, 99 % of the 1756 boundary pixels within 6.
     """
     labels, valid = checked_labels(labels, valid, bounded=WADA_COUNTS_BOUNDED)
     basins = tuple(np.unique(labels[valid]).tolist())

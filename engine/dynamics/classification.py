@@ -33,7 +33,7 @@ class Outcomes(Result):
     crossings
         int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
     energy_error
-        float64, |H − h| / |h| at the end; NaN if there is no orbit.
+        float64, ``|H − h| / |h|`` at the end; NaN if there is no orbit.
     """
 
     fate: np.ndarray
@@ -82,6 +82,15 @@ def classify_orbits(
     ------
     ValueError
         If a state is not finite or has another energy, or a parameter is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from engine import CASES, Plane, classify_orbits, start_states
+    >>> states = start_states(CASES["I"], Plane.X_PX, 0.3, np.array([-0.3, 0.0, 0.3]), np.zeros(3))
+    >>> outcomes = classify_orbits(CASES["I"], 0.3, states, t_max=100.0)
+    >>> outcomes.fate.tolist(), outcomes.escape_time.round(2).tolist()
+    ([1, 1, 1], [45.7, 2.03, 1.82])
     """
     states = _checked_states(potential, energy, states)
     t_max = checked_t_max(t_max)

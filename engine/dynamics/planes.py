@@ -110,6 +110,14 @@ def start_states(
     Returns
     -------
     (n, 4) x, y, px, py; py is NaN where the start is forbidden.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from engine import CASES, Plane, start_states
+    >>> start_states(CASES["III"], Plane.X_PX, 0.45, np.array([0.0, 0.9]), np.array([0.3, 0.5])).round(4)
+    array([[0. , 0. , 0.3, 0.9],
+           [0.9, 0. , 0.5, nan]])
     """
     zero = np.zeros_like(x)
     y, px = (ordinate, zero) if plane is Plane.X_Y else (zero, ordinate if plane is Plane.X_PX else zero)
@@ -170,6 +178,13 @@ def trace_zero_velocity_curve(potential: Potential, plane: Plane, energy: float,
     Returns
     -------
     The pieces of the curve, each (n, 2).
+
+    Examples
+    --------
+    >>> from engine import CASES, Plane, default_window, trace_zero_velocity_curve
+    >>> window = default_window(CASES["I"], Plane.X_PX, 0.19)
+    >>> len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, window))
+    1
     """
     level = 0.0 if plane is Plane.X_H else energy
     return trace_equipotentials(potential, plane, (level,), window)[0]
@@ -208,6 +223,13 @@ def default_window(potential: Potential, plane: Plane, energy: float | tuple[flo
     ------
     ValueError
         If an energy is out of range, or there is no interior at this energy.
+
+    Examples
+    --------
+    >>> from engine import CASES, Plane, default_window
+    >>> window = default_window(CASES["III"], Plane.X_PX, 0.45)
+    >>> round(window.x_low, 4), round(window.x_high, 4)
+    (-1.0056, 1.0056)
     """
     _checked_highest_energy(energy)
     return _default_window(potential, Plane(plane), tuple(energy) if isinstance(energy, tuple) else float(energy))

@@ -153,6 +153,13 @@ def find_stable_manifolds(
     Notes
     -----
     Tubes and their role in escapes: Contopoulos 1990, Astron. Astrophys. 231, 41; Koon, Lo, Marsden & Ross 2000, Chaos 10, 427.
+
+    Examples
+    --------
+    >>> from engine import CASES, find_stable_manifolds
+    >>> manifolds = find_stable_manifolds(CASES["I"], 0.19, images=1)
+    >>> [(arc.channel, arc.image) for arc in manifolds.arcs]
+    [(1, 1), (2, 1)]
     """
     images = checked_count("images", images, 1, MOST_IMAGES)
     given, given_energy, units = potential, float(energy), potential.units

@@ -93,6 +93,16 @@ def compute_origin_fates(
         When cancelled.
     ValueError
         When no exit is defined at an energy of `spec`.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_origin_fates
+    >>> origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.6, (40, 40), t_max=1e3))
+    >>> origins.count_passages()[1:, 1:]
+    array([[ 18,  34,   4,  10],
+           [ 34,  18,  10,   4],
+           [410,  34,  18,  34],
+           [ 34, 410,  34,  18]])
     """
     forward, backward = (compute_map(replace(spec, backward=way), None, cancel, executor) for way in (False, True))
     if not (forward.complete and backward.complete):

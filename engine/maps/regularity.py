@@ -89,6 +89,13 @@ def compute_regularity(
     ------
     ValueError
         When the map is not complete.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_regularity
+    >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (20, 20), t_max=2e3))
+    >>> round(compute_regularity(escapes).chaotic_share, 2)
+    0.23
     """
     escape_map.check_complete("escape_map")
     classification = _RegularityClassification(escape_map, cancel, executor)

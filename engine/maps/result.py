@@ -61,6 +61,15 @@ class EscapeMap(MapResult):
         Integration state for ``resume``, in units of the well; None in frames.
     trust
         (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
+
+    Examples
+    --------
+    >>> from engine import CASES, Fate, MapSpec, Plane, compute_map
+    >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (40, 40), t_max=1e3))
+    >>> {code: round(share, 3) for code, share in escapes.fractions().items() if share}
+    {1: 0.549, 2: 0.451}
+    >>> int((escapes.fate == Fate.OUTSIDE).sum()), list(escapes.to_xarray().sizes)
+    (0, ['px', 'x'])
     """
 
     spec: MapSpec

@@ -57,6 +57,17 @@ class MapSpec:
     ------
     ValueError
         When a parameter is invalid; the message names it, its value and what is legal.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane
+    >>> spec = MapSpec(CASES["III"], Plane.X_PX, 0.45)
+    >>> spec.resolution, spec.t_max, round(spec.window.x_high, 4)
+    ((224, 224), 100000.0, 1.0056)
+    >>> MapSpec(CASES["III"], Plane.X_PX, 0.45, resolution=(0, 50))
+    Traceback (most recent call last):
+        ...
+    ValueError: resolution=(0, 50): must be (columns, rows), each from 1 to 4096
     """
 
     potential: Potential

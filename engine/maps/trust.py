@@ -136,6 +136,13 @@ def compute_trust(
     ------
     ValueError
         When the map is not complete.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_trust
+    >>> trust = compute_trust(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), t_max=1e3)))
+    >>> round(trust.tested_share, 2), round(trust.doubtful_share, 2)
+    (0.54, 0.03)
     """
     escape_map.check_complete("escape_map")
     test = _TrustTest(escape_map, on_frame, cancel, executor)

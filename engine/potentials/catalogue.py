@@ -56,6 +56,13 @@ def channel_family(n: int) -> Potential:
     ------
     ValueError
         If n is out of range.
+
+    Examples
+    --------
+    >>> from engine import channel_family
+    >>> potential = channel_family(5)
+    >>> potential.channels, round(potential.escape_energy, 6)
+    (5, 0.3)
     """
     if not 3 <= n <= HIGHEST_DEGREE:
         raise ValueError(f"n={n}: must be from 3 to {HIGHEST_DEGREE}")

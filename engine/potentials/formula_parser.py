@@ -137,6 +137,15 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     digits
         Significant digits of the coefficients, so that `parse_formula` reads back each with a relative error of at most
         5·10^−digits; None for as many as it needs to read back exactly the same terms.
+
+    Examples
+    --------
+    >>> from engine import parse_formula, write_formula
+    >>> potential = parse_formula("½(x² + y²) − 0.123456789 x²y²")
+    >>> write_formula(potential)
+    'x²/2 + y²/2 − 0.123456789x²y²'
+    >>> write_formula(potential, digits=4)
+    'x²/2 + y²/2 − 10x²y²/81'
     """
     text = ""
     for i, j, c in sorted(potential.terms, key=_by_degree):

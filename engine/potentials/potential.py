@@ -54,6 +54,15 @@ class Potential(Result):
     ------
     ValueError
         If an exponent is out of range, a coefficient is not finite, or a pair of exponents occurs twice.
+
+    Examples
+    --------
+    >>> from engine import CASES
+    >>> potential = CASES["III"].with_parameters(epsilon=0.5)
+    >>> potential.channels, potential.escape_energy
+    (4, 0.5)
+    >>> potential.saddles.round(6).tolist()
+    [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
     """
 
     name: str = field(compare=False)

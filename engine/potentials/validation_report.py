@@ -119,6 +119,15 @@ def review_potential(potential: Potential) -> PotentialReview:
     Returns
     -------
     The review. No error is raised for a potential that cannot be used; its review has a `refusal`.
+
+    Examples
+    --------
+    >>> from engine import parse_formula, review_potential
+    >>> review = review_potential(parse_formula("½(x² + y²) + xy² + 2x³"))
+    >>> review.channels, round(review.escape_energy, 6), review.refusal
+    (1, 0.00463, None)
+    >>> review_potential(parse_formula("½(x² + y²) + x⁴ + y⁴")).refusal
+    'No saddle leads out of the well at the origin, so no orbit escapes at any energy.'
     """
     points, refusal = _critical_points_or_refusal(potential)
     return PotentialReview(

@@ -84,6 +84,14 @@ def fit_decay_laws(
         If cancelled.
     ValueError
         If a parameter is out of range.
+
+    Examples
+    --------
+    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_statistics, fit_decay_laws
+    >>> escapes = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (80, 80), t_max=1e3))
+    >>> laws = fit_decay_laws(compute_statistics(escapes), t_max=1e3, resamples=500)
+    >>> laws.preferred, round(laws.exponential.rate, 3)
+    (<DecayLaw.EXPONENTIAL: 'exponential'>, 0.024)
     """
     t_max = checked_t_max(t_max)
     resamples = checked_count("resamples", resamples, MIN_RESAMPLES, MAX_RESAMPLES)

@@ -215,6 +215,16 @@ def compute_energy_curves(
         When cancelled.
     ValueError
         When no exit is defined at one of the energies.
+
+    Examples
+    --------
+    >>> from engine import CASES, EnergyCurvesSpec, Plane, compute_energy_curves
+    >>> spec = EnergyCurvesSpec(CASES["III"], Plane.X_PX, (0.4, 0.5, 0.6), (40, 40), t_max=1e3, exponent=False)
+    >>> compute_energy_curves(spec).to_pandas()[["h", "share_1", "share_2"]].round(3)
+         h  share_1  share_2
+    0  0.4    0.354    0.354
+    1  0.5    0.399    0.399
+    2  0.6    0.441    0.441
     """
     points: list[EnergyPoint] = []
     for index in _coarse_to_fine(len(spec.energies)):

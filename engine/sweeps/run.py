@@ -82,6 +82,17 @@ def run_sweep(
         computes into it, with one sentence that names the process.
     concurrent.futures.CancelledError
         When cancelled.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from engine import CASES, Plane, SweepSpec, run_sweep
+    >>> spec = SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.25), resolution=(20, 20), t_max=100.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     dataset = run_sweep(spec, Path(folder, "maps.zarr"))
+    ...     print(dict(dataset["fate"].sizes))
+    {'h': 2, 'px': 20, 'x': 20}
     """
     for energy in (spec.energies[0], spec.energies[-1]):
         exit_curves(spec.potential, energy)

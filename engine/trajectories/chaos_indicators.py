@@ -134,6 +134,12 @@ def compute_birkhoff_digits(
         If cancelled.
     ValueError
         If `state` is not four finite numbers or `t_max` is out of range.
+
+    Examples
+    --------
+    >>> from engine import CASES, compute_birkhoff_digits
+    >>> compute_birkhoff_digits(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).digits.round(1)
+    array([8.9])
     """
     units, potential = potential.units, potential.in_well_units
     start = checked_state("state", state) / units.state

@@ -107,6 +107,13 @@ def find_divergent_start(
         If cancelled.
     ValueError
         If a parameter is out of range, or the start is forbidden or outside.
+
+    Examples
+    --------
+    >>> from engine import CASES, Plane, find_divergent_start
+    >>> divergent = find_divergent_start(CASES["III"], Plane.X_PX, 0.45, 0.3, 0.2, t_max=1e3)
+    >>> divergent.reference_fate, divergent.fate, round(divergent.distance, 3)
+    (1, 4, 0.047)
     """
     t_max, units = checked_t_max(t_max), potential.units
     nearest = _MIN_DISTANCE * units.length

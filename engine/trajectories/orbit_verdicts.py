@@ -81,6 +81,14 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
         The `Orbit`.
     digits
         The `BirkhoffDigits` of the same orbit; None leaves them out.
+
+    Examples
+    --------
+    >>> from engine import CASES, integrate_orbit, judge_orbit
+    >>> print(judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), t_max=1e3)).describe())
+    Escaped through channel 1 at t = 15.1781, after 1 upward crossing of y = 0.
+    >>> print(judge_orbit(integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=1e3)).describe())
+    Bounded for ever (its energy is below every saddle) and regular, with 160 upward crossings of y = 0 until t = 1 000.
     """
     conclusions = (indicator.conclusion for indicator in evaluate_indicators(orbit, digits))
     character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else None

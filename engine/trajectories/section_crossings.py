@@ -29,6 +29,15 @@ def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
     -------
     (n, 2) x and px in order of time, dimensionless. n equals `Orbit.crossings`, unless the orbit crosses y = 0 up and down again
     between two samples.
+
+    Examples
+    --------
+    >>> from engine import CASES, find_section_crossings, integrate_orbit
+    >>> orbit = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=20.0)
+    >>> find_section_crossings(CASES["II"], orbit).round(4)
+    array([[ 0.1162, -0.042 ],
+           [ 0.1585, -0.0726],
+           [ 0.2122, -0.0821]])
     """
     before = np.flatnonzero((orbit.y[:-1] < 0.0) & (orbit.y[1:] >= 0.0))
     x, y, px, py = (np.stack([row[before], row[before + 1]]) for row in (orbit.x, orbit.y, orbit.px, orbit.py))

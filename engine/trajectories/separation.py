@@ -69,6 +69,14 @@ def compute_separation(
         If cancelled.
     ValueError
         If a state is not four finite numbers or `t_end` is out of range.
+
+    Examples
+    --------
+    >>> from engine import CASES, compute_separation
+    >>> first, second = (0.1, 0.0, 0.05, 0.6), (0.1 + 1e-9, 0.0, 0.05, 0.6)
+    >>> distance = compute_separation(CASES["I"], first, second, t_end=15.0).distance
+    >>> distance.size, round(float(distance[-1] / distance[0]))
+    (2000, 235)
     """
     units, potential = potential.units, potential.in_well_units
     times = np.linspace(0.0, min(checked_t_max(t_end) / units.time, LONGEST_SEPARATION), _SAMPLES)

@@ -40,8 +40,8 @@ class Orbit(Result):
     sali
         (n,) smaller alignment index min(‖w1 − w2‖, ‖w1 + w2‖) of two unit deviation vectors, 0 to √2; in units of the well.
     lyapunov_exponent
-        (n,) finite-time maximal Lyapunov exponent (1/t) ln(|w1(t)|/|w1(0)|) of the first deviation vector, per unit of time; NaN
-        at t = 0. It decays like ln t / t along regular orbits and converges to a positive value along chaotic ones.
+        (n,) finite-time maximal Lyapunov exponent ``(1/t) ln(|w1(t)|/|w1(0)|)`` of the first deviation vector, per unit of time;
+        NaN at t = 0. It decays like ln t / t along regular orbits and converges to a positive value along chaotic ones.
     r2
         (n,) R² = x² + y².
     fate
@@ -51,7 +51,7 @@ class Orbit(Result):
     crossings
         Upward crossings of y = 0 before the escape or t_max; the start is not counted.
     energy_error
-        |H − h| / |h| at the end of the orbit.
+        ``|H − h| / |h|`` at the end of the orbit.
     energy
         h of the initial state.
     certificate
