@@ -20,7 +20,6 @@ from bokeh.models import (
     AbstractGroup,
     AbstractSlider,
     Checkbox,
-    NumericInput,
     Plot,
     Range1d,
     Select,
@@ -189,10 +188,6 @@ def _is_on_slider(slider: Any, value: Any) -> bool:
     return all(_is_between(each, slider.start, slider.end) for each in values) and list(values) == sorted(values)
 
 
-def _is_in_box(box: Any, value: Any) -> bool:
-    return value is None or _is_between(value, box.low, box.high)
-
-
 def _is_option(select: Any, value: Any) -> bool:
     options = select.options
     groups = options.values() if isinstance(options, Mapping) else [options]
@@ -265,7 +260,6 @@ class _DataProperties(dict[str, Check]):
 
 _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     AbstractSlider: {"value": _is_on_slider, "value_throttled": _is_on_slider},
-    NumericInput: {"value": _is_in_box, "value_throttled": _is_in_box},
     TextInput: {"value": _is_short, "value_input": _is_short},
     Select: {"value": _is_option},
     AbstractGroup: {"active": _is_active},

@@ -7,7 +7,7 @@ from typing import Any
 import param
 import pytest
 from bokeh.document import Document
-from bokeh.models import Button, CheckboxButtonGroup, RadioGroup, Range1d, RangeSlider, Select, Slider, Span, Spinner, TextInput
+from bokeh.models import Button, CheckboxButtonGroup, RadioGroup, Range1d, RangeSlider, Select, Slider, Span, TextInput
 from bokeh.plotting import figure
 from panel.custom import JSComponent
 from panel.io.state import set_curdoc
@@ -49,7 +49,6 @@ NAN = {"type": "number", "value": "nan"}
     [
         (lambda: Slider(start=0, end=1, value=0.5, step=0.1), "value", [0, 0.3, 1.0], [-0.1, 1.1, NAN, "0.5", None, 10**400]),
         (lambda: RangeSlider(start=0, end=1, value=(0, 1)), "value", [[0.1, 0.2]], [[0.2, 0.1], [0.1], [0.1, 2], 0.1]),
-        (lambda: Spinner(low=1, high=9, value=3), "value", [1, 9, None], [0, 10, NAN, "3", True]),
         (lambda: Select(options=["I", ("II", "two")], value="I"), "value", ["I", "II"], ["III", "two", 1, ["I"]]),
         (lambda: TextInput(max_length=5), "value", ["", "12345"], ["123456", 1, None, "\ud800"]),
         (lambda: TextInput(), "value_input", ["x" * LONGEST_TEXT], ["x" * (LONGEST_TEXT + 1)]),
