@@ -142,16 +142,6 @@ def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, wid
     assert x_high - x_low == pytest.approx(high - low)
 
 
-def test_on_a_phone_one_finger_scrolls_until_another_mode_is_chosen(phone: ExplorerPage) -> None:
-    action = """() => getComputedStyle([...Bokeh.index.all_views()].find(view => view.model.name == 'basins')
-        .canvas_view.events_el).touchAction"""
-    assert phone.page.evaluate(action) == "pan-x pan-y"
-    phone.pick("Move")
-    phone.page.wait_for_function(f"({action})() == 'none'")
-    phone.pick("Scroll")
-    phone.page.wait_for_function(f"({action})() == 'pan-x pan-y'")
-
-
 def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
     phone.page.touchscreen.tap(*phone.point("basins", 0.1, 0.05))
     expect(phone.text("Escaped through channel 1")).to_be_attached()
