@@ -21,6 +21,7 @@ from bokeh.models import (
     AbstractSlider,
     Checkbox,
     Plot,
+    RadioGroup,
     Range1d,
     Select,
     Selection,
@@ -52,6 +53,13 @@ class RefusedMessageError(ValueError):
 
 class OutdatedMessageError(RefusedMessageError):
     """A message about a model that the server has removed meanwhile."""
+
+
+def find_choices(content: Any, document: Document) -> list[tuple[Model, str]]:
+    """Models and properties of the choices, of one among several, that a checked PATCH-DOC message makes."""
+    events = (event for event in content["events"] if event["kind"] == "ModelChanged")
+    changes = ((document.models.get_by_id(event["model"]["id"]), event["attr"]) for event in events)
+    return [(model, name) for model, name in changes if isinstance(model, _CHOICES)]
 
 
 def check_patch(content: Any, document: Document) -> None:
@@ -246,6 +254,9 @@ def _is_data(model: DataModel, name: str, value: Any) -> bool:
         case param.String() | param.Dict():
             return True
     return False
+
+
+_CHOICES = (RadioGroup, Select)
 
 
 class _DataProperties(dict[str, Check]):

@@ -13,7 +13,7 @@ from panel.custom import JSComponent
 from panel.io.state import set_curdoc
 from panel.models.widgets import Player
 
-from app.server.browser_rules import LONGEST_TEXT, OutdatedMessageError, RefusedMessageError, check_patch
+from app.server.browser_rules import LONGEST_TEXT, OutdatedMessageError, RefusedMessageError, check_patch, find_choices
 
 
 class Card(JSComponent):
@@ -72,6 +72,13 @@ def test_properties(model: Any, name: str, accepted: list[Any], refused: list[An
     document.add_root(widget)
     assert [value for value in accepted if not is_accepted(document, change(widget, name, value))] == []
     assert [value for value in refused if is_accepted(document, change(widget, name, value))] == []
+
+
+def test_choices_are_found_among_the_changes() -> None:
+    document, choice, slider = Document(), RadioGroup(labels=["a", "b"]), Slider(start=0, end=1, value=0.5)
+    for widget in (choice, slider):
+        document.add_root(widget)
+    assert find_choices({"events": [change(slider, "value", 0.3), change(choice, "active", 1)]}, document) == [(choice, "active")]
 
 
 def test_properties_of_components_follow_their_parameters() -> None:
