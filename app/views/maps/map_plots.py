@@ -134,7 +134,8 @@ class MapsView:
     def begin_touch(self) -> None:
         """The page is used by touch: on a narrow screen one picture is shown, chosen with the picker."""
         # The wheel's tool would answer to two fingers, too.
-        self._toolbar.tools = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
+        others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
+        self._toolbar.update(tools=others, active_scroll=None)
         self.picker.visible = True
         self._grid.objects = [*self._picker(), *self._grid.objects]
 
