@@ -20,6 +20,7 @@ from bokeh.models import (
     AbstractGroup,
     AbstractSlider,
     Checkbox,
+    CheckboxGroup,
     Plot,
     RadioGroup,
     Range1d,
@@ -56,7 +57,7 @@ class OutdatedMessageError(RefusedMessageError):
 
 
 def find_choices(content: Any, document: Document) -> list[tuple[Model, str]]:
-    """Models and properties of the choices, of one among several, that a checked PATCH-DOC message makes."""
+    """Models and properties of the switches, radio buttons and lists that a checked PATCH-DOC message changes."""
     events = (event for event in content["events"] if event["kind"] == "ModelChanged")
     changes = ((document.models.get_by_id(event["model"]["id"]), event["attr"]) for event in events)
     return [(model, name) for model, name in changes if isinstance(model, _CHOICES)]
@@ -256,7 +257,7 @@ def _is_data(model: DataModel, name: str, value: Any) -> bool:
     return False
 
 
-_CHOICES = (RadioGroup, Select)
+_CHOICES = (CheckboxGroup, RadioGroup, Select)
 
 
 class _DataProperties(dict[str, Check]):

@@ -192,6 +192,8 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
     def type_energy() -> None:
         if page.get_by_label("Exact h", exact=True).is_enabled():
             explorer.type_number("Exact h", f"{chance.uniform(0.13, 0.5):.3f}")
+            # Leave the box, in which keys are text.
+            page.keyboard.press("Tab")
 
     def clear() -> None:
         if explorer.button("Clear all").is_visible():
