@@ -16,6 +16,7 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
+import panel as pn
 from bokeh.application.application import SessionContext
 from bokeh.document import Document
 from panel.io.state import set_curdoc
@@ -86,7 +87,9 @@ class _LockedCallback:
         if self._calls:
             call = self._calls.popleft()
             try:
-                with set_curdoc(document):
+                # Changes of widgets, which Panel holds, may wait for the socket: others must not overtake them, as they may be
+                # changes of models that the first ones add.
+                with set_curdoc(document), pn.io.hold(document):
                     call()
             except Exception:
                 log.exception("a callback failed")

@@ -20,8 +20,9 @@ from bokeh.models import (
     AbstractGroup,
     AbstractSlider,
     Checkbox,
-    NumericInput,
+    CheckboxGroup,
     Plot,
+    RadioGroup,
     Range1d,
     Select,
     Selection,
@@ -53,6 +54,13 @@ class RefusedMessageError(ValueError):
 
 class OutdatedMessageError(RefusedMessageError):
     """A message about a model that the server has removed meanwhile."""
+
+
+def find_choices(content: Any, document: Document) -> list[tuple[Model, str]]:
+    """Models and properties of the switches, radio buttons and lists that a checked PATCH-DOC message changes."""
+    events = (event for event in content["events"] if event["kind"] == "ModelChanged")
+    changes = ((document.models.get_by_id(event["model"]["id"]), event["attr"]) for event in events)
+    return [(model, name) for model, name in changes if isinstance(model, _CHOICES)]
 
 
 def check_patch(content: Any, document: Document) -> None:
@@ -189,10 +197,6 @@ def _is_on_slider(slider: Any, value: Any) -> bool:
     return all(_is_between(each, slider.start, slider.end) for each in values) and list(values) == sorted(values)
 
 
-def _is_in_box(box: Any, value: Any) -> bool:
-    return value is None or _is_between(value, box.low, box.high)
-
-
 def _is_option(select: Any, value: Any) -> bool:
     options = select.options
     groups = options.values() if isinstance(options, Mapping) else [options]
@@ -253,6 +257,9 @@ def _is_data(model: DataModel, name: str, value: Any) -> bool:
     return False
 
 
+_CHOICES = (CheckboxGroup, RadioGroup, Select)
+
+
 class _DataProperties(dict[str, Check]):
     """The properties of a component with parameters that are numbers, texts or maps."""
 
@@ -265,7 +272,6 @@ class _DataProperties(dict[str, Check]):
 
 _EDITABLE: dict[type[Model], Mapping[str, Check]] = {
     AbstractSlider: {"value": _is_on_slider, "value_throttled": _is_on_slider},
-    NumericInput: {"value": _is_in_box, "value_throttled": _is_in_box},
     TextInput: {"value": _is_short, "value_input": _is_short},
     Select: {"value": _is_option},
     AbstractGroup: {"active": _is_active},

@@ -9,8 +9,9 @@ from collections.abc import Callable
 from typing import Any
 
 from bokeh.document import Document
+from bokeh.model import Model
 
-from app.server.browser_rules import OutdatedMessageError, RefusedMessageError, check_patch
+from app.server.browser_rules import OutdatedMessageError, RefusedMessageError, check_patch, find_choices
 
 LARGEST_FRAGMENT = 4 * 2**20
 """Size limit of a part of a message, in bytes. Most have less than 2 kB; models that the server has added are sent whole."""
@@ -42,6 +43,11 @@ class MessageGuard:
     ----------
     clock
         Seconds of a monotonic clock.
+
+    Attributes
+    ----------
+    choices
+        What `find_choices` finds in the last message.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -49,6 +55,7 @@ class MessageGuard:
         self._parts: list[str | bytes] = []
         self._expected = _PARTS
         self._pulled = False
+        self.choices: list[tuple[Model, str]] = []
         self._left, self._last = float(MOST_AT_ONCE), clock()
 
     def take(self, part: str | bytes, document: Document) -> list[str | bytes]:
@@ -96,9 +103,10 @@ class MessageGuard:
             )
 
     def _check(self, header: Any, content: Any, document: Document) -> None:
-        kind = header["msgtype"]
+        kind, self.choices = header["msgtype"], []
         if kind == "PATCH-DOC":
             check_patch(content, document)
+            self.choices = find_choices(content, document)
         elif kind == "PULL-DOC-REQ" and not self._pulled:
             self._pulled = True
         elif kind != "SERVER-INFO-REQ":

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from typing import Any
 
+import panel as pn
+from bokeh.document import Document
+from bokeh.document.events import ModelChangedEvent
+from bokeh.model import Model
 from bokeh.protocol.exceptions import ProtocolError
 from panel.io.server import WSHandler
+from panel.io.state import set_curdoc
 
 from app.server.admission import check_session
 from app.server.browser_rules import RefusedMessageError
@@ -65,6 +71,8 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         else:
             for part in parts:
                 await super().on_message(part)
+            if parts and self._guard.choices and session is not None:
+                await session.with_document_locked(_send_again, session.document, self._guard.choices)
 
     def on_close(self) -> None:
         """Tell Bokeh, unless it has given up the connection before."""
@@ -84,3 +92,11 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         log.warning("connection closed: %s", error)
         self._closed = True
         self.close(_POLICY_VIOLATION, "refused")
+
+
+async def _send_again(document: Document, choices: Sequence[tuple[Model, str]]) -> None:
+    """Send choices of the browser back, as it may have got an older choice of the server since it made them."""
+    with set_curdoc(document), pn.io.hold(document):
+        for model, name in choices:
+            if model.document is document:
+                document.callbacks.trigger_on_change(ModelChangedEvent(document, model, name, getattr(model, name)))

@@ -100,7 +100,9 @@ class Explorer:
     def _make_views(self) -> None:
         state, locked = self.state, self._locked
         self.history = History()
-        self.maps = MapsView(self._add_start, self._zoom_to, self.history.end_gesture, self._count_in)
+        self.maps = MapsView(
+            locked(self._add_start), locked(self._zoom_to), locked(self.history.end_gesture), locked(self._count_in)
+        )
         self.toolbar = MapToolbar(
             lambda: self.browser.go_back(),
             lambda: self.browser.go_forward(),

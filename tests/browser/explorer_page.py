@@ -34,6 +34,8 @@ _RANGES = """name => {
     return [x_range.start, x_range.end, y_range.start, y_range.end]
 }"""
 
+_RAIL_AND_THUMB = """rail => [rail, rail.querySelector(".noUi-handle")].map(part => part.getBoundingClientRect().toJSON())"""
+
 
 class ExplorerPage:
     """The page of one session."""
@@ -158,10 +160,8 @@ class ExplorerPage:
 
     def drag_energy_to(self, share: float, *, steps: int = 5, let_go: bool = True, pause: float = 0.0) -> None:
         """Drag the thumb of the energy slider to a share of its length, with a pause, in ms, after each step."""
-        rail = self.page.locator(".noUi-target").first.bounding_box()
-        thumb = self.page.locator(".noUi-handle").first.bounding_box()
-        assert rail is not None
-        assert thumb is not None
+        # Read at once, as another case brings a new slider.
+        rail, thumb = self.page.locator(".noUi-target").first.evaluate(_RAIL_AND_THUMB)
         self.page.mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)
         self.page.mouse.down()
         begin, end = thumb["x"] + thumb["width"] / 2, rail["x"] + share * rail["width"]

@@ -26,6 +26,13 @@ _ENABLE_AGAIN = """async label => {
     return model.disabled
 }"""
 
+# A case is chosen while an older choice of the server is on its way.
+_CHOOSE_BEFORE_AN_OLDER_CHOICE = """radio => {
+    const model = [...Bokeh.documents[0]._all_models.values()].find(model => `${model.labels}` === "I,II,III")
+    radio.click()
+    Bokeh.documents[0].apply_json_patch({events: [{kind: "ModelChanged", model: {id: model.id}, attr: "active", new: 0}]})
+}"""
+
 
 @pytest.fixture(scope="module")
 def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
@@ -45,6 +52,12 @@ def expect_switches(explorer: ExplorerPage, on: set[str]) -> None:
 def test_a_widget_keeps_the_last_state_that_the_server_sets(explorer: ExplorerPage) -> None:
     assert explorer.page.evaluate(_ENABLE_AGAIN, "▶ Play") is False
     expect(explorer.button("▶ Play")).to_be_enabled()
+
+
+def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: ExplorerPage) -> None:
+    explorer.radio("III").evaluate(_CHOOSE_BEFORE_AN_OLDER_CHOICE)
+    explorer.wait_for_view("case=III")
+    expect(explorer.radio("III")).to_be_checked()
 
 
 def test_buttons_are_enabled_shortly_after_their_orbits_were_cleared(explorer: ExplorerPage) -> None:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 import numpy as np
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
 from engine.service import compute_preview, preview_spec
@@ -29,6 +29,10 @@ def assert_same_fates(explorer: ExplorerPage, expected: np.ndarray) -> None:
     np.testing.assert_array_equal(shown[escaped] - list(OUTCOMES).index(Fate.BOUNDED), expected[escaped])
 
 
+def exact_energy(explorer: ExplorerPage) -> Locator:
+    return explorer.page.get_by_label("Exact h", exact=True)
+
+
 def test_previews_follow_the_slider_and_the_map_its_release(explorer: ExplorerPage) -> None:
     explorer.page.evaluate(WATCH)
     explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=50)
@@ -36,7 +40,7 @@ def test_previews_follow_the_slider_and_the_map_its_release(explorer: ExplorerPa
     expect(explorer.text("Preview up to t = 100")).to_be_visible()
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (112, 112), t_max=100.0)
     # The number follows the previews.
-    expect(explorer.page.get_by_label("Exact h", exact=True)).to_have_value("0.46")
+    expect(exact_energy(explorer)).to_have_value("0.46")
     assert_same_fates(explorer, compute_preview(preview_spec(spec)).fate)
     explorer.page.mouse.up()
     explorer.wait_for_view("h=0.46&")
@@ -84,3 +88,36 @@ def test_the_energy_plane_opens_the_plane_of_an_energy(explorer: ExplorerPage) -
     explorer.wait_for_view("plane=x_px", "orbits=")
     explorer.page.wait_for_url(re.compile(r"h=0\.(29|30)\d+.*orbits=0\.\d+,0\.0"))
     expect(verdict).to_have_text(sentence)
+
+
+def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer: ExplorerPage) -> None:
+    explorer.pick("III")
+    explorer.type_number("Exact h", "0.6")
+    explorer.wait_for_view("case=III", "h=0.6&")
+    expect(exact_energy(explorer)).to_have_value("0.6")
+
+
+def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: ExplorerPage) -> None:
+    exact_energy(explorer).press("ControlOrMeta+a")
+    exact_energy(explorer).press_sequentially("0.6")
+    # Without taking the focus from the box.
+    explorer.radio("III").evaluate("radio => radio.click()")
+    explorer.wait_for_view("case=III", "h=0.35&")
+    expect(exact_energy(explorer)).to_have_value("0.6")
+    exact_energy(explorer).press("Enter")
+    explorer.wait_for_view("case=III", "h=0.6&")
+
+
+def test_the_number_before_can_be_typed_for_another_case(explorer: ExplorerPage) -> None:
+    exact_energy(explorer).press("ControlOrMeta+a")
+    exact_energy(explorer).press_sequentially("0.19")
+    explorer.radio("II").evaluate("radio => radio.click()")
+    explorer.wait_for_view("case=II", "h=0.2&")
+    exact_energy(explorer).press("Enter")
+    explorer.wait_for_view("case=II", "h=0.19&")
+
+
+def test_a_box_that_is_left_empty_shows_the_energy_again(explorer: ExplorerPage) -> None:
+    exact_energy(explorer).fill("")
+    exact_energy(explorer).press("Tab")
+    expect(exact_energy(explorer)).to_have_value("0.19")

@@ -63,8 +63,8 @@ def everything_open(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
 @pytest.mark.parametrize(
     ("role", "name"),
     [
-        ("radiogroup", "Case"), ("radiogroup", "Plane"), ("radio", "III"), ("group", "Energy h"), ("textbox", "Exact h"),
-        ("combobox", "t_max"), ("combobox", "Resolution"), ("combobox", "Colours"), ("group", "Layers"),
+        ("radiogroup", "Case"), ("radiogroup", "Plane"), ("radio", "III"), ("group", "Energy h"), ("spinbutton", "Exact h"),
+        ("combobox", "t_max"), ("combobox", "Resolution"), ("combobox", "Colours"),
         ("checkbox", "Pixels to trust"), ("radiogroup", "Drag over a map to"), ("radiogroup", "Analysis"),
         ("radiogroup", "Orbits"), ("textbox", "x"), ("textbox", "px"), ("button", "Play"), ("button", "Pause"),
         ("button", "Next frame"), ("button", "Previous frame"), ("group", "Time along the orbits"), ("button", "Copy link"),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import panel as pn
 
 from app.state.view_state import IMAGE_CHOICES, LAYERS, Analysis, ViewState
@@ -30,19 +28,27 @@ ANALYSIS_LABELS = {
 
 
 class LayerSwitches:
-    """Switches that write to the view state and follow it."""
+    """Switches that write to the view state and follow it.
+
+    They are separate widgets: of one that held them all, a change by the user would undo one that the server has just sent.
+    """
 
     def __init__(self, state: ViewState) -> None:
         self._state = state
-        options = {LAYER_LABELS[name]: name for name in LAYERS}
-        self.switches = Switches(label="Layers", options=options, value=self._on(), margin=(0, 10))
-        self.switches.param.watch(self._write, "value")
+        self.switches = {name: self._make(name) for name in LAYERS}
         self._images: SegmentedControl | None = None
-        state.param.watch(lambda *events: self.switches.param.update(value=self._on()), list(LAYERS))
 
     def parts(self) -> list[pn.viewable.Viewable]:
         """The switches and, while the manifolds are on, the choice of an image."""
-        return [self.switches, *([self._choose_image()] if self._state.manifolds else [])]
+        return [*self.switches.values(), *([self._choose_image()] if self._state.manifolds else [])]
+
+    def _make(self, name: str) -> Switches:
+        """The switch of a layer."""
+        on = [LAYER_LABELS[name]]
+        switch = Switches(label="Layer", options=on, value=on if getattr(self._state, name) else [], margin=(0, 10, 4, 10))
+        switch.param.watch(lambda event: self._write(name, on=bool(event.new)), "value")
+        self._state.param.watch(lambda event: switch.param.update(value=on if event.new else []), name)
+        return switch
 
     def _choose_image(self) -> SegmentedControl:
         """The choice, made when it is first wanted."""
@@ -51,12 +57,9 @@ class LayerSwitches:
             self._images = bind(images, self._state, "images")
         return self._images
 
-    def _on(self) -> list[str]:
-        return [name for name in LAYERS if getattr(self._state, name)]
-
-    def _write(self, event: Any) -> None:
+    def _write(self, name: str, *, on: bool) -> None:
         with pn.io.hold():
-            self._state.param.update({name: name in event.new for name in LAYERS})
+            self._state.param.update({name: on})
 
 
 class AnalysisTabs:

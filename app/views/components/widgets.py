@@ -9,9 +9,6 @@ import panel as pn
 import param
 from bokeh.document import Document
 
-NUMBER_FORMAT = "0.[000000000000000]"
-"""Number boxes show up to 15 decimals; a 16th would show the rounding error of numbers such as 0.28."""
-
 
 class _NamedGroup:
     """Mixin: the widget's element gets a role and its label as accessible name, which Bokeh does not set."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import panel as pn
-from bokeh.events import DoubleTap, Event, PointEvent, RangesUpdate, SelectionGeometry, Tap
+from bokeh.events import DoubleTap, Event, PinchEnd, PointEvent, RangesUpdate, SelectionGeometry, Tap
 from bokeh.models import (
     BoxSelectTool,
     BoxZoomTool,
@@ -37,6 +37,7 @@ from app.views.maps.map_legend import MapLegend
 from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
+from app.views.maps.two_fingers import TwoFingers
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
 from plots.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
 from plots.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
@@ -98,6 +99,7 @@ class MapsView:
         self._on_zoom, self._on_rest = on_zoom, on_rest
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._hover = pixel_hover(self.source, self.overlays.doubts, *self._ranges)
+        self._fingers = TwoFingers(*self._ranges)
         self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
         self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover)
         self._on_tap, self._on_box = on_tap, on_box
@@ -131,6 +133,9 @@ class MapsView:
 
     def begin_touch(self) -> None:
         """The page is used by touch: on a narrow screen one picture is shown, chosen with the picker."""
+        # The wheel's tool would answer to two fingers, too.
+        others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
+        self._toolbar.update(tools=others, active_scroll=None)
         self.picker.visible = True
         self._grid.objects = [*self._picker(), *self._grid.objects]
 
@@ -316,11 +321,13 @@ class MapsView:
         plot = self.figures[name] = square_figure(name, TITLES[name], x_range=x, y_range=y, x_axis_label="x")
         plot.toolbar = self._toolbar
         self._paint(name)
+        self._fingers.follow_on(plot)
         # Two quick clicks, even at two places, are one tap and one double tap.
         events: dict[type[Event], Callable[[Any], None]] = {
             Tap: self._tapped,
             DoubleTap: self._tapped,
             SelectionGeometry: self._boxed,
+            PinchEnd: lambda event: self._end_gesture(),
         }
         if name == "curves":
             # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.

@@ -57,7 +57,7 @@ class MapToolbar:
         return self._row
 
     def begin_touch(self) -> None:
-        """The page is used by touch: one finger scrolls the page until another mode is chosen, two fingers zoom."""
+        """The page is used by touch: one finger scrolls the page until another mode is chosen."""
         self.drag.param.update(options=[Drag.SCROLL, Drag.PAN, Drag.ZOOM, Drag.COUNT], value=Drag.SCROLL)
 
     def follow(self, history: History, *, zoomed: bool) -> None:

@@ -116,7 +116,11 @@ export function render({model, el}) {
     model.send_msg({link: window.location.search, entry, steps})
   }
   window.addEventListener("popstate", tell_entry)
+  // The browser would scroll the page when two fingers on a map move the same way.
+  const hold_page = event => { if (event.touches.length > 1 && comes_from(event, ".map")) event.preventDefault() }
+  document.addEventListener("touchstart", hold_page, {passive: false})
   model.on("lifecycle:remove", () => {
+    document.removeEventListener("touchstart", hold_page)
     window.removeEventListener("popstate", tell_entry)
     document.removeEventListener("keydown", listen)
     document.removeEventListener("themechange", tell_theme)

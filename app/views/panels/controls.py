@@ -15,7 +15,8 @@ from app.state.system import SYSTEM, System
 from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
-from app.views.components.widgets import NUMBER_FORMAT, SegmentedControl, Slider, Switches, bind, button
+from app.views.components.number_box import NumberBox
+from app.views.components.widgets import SegmentedControl, Slider, Switches, bind, button
 from engine import CASES, Plane
 from plots.palette import PALETTES
 
@@ -80,10 +81,10 @@ class Controls:
         )
         self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.play = button(PLAY, actions.play, width=84, css_classes=["half"], margin=(0, 10), align="end")
-        self.exact_energy = pn.widgets.FloatInput(
+        self.exact_energy = NumberBox(
+            self._take_exact_energy,
+            state.energy,
             label="Exact h",
-            value=state.energy,
-            format=NUMBER_FORMAT,
             sizing_mode="stretch_width",
             css_classes=["half"],
             margin=(0, 0, 0, 10),
@@ -138,7 +139,6 @@ class Controls:
         state = self.state
         self.case.param.watch(lambda event: self._take_case(event.new), "value")
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
-        self.exact_energy.param.watch(self._take_exact_energy, "value")
         state.param.watch(lambda *events: self._follow_system(), list(SYSTEM))
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
         state.param.watch(lambda event: self.plane.param.update(value=event.new), "plane")
@@ -157,11 +157,7 @@ class Controls:
 
     def show_energy(self, energy: float) -> None:
         """Show the energy of a preview as a number."""
-        self._following = True
-        try:
-            self.exact_energy.value = round(energy, self.state.system.energies.decimals)
-        finally:
-            self._following = False
+        self.exact_energy.show(round(energy, self.state.system.energies.decimals))
 
     def _preview(self, event: Any) -> None:
         """The slider moves; a move to the energy of the state is the end of a drag, or follows the state."""
@@ -209,10 +205,9 @@ class Controls:
         energies = self.state.system.energies
         return float(min(max(self.state.energy, energies.low), energies.high))
 
-    def _take_exact_energy(self, event: Any) -> None:
-        if event.new is not None and not self._following:
-            with pn.io.hold():
-                self.state.energy = event.new
+    def _take_exact_energy(self, energy: float) -> None:
+        with pn.io.hold():
+            self.state.energy = energy
 
     def _follow_system(self) -> None:
         """Show slider, ticks, formula, channels and escape energy of the system."""
@@ -249,7 +244,8 @@ class Controls:
         # The browser uses a new format when the value changes.
         self.energy.format = _slider_format(shown, energies)
         self.energy.param.update(value=shown, disabled=on_h, label="Energy is the vertical axis here" if on_h else label)
-        self.exact_energy.param.update(value=state.energy, disabled=on_h)
+        self.exact_energy.disabled = on_h
+        self.exact_energy.show(state.energy)
         self.play.disabled = on_h
 
 

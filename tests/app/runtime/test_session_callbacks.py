@@ -48,6 +48,18 @@ def test_calls_of_threads_run_on_the_loop_with_lock_and_document() -> None:
     run_on_new_loop(scenario)
 
 
+def test_all_changes_of_a_call_are_held_and_sent_together() -> None:
+    async def scenario() -> None:
+        (session, _owner), seen = await new_session(), list[Any]()
+        document = session.document
+        SessionCallbacks(document).every(lambda: seen.append(document.callbacks.hold_value))()
+        await wait_for(lambda: seen)
+        assert seen == ["combine"]
+        await wait_for(lambda: document.callbacks.hold_value is None)
+
+    run_on_new_loop(scenario)
+
+
 def test_of_waiting_calls_only_the_latest_runs() -> None:
     async def scenario() -> None:
         (session, _owner), seen = await new_session(), list[int]()

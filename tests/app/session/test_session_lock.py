@@ -22,6 +22,7 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
 from app.state.view_state import LAYERS, Analysis
+from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.maps.map_toolbar import Drag
 from engine import Plane
 from tests.app.other_loop import run_on_new_loop
@@ -29,15 +30,18 @@ from tests.app.other_loop import run_on_new_loop
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
     lambda explorer: explorer.orbits.playback.player.param.update(value=10),
-    lambda explorer: explorer.controls.exact_energy.param.update(value=0.3),
+    lambda explorer: explorer.controls.exact_energy._receive({"number": 0.3, "typed": 1}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
     # As the lists do.
     lambda explorer: explorer.state.param.update(t_max=1e3),
     lambda explorer: explorer.state.param.update(resolution=112),
     lambda explorer: explorer.state.param.update(palette="safe"),
-    lambda explorer: explorer.controls.layers.switches.param.update(value=list(LAYERS)),
-    lambda explorer: explorer.controls.layers.switches.param.update(value=[]),
+    *(
+        lambda explorer, name=name, on=on: explorer.controls.layers.switches[name].param.update(value=on)
+        for name in LAYERS
+        for on in ([LAYER_LABELS[name]], [])
+    ),
     # As the tabs do.
     *(lambda explorer, analysis=analysis: explorer.state.param.update(analysis=analysis) for analysis in Analysis),
     *(lambda explorer, drag=drag: explorer.toolbar.drag.param.update(value=drag) for drag in (Drag.ZOOM, Drag.COUNT)),

@@ -7,21 +7,23 @@ from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS, 
 
 
 def test_there_is_a_labelled_switch_for_each_layer() -> None:
-    assert list(LayerSwitches(ViewState()).switches.options.values()) == list(LAYERS) == list(LAYER_LABELS)
+    switches = LayerSwitches(ViewState()).switches
+    assert list(switches) == list(LAYERS) == list(LAYER_LABELS)
+    assert [switch.options for switch in switches.values()] == [[label] for label in LAYER_LABELS.values()]
 
 
 def test_a_switch_changes_the_state() -> None:
     state = ViewState()
-    LayerSwitches(state).switches.value = ["trust"]
+    LayerSwitches(state).switches["trust"].value = [LAYER_LABELS["trust"]]
     assert [name for name in LAYERS if getattr(state, name)] == ["trust"]
 
 
 def test_the_switches_follow_the_state() -> None:
     state = ViewState(judge=True)
     layers = LayerSwitches(state)
-    assert layers.switches.value == ["judge"]
+    assert [name for name, switch in layers.switches.items() if switch.value] == ["judge"]
     state.param.update(judge=False, manifolds=True)
-    assert layers.switches.value == ["manifolds"]
+    assert [name for name, switch in layers.switches.items() if switch.value] == ["manifolds"]
 
 
 def test_there_is_a_labelled_tab_for_each_analysis() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from bokeh.models import BoxSelectTool, BoxZoomTool, PanTool
+from bokeh.models import BoxSelectTool, BoxZoomTool, PanTool, WheelZoomTool
 
 from app.views.maps.map_plots import SHORT_TITLES, MapsView
 from app.views.maps.map_toolbar import Drag
@@ -57,6 +57,12 @@ def test_pictures_on_demand_are_on_the_page_while_they_are_shown(maps: MapsView)
         maps.show_pictures(on_demand)
         counts.append(len(grid.objects))
     assert counts == [len(ALWAYS) + 1, len(TITLES), len(ALWAYS)]
+
+
+def test_on_touch_screens_the_tool_of_the_wheel_leaves_two_fingers_alone(maps: MapsView) -> None:
+    assert tools(maps, WheelZoomTool)
+    maps.begin_touch()
+    assert not tools(maps, WheelZoomTool)
 
 
 def test_the_picker_of_a_touch_device_marks_one_picture(maps: MapsView) -> None:

@@ -89,7 +89,7 @@ def test_after_an_animation_an_energy_that_it_passed_can_be_chosen(page: Page) -
 
 
 def test_an_energy_beyond_the_slider_can_be_typed(page: Page) -> None:
-    page.controls.exact_energy.value = 0.7
+    page.controls.exact_energy._receive({"number": 0.7, "typed": 1})
     assert page.state.energy == 0.7
     assert page.controls.energy.value == page.controls.energy.end
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from panel.widgets import Widget
 
-from app.state.view_state import IMAGE_CHOICES, ViewState
+from app.state.view_state import IMAGE_CHOICES, LAYERS, ViewState
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.widgets import SegmentedControl, Switches
 from app.views.panels.controls import LOCK, ControlActions, Controls
@@ -28,16 +28,16 @@ def lock_of(panel: Controls) -> Widget:
 def test_the_choice_of_an_image_is_there_while_the_manifolds_are_on() -> None:
     state = ViewState()
     layers = LayerSwitches(state)
-    assert layers.parts() == [layers.switches]
+    assert layers.parts() == [*layers.switches.values()]
     state.manifolds = True
-    assert len(layers.parts()) == 2
+    assert len(layers.parts()) == len(LAYERS) + 1
     state.manifolds = False
-    assert layers.parts() == [layers.switches]
+    assert layers.parts() == [*layers.switches.values()]
 
 
 def test_the_image_changes_the_state_and_follows_it() -> None:
     state = ViewState(manifolds=True)
-    images = LayerSwitches(state).parts()[1]
+    images = LayerSwitches(state).parts()[-1]
     assert isinstance(images, SegmentedControl)
     assert list(images.options.values()) == list(IMAGE_CHOICES.values())
     images.value = 2
@@ -50,9 +50,9 @@ def test_the_fold_of_layers_has_the_image_when_the_manifolds_are_switched_on(loc
     state = ViewState()
     panel = controls(state, locks)
     fold = panel._folds[1].layout()
-    assert len(fold.objects) == 1
+    assert len(fold.objects) == len(LAYERS)
     state.manifolds = True
-    assert len(fold.objects) == 2
+    assert len(fold.objects) == len(LAYERS) + 1
 
 
 def test_the_lock_asks_for_the_limits_of_the_map(locks: list[bool]) -> None:

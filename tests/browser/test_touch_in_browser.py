@@ -1,0 +1,101 @@
+"""The page under the fingers: one scrolls it, two move and zoom a map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect
+
+from tests.browser.conftest import QUICK
+from tests.browser.explorer_page import ExplorerPage
+
+STEPS = 12
+
+Path = tuple[tuple[float, float], tuple[float, float]]
+"""Where a finger begins and ends, in pixels from the middle of a picture."""
+
+
+@pytest.fixture(scope="module")
+def opened(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    # On a wide screen the maps keep their place when the line above them changes.
+    return open_touched(open_for_all, 1600)
+
+
+def open_touched(open_page: Callable[..., ExplorerPage], width: int) -> ExplorerPage:
+    explorer = open_page(width, 900, QUICK, touch=True)
+    expect(explorer.radio("Scroll")).to_be_checked()
+    return explorer
+
+
+def move_fingers(explorer: ExplorerPage, *paths: Path) -> None:
+    """Move fingers over the picture of the basins, all at once and in steps."""
+    begins, ends = (middle_of(explorer) + np.array([path[end] for path in paths]) for end in (0, 1))
+    session = explorer.page.context.new_cdp_session(explorer.page)
+
+    def touch(kind: str, points: np.ndarray) -> None:
+        touches = [{"x": float(x), "y": float(y), "id": number} for number, (x, y) in enumerate(points)]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
+
+    touch("touchStart", begins)
+    for step in range(1, STEPS + 1):
+        touch("touchMove", begins + (ends - begins) * step / STEPS)
+    touch("touchEnd", ends[:0])
+    session.detach()
+
+
+def middle_of(explorer: ExplorerPage) -> np.ndarray:
+    """The middle of the picture on the screen."""
+    (x, _), (ordinate, _) = window(explorer)
+    return np.array(explorer.point("basins", x, ordinate))
+
+
+def window(explorer: ExplorerPage) -> np.ndarray:
+    """Middle and side of the window on each axis, shape (2, 2)."""
+    x_low, x_high, low, high = explorer.ranges("basins")
+    return np.array([[0.5 * (x_low + x_high), x_high - x_low], [0.5 * (low + high), high - low]])
+
+
+def test_one_finger_scrolls_the_page_and_leaves_the_map(open_explorer: Callable[..., ExplorerPage]) -> None:
+    phone = open_touched(open_explorer, 420)
+    before, address = window(phone), phone.page.url
+    move_fingers(phone, ((0, 60), (0, -100)))
+    phone.page.wait_for_function("() => window.scrollY > 50")
+    np.testing.assert_array_equal(window(phone), before)
+    assert phone.page.url == address
+
+
+def test_one_finger_moves_the_map_if_the_user_wants(explorer: ExplorerPage) -> None:
+    before = window(explorer)
+    explorer.set_drag("Move")
+    move_fingers(explorer, ((0, 60), (0, 0)))
+    explorer.wait_for_view("window=")
+    np.testing.assert_allclose(window(explorer)[:, 1], before[:, 1])
+    assert window(explorer)[1, 0] < before[1, 0]
+    assert explorer.page.evaluate("() => window.scrollY") == 0
+    explorer.pick("Scroll")
+
+
+def test_two_fingers_that_move_the_same_way_move_the_map(explorer: ExplorerPage) -> None:
+    before, middle = window(explorer), middle_of(explorer)
+    move_fingers(explorer, ((-50, 0), (-10, -60)), ((50, 0), (90, -60)))
+    explorer.wait_for_view("window=")
+    np.testing.assert_allclose(window(explorer)[:, 1], before[:, 1], rtol=1e-6)
+    # What was between the fingers still is.
+    np.testing.assert_allclose(explorer.point("basins", *before[:, 0]), np.add(middle, (40, -60)), atol=1.0)
+    assert explorer.page.evaluate("() => window.scrollY") == 0
+
+
+def test_two_fingers_that_part_zoom_the_map(explorer: ExplorerPage) -> None:
+    before, middle = window(explorer), middle_of(explorer)
+    move_fingers(explorer, ((-40, 0), (-80, 0)), ((40, 0), (80, 0)))
+    explorer.wait_for_view("window=")
+    np.testing.assert_allclose(window(explorer)[:, 1], 0.5 * before[:, 1], rtol=1e-6)
+    np.testing.assert_allclose(explorer.point("basins", *before[:, 0]), middle, atol=1.0)
+
+
+def test_what_two_fingers_do_is_one_entry_of_the_history(explorer: ExplorerPage) -> None:
+    move_fingers(explorer, ((-80, 0), (-40, 30)), ((80, 0), (60, 30)))
+    explorer.wait_for_view("window=")
+    assert explorer.page.evaluate("history.state.entry") == 1
