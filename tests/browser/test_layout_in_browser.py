@@ -48,7 +48,7 @@ _ELEMENTS = """() => {
     return count
 }"""
 _LEGEND = """legend => [...legend.querySelectorAll(".patch")]
-    .map(patch => [patch.parentElement.textContent.trim(), patch.getAttribute("style").replace("background:", "")])"""
+    .map(patch => [patch.textContent.trim(), patch.getAttribute("style").replace("--colour:", "")])"""
 _IDLE = ("← Back", "Forward →", "Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find its twin", "Count the whole view")
 
 
@@ -85,7 +85,7 @@ def phone(open_for_all: OpenExplorer) -> ExplorerPage:
 
 def test_the_page_opens_with_few_models_and_elements(wide: ExplorerPage) -> None:
     assert wide.page.evaluate("() => Bokeh.documents[0]._all_models.size") <= 250
-    assert wide.page.evaluate(_ELEMENTS) <= 1220
+    assert wide.page.evaluate(_ELEMENTS) <= 1200
 
 
 def test_nothing_idle_is_shown(wide: ExplorerPage) -> None:

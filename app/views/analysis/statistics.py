@@ -117,7 +117,7 @@ class StatisticsView:
     def _table(self, statistics: EscapeStatistics) -> str:
         shares, intervals = statistics.shares, statistics.share_intervals
         body = "".join(
-            f"<tr><td>{patch(colour)}{name}</td><td>{percent(shares[code], 2)}</td>"
+            f"<tr><td>{patch(colour, name)}</td><td>{percent(shares[code], 2)}</td>"
             f"<td class='quiet'>{percent_range(*intervals[code])}</td></tr>"
             for name, colour, code in self._shares(statistics)
         )

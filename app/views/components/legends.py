@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from plots.palette import Entry, Palette
 
 
-def patch(colour: str) -> str:
-    """HTML of a patch of a colour."""
-    return f"<span class='patch' style='background:{colour}'></span>"
+def patch(colour: str, label: str = "") -> str:
+    """HTML of a patch of a colour, with a label (HTML) beside it."""
+    return f"<span class='patch' style='--colour:{colour}'>{label}</span>"
 
 
 def legend_items(entries: Iterable[Entry]) -> str:
     """HTML of the entries of a legend."""
-    return "".join(f"<span>{patch(entry.colour)}{entry.label}</span>" for entry in entries)
+    return "".join(patch(entry.colour, entry.label) for entry in entries)
 
 
 def legend(entries: Iterable[Entry]) -> str:

@@ -11,13 +11,12 @@ from panel.custom import JSComponent
 
 _BOX = """
 export function render({model, el}) {
-  const group = document.createElement("div"), label = document.createElement("label"), input = document.createElement("input")
-  group.className = "number-box"
+  const label = document.createElement("label"), input = document.createElement("input")
+  el.classList.add("number-box")
   label.htmlFor = input.id = "number"
   input.className = "bk-input"
   input.type = "number"
-  group.append(label, input)
-  el.append(group)
+  el.append(label, input)
   // Numbers typed so far. A number of the server that does not count them all is older than the last one typed.
   let typed = model.shown.typed
   let typing = false

@@ -73,4 +73,4 @@ def _colour_scale(palette: Palette, longest: float, *, locked: bool) -> str:
     stops = ",".join(colours[round(step * (len(colours) - 1) / _STEPS)] for step in range(_STEPS + 1))
     bar = f"<i class='scale' style='background:linear-gradient(90deg,{stops})'></i>"
     kind = "logarithmic, locked" if locked else "logarithmic"
-    return f"<span>≤ {SHORTEST_TIME:g} {bar} ≥ {grouped(longest)}</span><span>({kind})</span>"
+    return f"<span>≤ {SHORTEST_TIME:g} {bar} ≥ {grouped(longest)}</span>({kind})"

@@ -10,7 +10,7 @@ from app.views.maps.map_legend import MapLegend
 from engine import CASES, Fate, MapSpec, Plane
 from plots.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
 
-PATCH = re.compile(r"background:(#[0-9a-f]+)'></span>([^<]+)")
+PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]+)")
 
 
 def entries(legend: MapLegend) -> list[tuple[str, str]]:
