@@ -116,4 +116,4 @@ def test_the_legend_of_passages_has_a_patch_for_each_pair(palette: Palette) -> N
     html = passage_legend(palette, 3)
     for origin, fate in itertools.product(range(4), repeat=2):
         assert palette.passage_colour(origin, fate) in html
-    assert html.count("background:") == 16
+    assert html.count("--colour:") == 16
