@@ -37,6 +37,7 @@ def switch(explorer: ExplorerPage, label: str) -> None:
     explorer.page.get_by_label(label, exact=True).click()
 
 
+@pytest.mark.slow
 def test_doubtful_pixels_are_those_of_the_engine_and_follow_the_switch(explorer: ExplorerPage) -> None:
     switch(explorer, "Pixels to trust")
     expect(explorer.text("of the pixels inside are doubtful")).to_be_visible()

@@ -37,6 +37,7 @@ def test_a_window_of_1e_12_of_the_plane_is_computed(explorer: ExplorerPage, wind
     expect(explorer.text(re.compile(r"\(-?0\.\d{14,17}, -?0\.\d{14,17}\)"))).to_be_visible()
 
 
+@pytest.mark.slow
 def test_zooming_beyond_double_precision_gives_a_message_and_the_picture_stays(explorer: ExplorerPage, window: Window) -> None:
     limit = explorer.page.get_by_role("alert").filter(has_text="double precision ends here")
     for _ in range(12):

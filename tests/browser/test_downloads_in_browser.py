@@ -71,6 +71,7 @@ def test_the_link_is_copied(small: ExplorerPage) -> None:
     assert small.page.evaluate("() => navigator.clipboard.readText()") == small.page.url
 
 
+@pytest.mark.slow
 def test_a_link_has_palette_orbits_and_the_chosen_one(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=SMALL + "&look=1&palette=safe")
     explorer.wait_for_data("starts", "data.x.length == 2")

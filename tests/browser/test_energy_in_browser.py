@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from playwright.sync_api import Locator, expect
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
@@ -76,6 +77,7 @@ def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callab
     assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
 
 
+@pytest.mark.slow
 def test_the_energy_plane_opens_the_plane_of_an_energy(explorer: ExplorerPage) -> None:
     explorer.pick("II")
     explorer.pick("(x, h)")

@@ -101,6 +101,7 @@ def test_bars_have_texts(open_explorer: OpenExplorer, chart: str, texts: tuple[s
     expect_tooltip(explorer, *texts)
 
 
+@pytest.mark.slow
 def test_a_locked_scale_stays_across_energies_and_in_a_shared_link(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW)
     legend = explorer.text("≥")

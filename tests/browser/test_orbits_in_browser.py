@@ -21,6 +21,7 @@ def click_all(explorer: ExplorerPage, starts: list[tuple[float, float]]) -> None
         explorer.wait_for_data("starts", f"data.x.length == {place + 1}")
 
 
+@pytest.mark.slow
 def test_five_orbits_are_marked_in_their_colours(for_orbits: ExplorerPage) -> None:
     click_all(for_orbits, STARTS)
     marks = for_orbits.model_data("starts")
@@ -34,6 +35,7 @@ def test_five_orbits_are_marked_in_their_colours(for_orbits: ExplorerPage) -> No
         )
 
 
+@pytest.mark.slow
 def test_plots_stay_on_the_page_while_their_orbits_are_integrated(explorer: ExplorerPage) -> None:
     explorer.click("basins", *STARTS[0])
     explorer.wait_for_data("paths", "data.xs.length == 1")
@@ -109,6 +111,7 @@ def test_a_time_moves_along_path_sali_and_r2_together(for_orbits: ExplorerPage) 
     assert spans[0][0][1] > 0
 
 
+@pytest.mark.slow
 def test_orbits_can_be_cleared_while_their_time_plays(for_orbits: ExplorerPage) -> None:
     for _ in range(2):
         for_orbits.click("basins", 0.1, 0.05)

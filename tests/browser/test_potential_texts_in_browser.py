@@ -41,6 +41,7 @@ def test_a_refused_potential_stays_in_the_box_and_its_well_can_be_used(open_expl
     explorer.page.wait_for_url(re.compile("case=typed"))
 
 
+@pytest.mark.slow
 def test_a_text_beyond_the_limit_is_refused_and_not_cut(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"?case=I&h=0.25&{SMALL}")
     explorer.press("Other …")
@@ -50,12 +51,14 @@ def test_a_text_beyond_the_limit_is_refused_and_not_cut(open_explorer: OpenExplo
     expect(box).to_have_value(text)
 
 
+@pytest.mark.slow
 def test_the_controls_name_the_parameters_and_their_formula(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"?case=I&omega_1=1.46&h=0.25&{SMALL}")
     expect(explorer.text("V = 1.0658x² + y²/2 − xy²")).to_be_visible()
     expect(explorer.text("Case I with ω1 = 1.46")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_verdict_on_a_short_orbit_is_that_of_its_indicators(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=II&plane=x_h&orbits=0.3,0.05&t_max=100&resolution=112")
     expect(
@@ -64,12 +67,14 @@ def test_the_verdict_on_a_short_orbit_is_that_of_its_indicators(open_explorer: O
     expect(explorer.page.get_by_label("chaos indicators").get_by_text("undecided")).to_have_count(3)
 
 
+@pytest.mark.slow
 def test_certified_orbits_are_bounded_for_ever_in_all_texts(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=I&h=0.14&orbits=-0.3,0.0;-0.305,0.0&t_max=1e4&resolution=112")
     expect(explorer.text("Bounded for ever (certified: quasi-periodic, as on an invariant torus) and regular")).to_be_visible()
     expect(explorer.page.get_by_role("radio", name="bounded for ever, regular")).to_have_count(2)
 
 
+@pytest.mark.slow
 def test_a_link_restores_the_box_and_says_what_to_do_about_a_problem(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link="?case=I&h=0.25&t_max=7&resolution=1.12e2&box=-0.1,0.2,-0.05,0.3&analysis=statistics")
     expect(explorer.text("Ignored t_max=7: choose 100, 1 000, 10 000, 100 000 or 1 000 000.")).to_be_visible()

@@ -15,7 +15,7 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import RunningApp, running_app
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 # Bounded orbits, whose integration takes longer than any test.
 LONG_MAP = "?case=III&h=0.26&resolution=900&t_max=1e%2B06&plane=x_y"

@@ -213,6 +213,7 @@ def test_regularity_is_removed_when_it_is_switched_off(begin: Callable[..., Sess
     assert session.analyses == MapAnalyses()
 
 
+@pytest.mark.slow
 def test_a_click_on_a_curve_opens_the_nearest_energy(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves

@@ -24,6 +24,7 @@ def henon_heiles() -> UncertaintyExponent:
     return compute_uncertainty_exponent(HENON_HEILES)
 
 
+@pytest.mark.slow
 def test_a_smooth_basin_boundary_has_exponent_one_and_the_correct_amplitude() -> None:
     energy = 1.0
     fit = compute_uncertainty_exponent(
