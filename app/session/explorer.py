@@ -258,7 +258,11 @@ class Explorer:
         state = self.state
         if state.orbit_spec((x, ordinate)) is None:
             self.notice.show(describe_fate(Fate.FORBIDDEN))
-        elif not state.add_start((x, ordinate)):
+            return
+        # The first orbits add figures and buttons: Bokeh searches the models of the page once for all of them.
+        with self._document.models.freeze():
+            added = state.add_start((x, ordinate))
+        if not added:
             self.notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 
     def _count_in(self, box: Window | None) -> None:

@@ -125,10 +125,11 @@ class OrbitPresenter:
         with pn.io.hold():
             self._mark()
             self._draw()
-            # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
-            self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
             self._separation.follow(orbits)
             self._indicators.follow(orbits)
+            # Last, as new texts would otherwise be changed again before they are on the page.
+            # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
+            self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
 
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
