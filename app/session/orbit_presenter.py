@@ -127,7 +127,7 @@ class OrbitPresenter:
             self._draw()
             self._separation.follow(orbits)
             self._indicators.follow(orbits)
-            # Last, as new texts would otherwise be changed again before they are on the page.
+            # Last: Panel links stylesheets of another host when it changes a text that is not in the document yet.
             # Orbits that are being integrated count too: to remove and add plots costs four times as much as the orbits.
             self.inspector.follow(len(orbits), sum(not one.problem for one in orbits))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from app.state.view_state import Analysis
+from app.state.view_state import DEFAULT_SIDE, Analysis
 from engine import Plane, Window
 
 GROUPS = ("The paper", "Places", "Explanations")
@@ -42,7 +42,7 @@ class Preset:
     energy: float
     window: Window | None = None
     t_max: float = 1e5
-    resolution: int = 224
+    resolution: int = DEFAULT_SIDE
     starts: tuple[tuple[float, float], ...] = ()
     judge: bool = False
     trust: bool = False

@@ -33,7 +33,7 @@ IMAGES = 3
 IMAGE_CHOICES = {**{str(image): image for image in range(1, IMAGES + 1)}, "all": 0}
 """Images of the stable manifolds that can be drawn."""
 
-DEFAULT_SIDE = 224
+DEFAULT_SIDE = MapSpec.resolution[0]
 """Columns and rows of the map at the opening."""
 
 RESOLUTION_CHOICES = {"112 × 112": 112, "224 × 224": 224, "450 × 450": 450, "900 × 900": 900}

@@ -231,13 +231,13 @@ def default_window(potential: Potential, plane: Plane, energy: float | tuple[flo
     >>> round(window.x_low, 4), round(window.x_high, 4)
     (-1.0056, 1.0056)
     """
-    _checked_highest_energy(energy)
-    return _default_window(potential, Plane(plane), tuple(energy) if isinstance(energy, tuple) else float(energy))
+    highest = _checked_highest_energy(energy)
+    return _default_window(potential, Plane(plane), (float(energy[0]), highest) if isinstance(energy, tuple) else highest)
 
 
 @functools.lru_cache(maxsize=1024)
 def _default_window(potential: Potential, plane: Plane, energy: float | tuple[float, float]) -> Window:
-    highest, units = _checked_highest_energy(energy), potential.units
+    highest, units = energy[1] if isinstance(energy, tuple) else energy, potential.units
     # An error about the exits is to name the energy as it is given.
     find_lyapunov_orbits(potential, highest)
     well, well_energy = potential.in_well_units, highest / units.energy

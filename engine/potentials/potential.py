@@ -221,7 +221,7 @@ class Potential(Result):
             ("omega_2", omega_2, FREQUENCIES),
             ("epsilon", epsilon, STRENGTHS),
         ):
-            if not low <= value <= high:
+            if not low <= checked_number(name, value) <= high:
                 raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
         symbols = (("ω1", omega_1), ("ω2", omega_2), ("ε", epsilon))
         changed = ", ".join(f"{symbol}={value:g}" for symbol, value in symbols if value != 1.0)

@@ -225,7 +225,10 @@ def _moved_to_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> s
     nearest = next(iter(_minima(points)), None)
     if nearest is None or nearest is _point_at_origin(points):
         return None
-    formula = write_formula(_shifted(potential, nearest.x, nearest.y), _MOVED_DIGITS)
+    terms = _shifted_terms(potential, nearest.x, nearest.y)
+    if any(abs(c) > COEFFICIENT_RANGE[1] for _, _, c in terms):
+        return None
+    formula = write_formula(Potential("", terms), _MOVED_DIGITS)
     return formula if len(formula) <= LONGEST_TEXT else None
 
 
@@ -292,8 +295,8 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     return tuple(remarks)
 
 
-def _shifted(potential: Potential, x: float, y: float) -> Potential:
-    """The potential expanded about its critical point (x, y), without the constant and linear terms."""
+def _shifted_terms(potential: Potential, x: float, y: float) -> tuple[tuple[int, int, float], ...]:
+    """The terms of the potential expanded about its critical point (x, y), without the constant and linear terms."""
     terms: dict[Powers, float] = {}
     for i, j, c in potential.terms:
         for k in range(i + 1):
@@ -302,5 +305,4 @@ def _shifted(potential: Potential, x: float, y: float) -> Potential:
                     part = c * comb(i, k) * comb(j, m) * x ** (i - k) * y ** (j - m)
                     terms[k, m] = terms.get((k, m), 0.0) + part
     largest = max(map(abs, terms.values()), default=0.0)
-    kept = ((k, m, c) for (k, m), c in terms.items() if abs(c) > _MOVED_ROUNDING * largest)
-    return Potential(f"{potential.name}, shifted", tuple(kept))
+    return tuple((k, m, c) for (k, m), c in terms.items() if abs(c) > _MOVED_ROUNDING * largest)

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import sympy
@@ -162,6 +164,12 @@ def test_case_1_saddles_for_other_parameters(a: float, b: float, epsilon: float)
 def test_parameters_out_of_range_are_refused(parameter: str, value: float) -> None:
     with pytest.raises(ValueError, match=f"{parameter}={value}"):
         CASES["I"].with_parameters(**{parameter: value})
+
+
+def test_a_parameter_that_is_no_number_is_named() -> None:
+    strengths: Any = np.array([0.1, 0.2])
+    with pytest.raises(ValueError, match="epsilon"):
+        CASES["I"].with_parameters(epsilon=strengths)
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -54,6 +54,8 @@ def test_refusal_gives_a_well_elsewhere_and_the_shifted_formula() -> None:
         ("r²/2", None),
         ("xy", None),
         ("x²y²", None),
+        # At the minimum the coefficient of x² would be above the largest that a formula may have.
+        ("x⁴ + 25820xy² + y⁴/2", None),
     ],
 )
 def test_the_nearest_well_elsewhere_is_offered_at_the_origin(formula: str, moved: str | None) -> None:
