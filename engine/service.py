@@ -57,7 +57,7 @@ from engine.taylor.jit.compiled_operations import compiled_operations
 from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
 from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
 from engine.trajectories.separation import LONGEST_SEPARATION
-from engine.validation import LONGEST_TIME
+from engine.validation import LARGEST_NUMBER, LONGEST_TIME
 from engine.warmup import (
     is_ready_for_maps,
     prepare_for_certificates,
@@ -70,6 +70,7 @@ from engine.wording import format_number, format_time, format_whole
 __all__ = [
     "ENTROPY_COUNTS_BOUNDED",
     "FREQUENCIES",
+    "LARGEST_NUMBER",
     "LARGEST_SIDE",
     "LONGEST_SEPARATION",
     "LONGEST_TEXT",

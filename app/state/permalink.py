@@ -21,7 +21,7 @@ from app.state.view_state import (
     allowed_t_max,
 )
 from engine import CASES, POTENTIALS, Plane, Window, review_potential
-from engine.service import FREQUENCIES, LONGEST_TEXT, STRENGTHS
+from engine.service import FREQUENCIES, LARGEST_NUMBER, LONGEST_TEXT, STRENGTHS
 from plots.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
@@ -208,7 +208,7 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "omega_2": ("omega_2", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
     "epsilon": ("epsilon", _between(*STRENGTHS), f"a number from {STRENGTHS[0]:g} to {STRENGTHS[1]:g}"),
     "plane": ("plane", _one_of(_PLANES), _listed(_PLANES)),
-    "h": ("energy", _read_number, "a number, such as 0.25"),
+    "h": ("energy", _between(-LARGEST_NUMBER, LARGEST_NUMBER), "a number, such as 0.25"),
     "window": ("window", _read_window, _WINDOW),
     "box": ("box", _read_window, _WINDOW),
     **{name: (name, _one_of(_SWITCH), "yes or no") for name in LAYERS},

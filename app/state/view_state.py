@@ -13,7 +13,7 @@ from app.runtime.process_state import process_state
 from app.state.energy_ranges import ENERGIES
 from app.state.system import SYSTEM, TYPED, System
 from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
-from engine.service import FREQUENCIES, STRENGTHS, OrbitRequest, UnresolvedMapSpec
+from engine.service import FREQUENCIES, LARGEST_NUMBER, STRENGTHS, OrbitRequest, UnresolvedMapSpec
 from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
@@ -88,7 +88,7 @@ class ViewState(param.Parameterized):
     omega_2 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along y")
     epsilon = param.Number(default=1.0, bounds=STRENGTHS, doc="strength of the perturbation")
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
-    energy = param.Number(default=ENERGIES["I"].first, doc="h; not used on (x, h)")
+    energy = param.Number(default=ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER), doc="h; not used on (x, h)")
     t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=DEFAULT_SIDE, objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(

@@ -195,15 +195,23 @@ def _dense_coefficients(terms: Terms, highest: int) -> np.ndarray:
 def _unique_points(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
     """Each of the points once."""
     tolerance = np.where(_is_degenerate(p, q, points), _DEGENERATE_ROOT_TOLERANCE, _SIMPLE_ROOT_TOLERANCE)
+    unique = points[_distinct(points, tolerance)]
+    refined = [
+        _refined_root(p, q, point) if flat else point for point, flat in zip(unique, _is_degenerate(p, q, unique), strict=True)
+    ]
+    roots = np.array([root for root in refined if root is not None]).reshape(-1, 2)
+    # Several inaccurate points can be refined to one root.
+    return roots[_distinct(roots, np.full(len(roots), _SIMPLE_ROOT_TOLERANCE))]
+
+
+def _distinct(points: np.ndarray, tolerance: np.ndarray) -> list[int]:
+    """Indices of points farther apart than a relative tolerance each (n,); of duplicates, the one of the smallest tolerance."""
     tolerance = tolerance * (1.0 + np.hypot(*points.T))
-    unique: list[int] = []
-    # Accurate points first, so that inaccurate ones nearby count as duplicates of them.
+    distinct: list[int] = []
     for k in np.argsort(tolerance, kind="stable"):
-        if not np.any(np.hypot(*(points[unique] - points[k]).T) <= tolerance[k]):
-            unique.append(int(k))
-    degenerate = _is_degenerate(p, q, points[unique])
-    roots = [_refined_root(p, q, points[k]) if flat else points[k] for k, flat in zip(unique, degenerate, strict=True)]
-    return np.array([root for root in roots if root is not None]).reshape(-1, 2)
+        if not np.any(np.hypot(*(points[distinct] - points[k]).T) <= tolerance[k]):
+            distinct.append(int(k))
+    return distinct
 
 
 def _refined_root(p: Terms, q: Terms, point: np.ndarray) -> np.ndarray | None:

@@ -121,3 +121,10 @@ def test_common_factor_without_real_roots() -> None:
     factor = X**2 + Y**2 + 1
     points = find_critical_points(terms_of(sympy.expand(4 * X * factor)), terms_of(sympy.expand(4 * Y * factor)))
     np.testing.assert_allclose(points, [[0.0, 0.0]], atol=1e-12)
+
+
+def test_inaccurate_roots_that_refine_to_one_root_are_returned_once() -> None:
+    # V = r²/2 + 1.95 x⁴ y⁶ has no critical point but the origin; Newton's method also ends at points near it.
+    value = (X**2 + Y**2) / 2 + 1.95 * X**4 * Y**6
+    points = find_critical_points(terms_of(sympy.diff(value, X)), terms_of(sympy.diff(value, Y)))
+    np.testing.assert_array_equal(points, [[0.0, 0.0]])
