@@ -18,6 +18,7 @@ from engine.dynamics.planes import Plane, start_states
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
 from engine.invariant_sets.birkhoff_averages import count_agreeing_digits
+from engine.invariant_sets.invariant_curves import LEAST_POINTS, find_invariant_curve
 from engine.invariant_sets.stable_manifolds import find_stable_manifolds
 from engine.maps.compute import compute_map
 from engine.maps.regularity import compute_regularity
@@ -142,6 +143,7 @@ def prepare_for_certificates(potential: Potential) -> None:
     _make_in_turn(
         lambda: count_agreeing_digits(well, start, _T_MAX, executor=_EXECUTOR),
         lambda: find_section_points(well, start, 1, _T_MAX, executor=_EXECUTOR),
+        lambda: find_invariant_curve(np.zeros((LEAST_POINTS, 2))),
     )
 
 

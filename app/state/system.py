@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from app.state.energy_ranges import ENERGIES, EnergyRange
 from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
+from engine.service import LARGEST_NUMBER
 from plots.palette import MOST_CHANNELS
 
 TYPED = "typed"
@@ -105,4 +106,6 @@ def refusal(found: PotentialReview) -> str | None:
         return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
     if found.refusal is None and found.escape_energy <= 0.0:
         return f"Its escape energy is {found.escape_energy:.6g}; leave out the constant term, so that it is above 0."
+    if found.refusal is None and _HIGH * found.escape_energy > LARGEST_NUMBER:
+        return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     return found.refusal

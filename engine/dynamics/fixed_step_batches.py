@@ -1,10 +1,10 @@
-"""Parallel fixed-step computations on many orbits, in tiles of `LANES` orbits on any executor."""
+"""Parallel fixed-step computations on many orbits, in tiles of at most `LANES` orbits on any executor."""
 
 from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from typing import Any
 
@@ -49,28 +49,51 @@ def map_tiles(
     -------
     (n, *shape) the results; NaN for orbits that were not computed because of `cancel`.
     """
-    executor = executor or default_executor()
-    most_running = 2 * count_workers(executor)
-    running: deque[tuple[int, Future[np.ndarray]]] = deque()
     results = np.full((len(states), *shape), np.nan)
+    for begin, result in run_tiles(work, potential, states, *arguments, executor=executor, cancel=cancel):
+        results[begin : begin + len(result)] = result
+    return results
 
-    def collect(left_running: int) -> None:
+
+def run_tiles(
+    work: Callable[..., Any],
+    potential: Potential,
+    states: np.ndarray,
+    *arguments: Any,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> Iterator[tuple[int, Any]]:
+    """Run a function on tiles of states in parallel; the first state of each tile and its result, without repeated lanes.
+
+    The parameters are those of `map_tiles`; `work` may return any sequence with one entry per lane.
+    """
+    executor = executor or default_executor()
+    workers = count_workers(executor)
+    lanes = _lanes_per_tile(len(states), workers)
+    running: deque[tuple[int, Future[Any]]] = deque()
+
+    def completed(left_running: int) -> Iterator[tuple[int, Any]]:
         while len(running) > left_running:
             begin, future = running.popleft()
             result = collect_result(future, cancel)
             if result is not None:
-                results[begin : begin + LANES] = result[: len(states) - begin]
+                yield begin, result[: len(states) - begin]
 
-    for begin in range(0, len(states), LANES):
-        collect(most_running - 1)
+    for begin in range(0, len(states), lanes):
+        yield from completed(2 * workers - 1)
         if is_cancelled(cancel):
             break
-        running.append((begin, executor.submit(work, potential, _copy_tile(states, begin), *arguments)))
-    collect(0)
-    return results
+        running.append((begin, executor.submit(work, potential, _copy_tile(states, begin, lanes), *arguments)))
+    yield from completed(0)
 
 
-def _copy_tile(states: np.ndarray, begin: int) -> np.ndarray:
-    """(columns, lanes) up to `LANES` states from row `begin`; the last state is repeated to fill whole SIMD vectors."""
-    lanes = min(LANES, -(-(len(states) - begin) // VECTOR) * VECTOR)
+def _lanes_per_tile(count: int, workers: int) -> int:
+    """A multiple of `VECTOR`, at most `LANES`, with two tiles for each worker if there are enough states."""
+    share = max(-(-count // (2 * workers)), 1)
+    return min(-(-share // VECTOR) * VECTOR, LANES)
+
+
+def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:
+    """(columns, lanes) up to `lanes` states from row `begin`; the last state is repeated to fill whole SIMD vectors."""
+    lanes = min(lanes, -(-(len(states) - begin) // VECTOR) * VECTOR)
     return states[np.minimum(np.arange(begin, begin + lanes), len(states) - 1)].T.copy()

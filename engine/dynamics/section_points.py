@@ -44,10 +44,11 @@ def find_section_points(
     -------
     (n, count, 2) x and px; NaN for points that were not found.
     """
-    return map_tiles(_find_section_points, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
+    return map_tiles(trace_section_points, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
 
 
-def _find_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
+def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
+    """As `find_section_points` for a tile of states (4, lanes), a multiple of `VECTOR`, which it changes; runs in a worker."""
     points = np.full((tile.shape[1], count, 2), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))

@@ -14,11 +14,13 @@ within T, against 30 for the other.
 
 from __future__ import annotations
 
+import functools
 import threading
 from concurrent.futures import Executor
 
 import numpy as np
 
+from engine.arrays import read_only
 from engine.dynamics.compiled import fixed_step_size, kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.potentials.potential import Potential
@@ -97,6 +99,7 @@ def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> n
     return agreeing.T
 
 
+@functools.lru_cache(maxsize=16)
 def window_weights(window: float, step: float) -> np.ndarray:
     """Kaiser weights I0(β √(1 − (2s − 1)²)), s = t/T, of the samples of a window of length T, normalised to sum 1.
 
@@ -109,4 +112,4 @@ def window_weights(window: float, step: float) -> np.ndarray:
     """
     weights: np.ndarray = np.kaiser(int(window / step), _KAISER_SHAPE)
     weights /= weights.sum()
-    return weights
+    return read_only(weights)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from engine.dynamics.batch import LANES
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.section_points import find_section_points
-from engine.execution import is_cancelled
+from engine.dynamics.fixed_step_batches import run_tiles
+from engine.dynamics.section_points import find_section_points, trace_section_points
+from engine.execution import collect_result, count_workers, default_executor, is_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, compare_averages
 from engine.invariant_sets.exit_entry_points import find_entry_points
 from engine.invariant_sets.invariant_curves import InvariantCurve, find_invariant_curve
@@ -28,11 +30,15 @@ _PROMISING_DIGITS = 3.5
 _MAX_TIME_SHARE, _MAX_WORK_SHARE = 0.4, 0.1
 _MAX_SEEDS = 2 * LANES
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
+# A coarse lattice with fewer candidates is left out, as a round with few orbits does not keep all workers busy.
+_SMALLEST_ROUND = 2 * LANES
 # Section points per orbit and the time to collect them; orbits per round for which an invariant curve is computed.
 _CURVE_POINTS = 800
 _CURVE_TIME = 8000.0
 _MAX_CURVES_PER_ROUND = 192
 _FIRST_POINT_TIME = 30.0
+# Smallest number of points that are worth a task.
+_LEAST_POINTS_PER_TASK = 1000
 
 
 class BoundednessCertifier:
@@ -80,6 +86,7 @@ class BoundednessCertifier:
         self._use_curves = bool(self._entry_points) and all(map(len, self._entry_points))
         if self._use_curves:
             self._points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, **self._execution)[:, 0]
+            self._on_section = np.isfinite(self._points).all(axis=1)
             self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
     def run(self, on_round: Callable[[], None]) -> None:
@@ -110,7 +117,7 @@ class BoundednessCertifier:
         for stride in _LATTICE_STRIDES:
             on_lattice = np.all(self.grid_indices % stride == stride // 2, axis=1)
             tested = np.flatnonzero(self._uncertified() & candidates & on_lattice)
-            if tested.size:
+            if tested.size >= _SMALLEST_ROUND or (stride == _LATTICE_STRIDES[-1] and tested.size):
                 yield tested
 
     def _most_promising(self, candidates: np.ndarray, duration: float) -> Iterator[np.ndarray]:
@@ -137,32 +144,91 @@ class BoundednessCertifier:
 
     def _certify_enclosed(self, regular: np.ndarray) -> None:
         """Certify orbits enclosed by the invariant curves of some of the given orbits."""
+        regular = regular[self._on_section[regular]]
         regular = regular[:: -(-regular.size // _MAX_CURVES_PER_ROUND) or 1]
-        curves = self._find_curves(regular)
-        for number in _alternating_by_size([0.0 if curve is None else curve.area for curve in curves]):
-            if is_cancelled(self._cancel):
-                return
-            curve = curves[number]
-            # The curve of an orbit that is enclosed already separates nothing more.
-            if curve is not None and not self._separated[regular[number]].all():
-                self._apply_curve(curve)
-                if self.potential.mirror_in_x:
-                    self._apply_curve(curve.mirrored())
+        arguments = (self.potential.mirror_in_x, self._entry_points)
+        tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, **self._execution)
+        found = [barrier for _, tile in tiles for barrier in tile]
+        if is_cancelled(self._cancel):
+            return
+        barriers = _without_enclosed(found, self._points[regular], self._separated[regular])
+        orbits = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
+        for part, separated in self._find_separated(orbits, barriers):
+            self._separated[part] |= separated
+        self.certificate[self._separated.all(axis=1) & self._uncertified()] = Certificate.ENCLOSED
 
-    def _find_curves(self, orbits: np.ndarray) -> list[InvariantCurve | None]:
-        """The invariant curve of each orbit, None where it has none or the work was cancelled."""
-        points = find_section_points(self.potential, self.states[orbits], _CURVE_POINTS, _CURVE_TIME, **self._execution)
-        return [None if is_cancelled(self._cancel) else find_invariant_curve(own[np.isfinite(own).all(axis=1)]) for own in points]
+    def _find_separated(self, orbits: np.ndarray, barriers: list[_Barrier]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """In parallel for parts of the orbits: the part, and which exits the barriers separate its orbits from."""
+        executor = self._execution["executor"] or default_executor()
+        most = min(2 * count_workers(executor), -(-orbits.size // _LEAST_POINTS_PER_TASK))
+        parts = np.array_split(orbits, most) if most and barriers else []
+        futures = [executor.submit(_separated_by_any, barriers, self._points[part], self._separated[part]) for part in parts]
+        for part, future in zip(parts, futures, strict=True):
+            separated = collect_result(future, self._cancel)
+            if separated is not None:
+                yield part, separated
 
-    def _apply_curve(self, curve: InvariantCurve) -> None:
-        """Record which orbits a curve separates from which exits, and certify those separated from all exits."""
-        entry_sides = [curve.find_side(points) for points in self._entry_points]
-        exit_side = np.array([sides.min() if sides.min() == sides.max() else 0 for sides in entry_sides])
-        orbits = np.flatnonzero(~self._separated.all(axis=1) & np.isfinite(self._points).all(axis=1))
-        orbit_side = curve.find_side(self._points[orbits])
-        self._separated[orbits] |= orbit_side[:, None] * exit_side == -1
-        enclosed = self._separated.all(axis=1) & self._uncertified()
-        self.certificate[enclosed] = Certificate.ENCLOSED
+
+@dataclass(frozen=True, eq=False)
+class _Barrier:
+    """An invariant curve, with its mirror image if the potential has one.
+
+    Attributes
+    ----------
+    curve
+        The curve.
+    exit_sides
+        For the curve, 1.0, and its mirror image, −1.0: the side on which each exit lies, see `InvariantCurve.find_side`; 0 if
+        unknown.
+    """
+
+    curve: InvariantCurve
+    exit_sides: dict[float, np.ndarray]
+
+    def find_separated(self, points: np.ndarray) -> np.ndarray:
+        """(n, channels) bool: the exits on the other side of the curve, or of its mirror image, than each point (n, 2)."""
+        # The mirror image is rotated by 180°; instead the points are.
+        sides = [self.curve.find_side(sign * points)[:, None] * exit_side for sign, exit_side in self.exit_sides.items()]
+        separated: np.ndarray = np.any(np.equal(sides, -1), axis=0)
+        return separated
+
+
+def _find_barriers(
+    potential: Potential, tile: np.ndarray, mirror: bool, entry_points: tuple[np.ndarray, ...]
+) -> list[_Barrier | None]:
+    """The barrier of each orbit in a tile (4, lanes), None where it has no curve; runs in a worker."""
+    barriers: list[_Barrier | None] = []
+    for points in trace_section_points(potential, tile, _CURVE_POINTS, _CURVE_TIME):
+        curve = find_invariant_curve(points[np.isfinite(points).all(axis=1)])
+        barriers.append(None if curve is None else _Barrier(curve, _exit_sides(curve, mirror, entry_points)))
+    return barriers
+
+
+def _exit_sides(curve: InvariantCurve, mirror: bool, entry_points: tuple[np.ndarray, ...]) -> dict[float, np.ndarray]:
+    exit_sides = {}
+    for sign in (1.0, -1.0) if mirror else (1.0,):
+        entry_sides = [curve.find_side(sign * points) for points in entry_points]
+        exit_sides[sign] = np.array([sides.min() if sides.min() == sides.max() else 0 for sides in entry_sides])
+    return exit_sides
+
+
+def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separated: np.ndarray) -> list[_Barrier]:
+    """The barriers of orbits (n, 2) that the barriers before them do not separate from all exits, and that add nothing then."""
+    kept = []
+    for number in _alternating_by_size([0.0 if barrier is None else barrier.curve.area for barrier in barriers]):
+        barrier = barriers[number]
+        if barrier is not None and not separated[number].all():
+            kept.append(barrier)
+            separated = separated | barrier.find_separated(points)
+    return kept
+
+
+def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: np.ndarray) -> np.ndarray:
+    """(n, channels) bool: the exits from which any barrier separates each point (n, 2), and those known before."""
+    for barrier in barriers:
+        left = np.flatnonzero(~separated.all(axis=1))
+        separated[left] |= barrier.find_separated(points[left])
+    return separated
 
 
 def _alternating_by_size(sizes: list[float]) -> Iterator[int]:

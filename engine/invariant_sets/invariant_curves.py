@@ -7,12 +7,13 @@ side stays on that side.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from engine.taylor.kernels.rotation_loop import arrange_loop
 
 if TYPE_CHECKING:
     import shapely
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
 MOST_ISLANDS = 24
 """Largest number of islands in a chain that is searched for."""
 
-_MIN_POINTS_PER_LOOP = 40
+LEAST_POINTS = 40
+"""Smallest number of points of a loop."""
+
 # Distance from the polygon within which the curve is assumed to lie, in units of the height g θ/8 of an arc that turns by θ over
 # a gap g between points. With even gaps the polygon turns by θ at each point. Near a resonance p/q the points form q bunches with
 # wide gaps between them, and at the edge of a bunch the polygon turns by θ/2, the angle between curve and gap. The curve thus
@@ -86,12 +89,6 @@ class InvariantCurve:
         shapely.prepare([polygon for pair in polygons for polygon in pair])
         return polygons
 
-    def mirrored(self) -> InvariantCurve:
-        """The image under (x, px) → (−x, −px)."""
-        import shapely
-
-        return InvariantCurve(tuple(shapely.transform(loop, np.negative) for loop in self.loops), self.margins)
-
 
 def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
     """Connect the section points of a quasi-periodic orbit to closed curves.
@@ -107,7 +104,7 @@ def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:
     they do not lie densely enough on smooth curves without self-intersections.
     """
     for islands in range(1, MOST_ISLANDS + 1):
-        if len(points) < islands * _MIN_POINTS_PER_LOOP:
+        if len(points) < islands * LEAST_POINTS:
             break
         loops = _find_loops(points, islands)
         if loops:
@@ -120,7 +117,7 @@ def _find_loops(points: np.ndarray, islands: int) -> list[tuple[shapely.Polygon,
     """The loop around each island of a chain with its margin; an empty list if any loop is not closed."""
     loops = []
     for first in range(islands):
-        loop = _find_loop(points[first::islands])
+        loop = _find_loop(np.ascontiguousarray(points[first::islands]))
         if loop is None:
             return []
         loops.append(loop)
@@ -131,40 +128,11 @@ def _find_loop(points: np.ndarray) -> tuple[shapely.Polygon, float] | None:
     """The loop through successive points of a rotation and its margin; None when they are not on a closed curve."""
     import shapely
 
-    order = _order_along_curve(points)
-    if order is None:
+    loop = np.empty_like(points)
+    height = arrange_loop(points, loop)
+    if height < 0.0:
         return None
-    loop = points[order]
-    margin = _MARGIN_FACTOR * float(_arc_heights(loop).max())
+    margin = _MARGIN_FACTOR * height
     polygon = shapely.Polygon(loop)
     accepted = margin <= _MAX_RELATIVE_MARGIN * np.sqrt(polygon.area) and polygon.is_valid
     return (polygon, margin) if accepted else None
-
-
-def _order_along_curve(points: np.ndarray) -> np.ndarray | None:
-    """Indices that sort successive points of a rotation along their closed curve; None when they are not from a rotation.
-
-    The neighbours of the first point on the curve are its nearest returns ahead and behind, after a and b steps. As no other
-    point is nearer, there are at most a + b points (three-gap theorem, Sós 1958), in the order of the rotation by p/(a + b) with
-    p a ≡ 1.
-    """
-    offset = points[1:] - points[0]
-    distance = np.hypot(*offset.T)
-    ahead = offset @ offset[np.argmin(distance)] > 0.0
-    if ahead.all():
-        return None
-    a = 1 + int(np.argmin(np.where(ahead, distance, np.inf)))
-    b = 1 + int(np.argmin(np.where(ahead, np.inf, distance)))
-    if math.gcd(a, b) != 1 or len(points) > a + b:
-        return None
-    return np.argsort(np.arange(len(points)) * pow(a, -1, a + b) % (a + b))
-
-
-def _arc_heights(loop: np.ndarray) -> np.ndarray:
-    """(n,) height of the curve's arc over the gap after each point of a loop (n, 2), from the larger turn at the gap's ends."""
-    step = np.roll(loop, -1, axis=0) - loop
-    previous = np.roll(step, 1, axis=0)
-    cross = previous[:, 0] * step[:, 1] - previous[:, 1] * step[:, 0]
-    turn = np.abs(np.arctan2(cross, np.sum(previous * step, axis=1)))
-    heights: np.ndarray = np.hypot(*step.T) * np.maximum(turn, np.roll(turn, -1)) / 8.0
-    return heights

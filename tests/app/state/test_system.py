@@ -66,5 +66,9 @@ def test_a_negative_escape_energy_is_rejected() -> None:
     assert "constant term" in str(refusal(review_potential(parse_formula(f"{HENON_HEILES} − 1"))))
 
 
+def test_an_escape_energy_beyond_the_largest_number_is_refused() -> None:
+    assert "energies up to 1e+09" in str(refusal(review_potential(parse_formula("(x² + y²)/2 + 1e-7y³"))))
+
+
 def test_known_potentials_are_accepted() -> None:
     assert [name for name in POTENTIALS if refusal(review_potential(POTENTIALS[name].potential))] == []

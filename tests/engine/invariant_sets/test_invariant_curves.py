@@ -121,8 +121,3 @@ def test_noisy_points_give_no_curve() -> None:
 
 def test_periodic_orbit_gives_no_curve() -> None:
     assert find_invariant_curve(rotation_points(ellipse, 400, 0.2)) is None
-
-
-def test_mirrored_curve_is_rotated_by_180_degrees(ring: InvariantCurve) -> None:
-    points = np.random.default_rng(2).uniform(-0.6, 0.6, (500, 2))
-    np.testing.assert_array_equal(ring.mirrored().find_side(-points), ring.find_side(points))
