@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
 from functools import cache
 from typing import Any
 
+import numpy as np
+
+# Smallest part of an index array that is worth a task.
+_LEAST_PART = 1000
 # Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread.
 _NICE_VALUE = 10
 
@@ -64,6 +68,29 @@ def count_workers(executor: Executor) -> int:
     return int(getattr(executor, "_max_workers", 2))
 
 
+def run_parts(
+    work: Callable[..., Any],
+    indices: np.ndarray,
+    select: Callable[[np.ndarray], tuple[Any, ...]],
+    *,
+    executor: Executor | None = None,
+    cancel: threading.Event | None = None,
+) -> Iterator[tuple[np.ndarray, Any]]:
+    """Run ``work(*select(part))`` in parallel for the parts of an index array; each part of `indices` with its result.
+
+    Parts that never ran because of `cancel` are left out. `work` must be a module-level function, so that it can be pickled for
+    other processes, and should release the GIL.
+    """
+    executor = executor or default_executor()
+    count = min(2 * count_workers(executor), -(-indices.size // _LEAST_PART))
+    parts = np.array_split(indices, count) if count else []
+    futures = [executor.submit(work, *select(part)) for part in parts]
+    for part, future in zip(parts, futures, strict=True):
+        result = collect_result(future, cancel)
+        if result is not None:
+            yield part, result
+
+
 class SerialExecutor(Executor):
     """Runs each call at once in the calling thread: for single orbits, or inside a worker of another pool."""
 
@@ -89,15 +116,16 @@ def raise_if_cancelled(cancel: threading.Event | None) -> None:
 
 
 def collect_result[T](future: Future[T], cancel: threading.Event | None) -> T | None:
-    """The result of a completed call; None if it never ran because the computation was cancelled.
+    """The result of a call, after waiting for it; None if it never ran because the computation was cancelled.
 
     Raises
     ------
     concurrent.futures.BrokenExecutor
         When the executor has dropped the call although nobody cancelled it, as a cluster does that loses its scheduler.
     """
-    if not future.cancelled():
+    try:
         return future.result()
-    if is_cancelled(cancel):
-        return None
-    raise BrokenExecutor("the executor has dropped a part of the computation; run it again")
+    except CancelledError:
+        if is_cancelled(cancel):
+            return None
+        raise BrokenExecutor("the executor has dropped a part of the computation; run it again") from None

@@ -15,7 +15,7 @@ from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
 from engine.dynamics.interior import find_outside_starts
 from engine.dynamics.lyapunov_orbits import exit_gates
-from engine.execution import collect_result, count_workers, default_executor, is_cancelled
+from engine.execution import collect_result, count_workers, default_executor, is_cancelled, run_parts
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import TOLERANCE
@@ -64,20 +64,48 @@ class OrbitBatch:
     certificate: np.ndarray
 
     @classmethod
-    def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
-        """Orbits at t = 0; starts with a non-finite state are forbidden. `mark_outside` finds the outside starts."""
-        n = len(states)
-        fate = np.where(np.isfinite(states).all(axis=1), Fate.NOT_COMPUTED, Fate.FORBIDDEN).astype(np.int8)
+    def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
+        """Orbits (n,) whose starts are set later."""
+        n = curve_row.size
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
-        return cls(states.copy(), np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), codes[0], codes[1])
+        fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
+        states = np.full((n, 4), np.nan)
+        return cls(states, np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), codes[0], codes[1])
 
-    def mark_outside(self, potential: Potential, which: np.ndarray, curves: np.ndarray) -> None:
-        """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits."""
-        state = self.state[which]
-        x, y = np.ascontiguousarray(state[:, :2].T)
-        channel = find_outside_starts(potential, x, y, potential.energy(state), curves, self.curve_row[which])
-        self.outside[which] = channel
-        self.fate[which[channel > 0]] = Fate.OUTSIDE
+    @classmethod
+    def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
+        """Orbits at t = 0. `mark_outside` finds the outside starts."""
+        batch = cls.empty(curve_row)
+        batch.set_starts(np.arange(curve_row.size), states)
+        return batch
+
+    def set_starts(self, which: np.ndarray, states: np.ndarray) -> None:
+        """Set the states (m, 4) of the orbits `which` (m,) at t = 0; those with a non-finite state are forbidden."""
+        self.state[which] = states
+        self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
+
+    def mark_outside(
+        self,
+        potential: Potential,
+        which: np.ndarray,
+        curves: np.ndarray,
+        *,
+        executor: Executor | None = None,
+        cancel: threading.Event | None = None,
+    ) -> np.ndarray:
+        """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits.
+
+        Returns the indices that were tested: all, unless it was cancelled.
+        """
+        tested = [which[:0]]
+        for part, channel in run_parts(
+            _find_outside, which, lambda part: (potential, self.state[part], curves, self.curve_row[part]),
+            executor=executor, cancel=cancel,
+        ):  # fmt: skip
+            self.outside[part] = channel
+            self.fate[part[channel > 0]] = Fate.OUTSIDE
+            tested.append(part)
+        return np.concatenate(tested)
 
     def mark_bounded(self, which: np.ndarray, certificate: np.ndarray | int) -> None:
         """Store the certificates of the orbits `which` (indices); orbits with a certificate become bounded."""
@@ -122,6 +150,12 @@ class OrbitBatch:
     def copy(self) -> OrbitBatch:
         """A deep copy."""
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
+
+
+def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
+    """(n,) int8: the channel beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
+    x, y = np.ascontiguousarray(states[:, :2].T)
+    return find_outside_starts(potential, x, y, potential.energy(states), curves, curve_row)
 
 
 @dataclass

@@ -14,7 +14,7 @@ from engine.dynamics.batch import LANES
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fixed_step_batches import run_tiles
 from engine.dynamics.section_points import find_section_points, trace_section_points
-from engine.execution import collect_result, count_workers, default_executor, is_cancelled
+from engine.execution import is_cancelled, run_parts
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, compare_averages
 from engine.invariant_sets.exit_entry_points import find_entry_points
 from engine.invariant_sets.invariant_curves import InvariantCurve, find_invariant_curve
@@ -37,8 +37,6 @@ _CURVE_POINTS = 800
 _CURVE_TIME = 8000.0
 _MAX_CURVES_PER_ROUND = 192
 _FIRST_POINT_TIME = 30.0
-# Smallest number of points that are worth a task.
-_LEAST_POINTS_PER_TASK = 1000
 
 
 class BoundednessCertifier:
@@ -152,21 +150,14 @@ class BoundednessCertifier:
         if is_cancelled(self._cancel):
             return
         barriers = _without_enclosed(found, self._points[regular], self._separated[regular])
-        orbits = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
-        for part, separated in self._find_separated(orbits, barriers):
-            self._separated[part] |= separated
-        self.certificate[self._separated.all(axis=1) & self._uncertified()] = Certificate.ENCLOSED
+        left = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
 
-    def _find_separated(self, orbits: np.ndarray, barriers: list[_Barrier]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """In parallel for parts of the orbits: the part, and which exits the barriers separate its orbits from."""
-        executor = self._execution["executor"] or default_executor()
-        most = min(2 * count_workers(executor), -(-orbits.size // _LEAST_POINTS_PER_TASK))
-        parts = np.array_split(orbits, most) if most and barriers else []
-        futures = [executor.submit(_separated_by_any, barriers, self._points[part], self._separated[part]) for part in parts]
-        for part, future in zip(parts, futures, strict=True):
-            separated = collect_result(future, self._cancel)
-            if separated is not None:
-                yield part, separated
+        def select(part: np.ndarray) -> tuple[Any, ...]:
+            return barriers, self._points[part], self._separated[part]
+
+        for part, separated in run_parts(_separated_by_any, left if barriers else left[:0], select, **self._execution):
+            self._separated[part] = separated
+        self.certificate[self._separated.all(axis=1) & self._uncertified()] = Certificate.ENCLOSED
 
 
 @dataclass(frozen=True, eq=False)

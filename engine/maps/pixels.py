@@ -87,8 +87,9 @@ class MirrorPixels:
         """The first pixel of the pair of each of the pixels (n,), which are sorted and distinct, as is the result."""
         if not self.symmetric:
             return pixels
-        firsts: np.ndarray = np.unique(np.minimum(pixels, self.partner[pixels]))
-        return firsts
+        is_first = np.zeros(self.partner.size, bool)
+        is_first[np.minimum(pixels, self.partner[pixels])] = True
+        return np.flatnonzero(is_first)
 
     def copy_to_seconds(self, values: np.ndarray) -> None:
         """In an array (rows, columns), overwrite the second pixel of each pair by the first."""

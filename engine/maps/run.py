@@ -17,7 +17,7 @@ from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
 from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.dynamics.planes import Plane
-from engine.execution import is_cancelled
+from engine.execution import is_cancelled, run_parts
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices
@@ -83,16 +83,14 @@ class MapRun:
         self.stride = _coarsest_stride(self.shape) if coarse_first else 1
         self.horizon = min(_FIRST_HORIZON, spec.t_max)
         self._mirror = MirrorPixels(spec, self.x, self.ordinate)
-        x, ordinate = (grid.ravel() for grid in np.meshgrid(self.x, self.ordinate))
-        self._energy = ordinate if isinstance(spec.energy, tuple) else np.full(x.size, spec.energy)
-        # On (x, h) each row has its own energy and exits.
         row = np.repeat(np.arange(self.shape[0]), self.shape[1])
-        self._curve_row = row if spec.plane is Plane.X_H else np.zeros(x.size, np.int64)
+        self._energy = self.ordinate[row] if isinstance(spec.energy, tuple) else np.full(row.size, spec.energy)
+        # On (x, h) each row has its own energy and exits.
+        self._curve_row = row if spec.plane is Plane.X_H else np.zeros_like(row)
         self._curves = np.repeat(closed_channel_curves(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         if resume is None:
-            self._batch = OrbitBatch.from_starts(spec.start_states(x, ordinate), self._curve_row)
-            self._started = np.zeros(x.size, bool)
+            self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(row.size, bool)
         else:
             assert resume.batch is not None
             self._batch, self._started = resume.batch.copy(), resume.started.ravel().copy()
@@ -105,14 +103,15 @@ class MapRun:
         on_progress: Callable[[bool], None] = lambda stage_over: None,
     ) -> None:
         """Run all stages until done or cancelled; `on_progress(stage_over)` is called whenever pixels may have changed."""
+        self._find_starts(executor, cancel)
         for pixels, stride, horizon in self._stages():
             if is_cancelled(cancel):
                 break
             if certifies_before(self.spec, self.horizon, horizon):
                 self._certify(executor, cancel, lambda: on_progress(False))
-            self._begin_stage(pixels, stride, horizon)
+            self._begin_stage(pixels, stride, horizon, executor, cancel)
             propagate_batch(
-                self.spec.potential, self._curves, self._batch, pixels, horizon,
+                self.spec.potential, self._curves, self._batch, pixels[self._started[pixels]], horizon,
                 final=horizon == self.spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: on_progress(False),
             )  # fmt: skip
             on_progress(True)
@@ -135,7 +134,16 @@ class MapRun:
             stride //= 2
         yield self._mirror.firsts_of(numbers.ravel()), 1
 
-    def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float) -> None:
+    def _find_starts(self, executor: Executor | None, cancel: threading.Event | None) -> None:
+        """Find the initial states of all pixels that have none."""
+        missing = self._mirror.firsts_among(np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started))
+        axes = self.spec, self.x, self.ordinate
+        for part, states in run_parts(_start_states, missing, lambda part: (*axes, part), executor=executor, cancel=cancel):
+            self._batch.set_starts(part, states)
+
+    def _begin_stage(
+        self, pixels: np.ndarray, stride: int, horizon: float, executor: Executor | None, cancel: threading.Event | None
+    ) -> None:
         """Compute the exits that the pixels need, and start pixels not started yet."""
         self.stride, self.horizon = stride, horizon
         for row in self._rows_without_exits.intersection(np.unique(self._curve_row[pixels]).tolist()):
@@ -144,8 +152,8 @@ class MapRun:
             self._curves[row] = exit_curves_in_well_units(potential, energy * potential.units.energy)
             self._rows_without_exits.discard(row)
         fresh = pixels[~self._started[pixels]]
-        self._batch.mark_outside(self.spec.potential, fresh, self._curves)
-        self._started[fresh] = True
+        tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, executor=executor, cancel=cancel)
+        self._started[tested] = True
 
     def _certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
         """Mark undecided orbits as bounded that have a certificate."""
@@ -201,6 +209,12 @@ class MapRun:
         # Second mirror images are copied later.
         interior = find_interior(fate) & (self._mirror.partner >= np.arange(fate.size))
         return float(covered[interior].mean()) if interior.any() else 1.0
+
+
+def _start_states(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, pixels: np.ndarray) -> np.ndarray:
+    """(n, 4) initial states of pixels (n,) of a map with these centres; runs in a worker."""
+    rows, columns = np.divmod(pixels, x.size)
+    return spec.start_states(x[columns], ordinate[rows])
 
 
 def _coarsest_stride(shape: tuple[int, int]) -> int:

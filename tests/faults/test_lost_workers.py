@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import signal
 import sys
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from cli.clusters import _describing_losses
 from cli.main import FAILED, main
 from engine import CASES, Plane, SweepSpec, run_sweep
 from engine.dynamics.fixed_step_batches import map_tiles
+from tests.forgetful_pool import ForgetfulPool
 from tests.forked import Finished, run
 
 SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (15, 15), t_max=2e4, piece=80)
@@ -27,22 +27,6 @@ SWEEP = (
     "sweep", "III", "--energy", "0.36", "--energy", "0.4", "--resolution", "15", "--t-max", "2e4", "--piece", "80",
     "--store", "store.zarr",
 )  # fmt: skip
-
-
-class ForgetfulPool(ThreadPoolExecutor):
-    """A thread pool that drops one call, as a cluster does whose scheduler restarts."""
-
-    def __init__(self, good_calls: int) -> None:
-        super().__init__(2)
-        self._numbers, self._dropped = itertools.count(), good_calls
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Any:
-        if next(self._numbers) != self._dropped:
-            return super().submit(function, *arguments, **named)
-        future: Future[Any] = Future()
-        future.cancel()
-        future.set_running_or_notify_cancel()
-        return future
 
 
 def files_of(store: Path) -> dict[str, bytes]:

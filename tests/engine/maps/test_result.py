@@ -26,6 +26,7 @@ from engine import (
 from engine.dynamics import batch as orbit_batch
 from engine.maps.compute import frame_pause
 from engine.maps.run import COARSE_PIXELS
+from tests.forgetful_pool import ForgetfulPool
 
 ARRAYS = ("fate", "escape_time", "crossings", "energy_error", "outside", "started")
 OUTCOMES = ("fate", "escape_time", "crossings", "energy_error")
@@ -276,6 +277,16 @@ def test_result_does_not_depend_on_the_step_budget(whole: EscapeMap, budget: int
 def test_result_does_not_depend_on_the_tile_size(whole: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(orbit_batch, "LARGEST_TILE", 64)
     assert_bit_identical(compute_map(SPEC), whole)
+
+
+# The calls: parts of the starts, of the test which starts are outside, then tiles.
+@pytest.mark.parametrize("good_calls", [0, 1, 4, 5, 9])
+def test_map_with_a_cancelled_call_can_be_resumed_to_the_same_result(whole: EscapeMap, good_calls: int) -> None:
+    cancel = threading.Event()
+    with ForgetfulPool(good_calls, cancel) as pool:
+        cancelled = compute_map(SPEC, cancel=cancel, executor=pool)
+    assert not cancelled.complete
+    assert_bit_identical(compute_map(SPEC, resume=cancelled), whole)
 
 
 @pytest.mark.parametrize("frame", [1, 2, 3, 4])
