@@ -207,17 +207,17 @@ def _advance_tile(
 
 
 def _split_into_tiles(batch: OrbitBatch, which: np.ndarray, workers: int) -> Iterator[_Tile]:
-    """About four tiles per worker, each a multiple of `LANES` orbits and at most `LARGEST_TILE`."""
+    """About four tiles per worker, each a multiple of `VECTOR` orbits and at most `LARGEST_TILE`."""
     share = -(-which.size // (4 * workers))
-    size = int(np.clip(-(-share // LANES) * LANES, LANES, LARGEST_TILE))
+    size = int(np.clip(-(-share // VECTOR) * VECTOR, VECTOR, LARGEST_TILE))
     for begin in range(0, which.size, size):
         yield _Tile.copy_from(batch, which[begin : begin + size])
 
 
 def _split_active(tile: _Tile) -> list[np.ndarray]:
-    """The active orbits of a tile, in two parts if there are enough for two workers."""
+    """The active orbits of a tile, in two parts if they fill more than one SIMD vector."""
     active = tile.orbits[tile.active != 0]
-    return [part for part in np.array_split(active, 2 if active.size >= VECTOR else 1) if part.size]
+    return [part for part in np.array_split(active, 2 if active.size > VECTOR else 1) if part.size]
 
 
 def propagate_batch(

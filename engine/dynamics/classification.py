@@ -46,10 +46,12 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
     """The outcomes of a batch in its current state and its units; `energy` (n,) is the reference for the energy errors."""
     orbit = (batch.fate >= Fate.BOUNDED) | (batch.fate == Fate.NOT_COMPUTED)
     crossings = np.where(orbit, batch.crossings + batch.last_crossings, 0).astype(np.int32)
-    error = np.abs(potential.energy(batch.state) - energy) / np.maximum(np.abs(energy), np.finfo(float).tiny)
-    decided = batch.fate >= Fate.BOUNDED
+    decided, error = batch.fate >= Fate.BOUNDED, np.full(batch.fate.size, np.nan)
+    reference = energy[decided]
+    difference = np.abs(potential.energy(batch.state[decided]) - reference)
+    error[decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
     escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
-    return Outcomes(batch.fate.copy(), escape_time, crossings, np.where(decided, error, np.nan))
+    return Outcomes(batch.fate.copy(), escape_time, crossings, error)
 
 
 def classify_orbits(

@@ -146,7 +146,7 @@ class MapRun:
     ) -> None:
         """Compute the exits that the pixels need, and start pixels not started yet."""
         self.stride, self.horizon = stride, horizon
-        for row in self._rows_without_exits.intersection(np.unique(self._curve_row[pixels]).tolist()):
+        for row in self._rows_without_exits.intersection(self._curve_row[pixels].tolist() if self._rows_without_exits else ()):
             energy = float(self.ordinate[row]) if self.spec.plane is Plane.X_H else float(self._energy[0])
             potential = self.given_spec.potential
             self._curves[row] = exit_curves_in_well_units(potential, energy * potential.units.energy)
