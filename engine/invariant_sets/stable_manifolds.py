@@ -12,7 +12,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -166,18 +166,26 @@ def find_stable_manifolds(
     whole = default_window(potential, Plane.X_PX, energy)
     potential, energy = potential.in_well_units, energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum
-    arcs: dict[int, list[ManifoldArc]] = {}
-    truncated = False
     spacing = _PointSpacing.for_window(whole.scaled(*factors), window.scaled(*factors) if window is not None else None)
-    for orbit in find_lyapunov_orbits(potential, energy):
-        mirror_channel = int(potential.mirror_channels[orbit.channel]) if potential.mirror_in_x else orbit.channel
-        if mirror_channel in arcs and window is None:
-            arcs[orbit.channel] = [_mirrored(arc, orbit.channel) for arc in arcs[mirror_channel]]
-            continue
-        arcs[orbit.channel], unfinished = _find_arcs(potential, orbit, given_energy, images, spacing, executor, cancel)
-        truncated = truncated or unfinished
-    found = tuple(_scaled(arc, units) for channel_arcs in arcs.values() for arc in channel_arcs)
-    return StableManifolds(given, given_energy, found, images, truncated)
+    orbits = {orbit.channel: orbit for orbit in find_lyapunov_orbits(potential, energy)}
+    mirror = potential.mirror_in_x and window is None
+    firsts = [channel for channel in orbits if not mirror or channel <= potential.mirror_channels[channel]]
+    # Each thread waits for the tiles of its channel most of the time.
+    with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
+        found = threads.map(
+            lambda channel: _find_arcs(potential, orbits[channel], given_energy, images, spacing, executor, cancel), firsts
+        )
+        arcs = dict(zip(firsts, found, strict=True))
+    truncated = any(unfinished for _, unfinished in arcs.values())
+    scaled = tuple(_scaled(arc, units) for channel in orbits for arc in _arcs_of(channel, arcs, potential))
+    return StableManifolds(given, given_energy, scaled, images, truncated)
+
+
+def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], potential: Potential) -> list[ManifoldArc]:
+    """The arcs of a channel, or the images of those of its mirror channel."""
+    if channel in arcs:
+        return arcs[channel][0]
+    return [_mirrored(arc, channel) for arc in arcs[int(potential.mirror_channels[channel])][0]]
 
 
 def _scaled(arc: ManifoldArc, units: WellUnits) -> ManifoldArc:

@@ -28,6 +28,8 @@ _MIN_MULTIPLIER = 1.5
 # A Lyapunov orbit that crosses y = 0 is itself a point of the section, from which one endless curve starts. Its first image ends
 # where a displacement that kept growing by the multiplier would reach this multiple of the saddle's distance from the origin.
 _FIRST_IMAGE_END = 6.0
+# A tile takes about 0.3 ms.
+_TILES_PER_TASK = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +137,7 @@ class UnstableManifold:
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
         passages = map_tiles(
             _passages, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
-            shape=(count, 3), executor=executor, cancel=cancel,
+            shape=(count, 3), executor=executor, cancel=cancel, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip
         raise_if_cancelled(cancel)
         passages[:, :, 2] += growth_time * np.log(displacements)[:, None]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -304,16 +305,20 @@ class _TrustTest:
         return not self._undecided.size or is_cancelled(self._cancel)
 
     def propagate(self, horizon: float) -> None:
-        """Integrate the reruns of all undecided pixels to the horizon, one rerun after the other."""
-        for rerun in self._reruns:
-            propagate_batch(
-                self._spec.potential, self._curves, rerun.batch, self._undecided, horizon,
-                final=horizon == self._spec.t_max, tolerance=rerun.tolerance, **self._execution,
-            )  # fmt: skip
-            self._update_codes()
+        """Integrate both reruns of all undecided pixels to the horizon."""
+        # Together, as there may be too few orbits to keep all workers busy; each thread waits for its tiles most of the time.
+        with ThreadPoolExecutor(len(self._reruns)) as threads:
+            list(threads.map(partial(self._propagate_rerun, horizon), self._reruns))
+        self._update_codes()
         if not is_cancelled(self._cancel):
             self._find_chaotic(horizon)
             self._update_codes()
+
+    def _propagate_rerun(self, horizon: float, rerun: _Rerun) -> None:
+        propagate_batch(
+            self._spec.potential, self._curves, rerun.batch, self._undecided, horizon,
+            final=horizon == self._spec.t_max, tolerance=rerun.tolerance, **self._execution,
+        )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
         """Find the pixels bounded without a certificate whose reruns, both integrated to `time`, are `APART`."""
