@@ -92,11 +92,14 @@ class Visitor:
                 channel.send("PULL-DOC-REQ", {})
             elif kind == "SERVER-INFO-REPLY":
                 self._answered.set()
-            else:
+            elif kind == "PULL-DOC-REPLY":
+                # Models of earlier pages would be refused.
+                self._messages.models.clear()
                 self._messages.learn(parsed)
-            if kind == "PULL-DOC-REPLY":
                 channel.emit("document_ready")
                 self._opened.set()
+            else:
+                self._messages.learn(parsed)
 
 
 async def fetch_page(address: str) -> str:
