@@ -210,6 +210,10 @@ class SimulatedSession:
         self._open_channel.emit("tap", model=figure, sx=0.0, sy=0.0, x=x, y=ordinate, modifiers={"type": "map", "entries": []})
 
     async def _act_slider(self) -> None:
+        while self._awaited is not None and self._awaited[0] == "case" and not self._accepted:
+            # The slider of the new case is not there yet.
+            await asyncio.sleep(MOVE_SECONDS)
+            self._check_timeout()
         low, high = CHEAP_ENERGIES[self._case]
         # Between the steps of the slider, so that hardly any map is cached.
         start, stop = (round(self._random.uniform(low, high), 6) for _ in range(2))
