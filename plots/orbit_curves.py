@@ -151,8 +151,8 @@ class Moment:
 
 
 def moment(orbit: Orbit, t: float) -> Moment:
-    """Trail of an orbit at a time; at its end for later times."""
-    last = int(np.searchsorted(orbit.t, t, side="right")) - 1
+    """Trail of an orbit at a time; at its start for earlier times, at its end for later ones."""
+    last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)
     return Moment(orbit.x[trail], orbit.y[trail])

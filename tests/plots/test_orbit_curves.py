@@ -83,10 +83,10 @@ def test_the_section_has_a_point_for_each_crossing(short: OrbitCurves) -> None:
     assert short.section.shape == (short.orbit.crossings, 2)
 
 
-@pytest.mark.parametrize("t", [0.0, 3.3, 150.0, 1e9])
+@pytest.mark.parametrize("t", [-1.0, 0.0, 3.3, 150.0, 1e9])
 def test_a_trail_ends_at_the_current_position(short: OrbitCurves, t: float) -> None:
     now, orbit = moment(short.orbit, t), short.orbit
-    here = min(int(np.searchsorted(orbit.t, t, side="right")) - 1, orbit.t.size - 1)
+    here = int(np.clip(np.searchsorted(orbit.t, t, side="right") - 1, 0, orbit.t.size - 1))
     assert (now.x[-1], now.y[-1]) == (orbit.x[here], orbit.y[here])
     assert (now.x.size - 1) * orbit.t[1] <= TRAIL + 1e-9
 
