@@ -82,9 +82,9 @@ class Server:
 
 
 @contextmanager
-def served(log: Path) -> Iterator[Server]:
-    """Run the app on a free port; its kernels are compiled when this begins."""
-    with started(log) as (server, process):
+def served(log: Path, **environment: str) -> Iterator[Server]:
+    """Run the app on a free port, with more environment variables; its kernels are compiled when this begins."""
+    with started(log, **environment) as (server, process):
         wait_until_ready(server, process)
         yield server
 
