@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from importlib import metadata
 
 from app.state.system import TYPED, System
-from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, default_window, judge_orbit
+from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, judge_orbit
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.palette import Palette
 
@@ -175,7 +175,7 @@ def file_stem(spec: MapSpec, case: str) -> str:
     energy = "-".join(repr(float(energy)) for energy in energies)
     stem = f"escapes-{case}-{spec.plane.name.lower()}-h{energy}-t{spec.t_max:g}"
     window = spec.window
-    if window != default_window(spec.potential, spec.plane, spec.energy):
+    if not spec.has_default_window():
         x, ordinate = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
         stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)

@@ -1,6 +1,11 @@
 """Waits of one visitor while another one keeps the server as busy as the page allows, in several ways.
 
-Run: uv run python -m benchmarks.hostile --processes 1 --seconds 60
+Run: uv run python -m benchmarks.hostile --seconds 60
+     uv run python -m benchmarks.hostile --seconds 60 --processes 2
+     uv run python -m benchmarks.hostile --seconds 60 --proxy
+
+Each process has a visitor of either kind. With ``--proxy`` there are two processes behind nginx with `deploy/nginx.conf`, and
+the cookies of the visitors choose the process.
 """
 
 from __future__ import annotations
@@ -12,13 +17,15 @@ import random
 import sys
 import tempfile
 import time
-from collections.abc import AsyncIterator, Callable, Sequence
-from contextlib import ExitStack, asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from pathlib import Path
-from urllib.parse import quote
+from typing import NamedTuple
+from urllib.parse import quote, urlsplit
 
 from benchmarks.load import Server, served, summary
-from benchmarks.simulated_sessions import Record, SimulatedSession
+from benchmarks.simulated_sessions import NO_OPTIONS, Options, Record, SimulatedSession
+from tests.deploy.proxy import Proxy, authorization, free_port, nginx, proxied
 
 LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of the other visitor's map."""
@@ -95,10 +102,17 @@ ATTACKS: dict[str, Attack] = {
 }
 
 
+class Place(NamedTuple):
+    """Where a page is found: its address, and options of requests that reach one process."""
+
+    address: str
+    options: Options = NO_OPTIONS
+
+
 @asynccontextmanager
-async def visiting(address: str, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
+async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
     """A session with its page open."""
-    session = SimulatedSession(address, seed, record)
+    session = SimulatedSession(place.address, seed, record, place.options)
     await session.open()
     try:
         yield session
@@ -106,24 +120,24 @@ async def visiting(address: str, seed: int, record: Record) -> AsyncIterator[Sim
         await session.close()
 
 
-async def attack(servers: Sequence[Server], name: str, seconds: float, seed: int) -> Record:
+async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) -> Record:
     """The waits of one visitor of each process while another one attacks it."""
     record, ignored = Record(), Record()
 
-    async def run_attack(address: str, number: int) -> None:
-        async with visiting(address, seed + 100 + number, ignored) as visitor:
+    async def run_attack(place: Place, number: int) -> None:
+        async with visiting(place, seed + 100 + number, ignored) as visitor:
             async for _ in ATTACKS[name](visitor, random.Random(seed + number)):
                 # A refused visitor comes back, as a person would.
                 if not visitor.is_open:
                     await visitor.open()
 
     loop = asyncio.get_running_loop()
-    tasks = [loop.create_task(run_attack(server.address, number)) for number, server in enumerate(servers)]
+    tasks = [loop.create_task(run_attack(place, number)) for number, place in enumerate(places)]
     await asyncio.sleep(1.0)
     try:
         async with asyncio.TaskGroup() as group:
-            for number, server in enumerate(servers):
-                group.create_task(_visit(server.address, seed + number, record, time.perf_counter() + seconds))
+            for number, place in enumerate(places):
+                group.create_task(_visit(place, seed + number, record, time.perf_counter() + seconds))
     finally:
         for task in tasks:
             task.cancel()
@@ -134,9 +148,34 @@ async def attack(servers: Sequence[Server], name: str, seconds: float, seed: int
     return record
 
 
-async def _visit(address: str, seed: int, record: Record, end: float) -> None:
-    async with visiting(address, seed, record) as visitor:
+async def _visit(place: Place, seed: int, record: Record, end: float) -> None:
+    async with visiting(place, seed, record) as visitor:
         await visitor.run(end)
+
+
+@contextmanager
+def behind_proxy(servers: Sequence[Server], folder: Path) -> Iterator[list[Place]]:
+    """Run nginx in front of two servers; one place for each of them."""
+    program = nginx()
+    if program is None:
+        raise RuntimeError("nginx is not installed")
+    first, second = (urlsplit(server.address).port or 0 for server in servers)
+    with proxied(program, folder, free_port(), (first, second)) as proxy:
+        yield asyncio.run(_find_places(proxy, servers))
+
+
+async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
+    found: dict[int, Place] = {}
+    for number in itertools.count():
+        headers = {**authorization(), "Cookie": f"explorer_visitor={number}"}
+        place = Place(f"{proxy.origin}/app", {"headers": headers, "ssl_options": proxy.ssl_context()})
+        async with visiting(place, number, Record()):
+            found |= {index: place for index, server in enumerate(servers) if await asyncio.to_thread(server.sessions)}
+        while sum([await asyncio.to_thread(server.sessions) for server in servers]):
+            await asyncio.sleep(0.1)
+        if len(found) == len(servers):
+            break
+    return list(found.values())
 
 
 def waits(record: Record) -> list[float]:
@@ -144,20 +183,34 @@ def waits(record: Record) -> list[float]:
     return [*(wait for times in record.waits.values() for wait in times), *record.replaced, *record.opening]
 
 
+def count_delayed_messages(servers: Sequence[Server]) -> int:
+    """Messages of all processes that waited because their page took more than its share."""
+    return sum(server.delayed_messages() for server in servers)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--proxy", action="store_true", help="two processes behind nginx")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--attack", choices=list(ATTACKS), action="append")
     options = parser.parse_args()
     problems = []
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
-        servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(options.processes)]
-        print("\n| attack | waits | minimum | median | 95 % | 99 % | maximum |\n|---|---|---|---|---|---|---|")
+        processes = 2 if options.proxy else options.processes
+        servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(processes)]
+        places = [Place(server.address) for server in servers]
+        if options.proxy:
+            places = end.enter_context(behind_proxy(servers, Path(folder)))
+        print("\n| attack | waits | minimum | median | 95 % | 99 % | maximum | delayed messages |")
+        print("|---|---|---|---|---|---|---|---|")
         for name in options.attack or ATTACKS:
-            record = asyncio.run(attack(servers, name, options.seconds, options.seed))
-            print(f"| {name} | {summary(waits(record))} |", flush=True)
+            before = count_delayed_messages(servers)
+            record = asyncio.run(attack(places, name, options.seconds, options.seed))
+            delayed = count_delayed_messages(servers) - before
+            print(f"| {name} | {summary(waits(record))} | {delayed} |", flush=True)
+            problems += [f"{delayed} messages delayed without an attack"] if delayed and ATTACKS[name] is do_nothing else []
             late = [wait for wait in waits(record) if wait > LONGEST_WAIT_SECONDS]
             problems += [f"{name}: {len(late)} waits longer than {LONGEST_WAIT_SECONDS:g} s"] if late else []
             problems += [f"{name}: {error}" for error in dict.fromkeys(record.errors)]

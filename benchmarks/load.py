@@ -59,6 +59,12 @@ class Server:
             sessions = json.load(answer)["sessions"]
         return sum(session["ended"] is None for session in sessions.values())
 
+    def delayed_messages(self) -> int:
+        """Number of messages that waited because their page took more than its share."""
+        with urllib.request.urlopen(self.address.removesuffix("/app") + "/metrics", timeout=30) as answer:
+            [count] = re.findall(r"^escape_explorer_messages_delayed_total (\S+)$", answer.read().decode(), re.MULTILINE)
+        return int(float(count))
+
     def cpu_seconds(self) -> float:
         """Processor time of the process so far."""
         fields = Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()
@@ -76,9 +82,9 @@ class Server:
 
 
 @contextmanager
-def served(log: Path) -> Iterator[Server]:
-    """Run the app on a free port; its kernels are compiled when this begins."""
-    with started(log) as (server, process):
+def served(log: Path, **environment: str) -> Iterator[Server]:
+    """Run the app on a free port, with more environment variables; its kernels are compiled when this begins."""
+    with started(log, **environment) as (server, process):
         wait_until_ready(server, process)
         yield server
 

@@ -8,12 +8,12 @@ import json
 import random
 import re
 import time
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import parse_qsl
 
-from tornado.httpclient import AsyncHTTPClient
+from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from engine import Plane
@@ -28,6 +28,11 @@ MOVES, MOVE_SECONDS = 8, 0.05
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
 """A frame that takes longer counts as an error."""
+
+Options = Mapping[str, Any]
+"""Options of Tornado's `HTTPRequest` for the page and its WebSocket, such as headers."""
+
+NO_OPTIONS: Options = {}
 
 ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
@@ -68,18 +73,19 @@ class Channel:
         self._numbers = itertools.count()
 
     @classmethod
-    async def open(cls, address: str) -> Channel:
+    async def open(cls, address: str, options: Options = NO_OPTIONS) -> Channel:
         """Fetch the page and connect with its token."""
-        page = await AsyncHTTPClient().fetch(address, request_timeout=60.0)
-        return await cls.connect(address, page.body.decode())
+        page = await AsyncHTTPClient().fetch(address, request_timeout=60.0, **options)
+        return await cls.connect(address, page.body.decode(), options)
 
     @classmethod
-    async def connect(cls, address: str, page: str) -> Channel:
+    async def connect(cls, address: str, page: str, options: Options = NO_OPTIONS) -> Channel:
         """Connect with the token of a page already fetched."""
         token = re.search(r'"token":"([^"]+)"', page)
         if token is None:
             raise RuntimeError("the page has no token")
-        socket = await websocket_connect(re.sub("^http", "ws", address) + "/ws", subprotocols=["bokeh", token[1]])
+        request = HTTPRequest(re.sub("^http", "ws", address) + "/ws", **options)
+        socket = await websocket_connect(request, subprotocols=["bokeh", token[1]])
         # As in browsers.
         socket.protocol.set_nodelay(True)
         return cls(socket)
@@ -131,8 +137,8 @@ class Channel:
 class SimulatedSession:
     """One session with random actions."""
 
-    def __init__(self, address: str, seed: int, record: Record) -> None:
-        self._address, self._record = address, record
+    def __init__(self, address: str, seed: int, record: Record, options: Options = NO_OPTIONS) -> None:
+        self._address, self._options, self._record = address, options, record
         self._random = random.Random(seed)
         self._channel: Channel | None = None
         self._models: dict[str, str] = {}
@@ -150,7 +156,7 @@ class SimulatedSession:
     async def open(self) -> None:
         """Load the page and wait for its first map."""
         begin = time.perf_counter()
-        self._channel = await Channel.open(self._address)
+        self._channel = await Channel.open(self._address, self._options)
         self._reader = asyncio.create_task(self._read(self._channel))
         try:
             await asyncio.wait_for(self._opened.wait(), FRAME_TIMEOUT_SECONDS)
@@ -204,6 +210,10 @@ class SimulatedSession:
         self._open_channel.emit("tap", model=figure, sx=0.0, sy=0.0, x=x, y=ordinate, modifiers={"type": "map", "entries": []})
 
     async def _act_slider(self) -> None:
+        while self._awaited is not None and self._awaited[0] == "case" and not self._accepted:
+            # The slider of the new case is not there yet.
+            await asyncio.sleep(MOVE_SECONDS)
+            self._check_timeout()
         low, high = CHEAP_ENERGIES[self._case]
         # Between the steps of the slider, so that hardly any map is cached.
         start, stop = (round(self._random.uniform(low, high), 6) for _ in range(2))

@@ -21,6 +21,9 @@ FIRST = 10
 LARGEST_GROWTH = 0.15
 """Permitted growth of the memory from then on, as a share."""
 
+ENVIRONMENT = {"ESCAPE_EXPLORER_CACHE_BYTES": str(32 * 2**20), "MALLOC_ARENA_MAX": "2"}
+"""Settings of the server: its cache of results is full after the first visitors; two arenas, as in the image."""
+
 AT_ONCE = 4
 _STAY_SECONDS = 6.0
 # Sessions end some time after their sockets are closed.
@@ -50,7 +53,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     record = Record()
-    with tempfile.TemporaryDirectory() as folder, served(Path(folder) / "log") as server:
+    with tempfile.TemporaryDirectory() as folder, served(Path(folder) / "log", **ENVIRONMENT) as server:
         asyncio.run(visit(server, FIRST, options.seed, record))
         first = resident_megabytes(server.process)
         asyncio.run(visit(server, options.visitors - FIRST, options.seed + FIRST, record))

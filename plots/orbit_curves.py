@@ -74,10 +74,18 @@ class OrbitCurves:
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
     """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
-    window = default_window(potential, Plane.X_Y, orbit.energy)
+    window = _find_window(potential, orbit.energy)
     everything = slice(None)
     section = find_section_crossings(potential, orbit)
     return OrbitCurves(orbit, window, *_histories(orbit, everything), section, _visits(orbit, window, everything))
+
+
+def _find_window(potential: Potential, energy: float) -> Window:
+    """The window of the interior; below the minimum of the well, where an orbit can only be outside, that of the whole well."""
+    try:
+        return default_window(potential, Plane.X_Y, energy)
+    except ValueError:
+        return default_window(potential, Plane.X_Y, potential.escape_energy)
 
 
 def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurves:
@@ -143,8 +151,8 @@ class Moment:
 
 
 def moment(orbit: Orbit, t: float) -> Moment:
-    """Trail of an orbit at a time; at its end for later times."""
-    last = int(np.searchsorted(orbit.t, t, side="right")) - 1
+    """Trail of an orbit at a time; at its start for earlier times, at its end for later ones."""
+    last = max(int(np.searchsorted(orbit.t, t, side="right")) - 1, 0)
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)
     return Moment(orbit.x[trail], orbit.y[trail])

@@ -21,6 +21,8 @@ from bokeh.application.application import SessionContext
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 
+from app.runtime.fair_share import FairShare, fair_share
+
 log = logging.getLogger(__name__)
 
 
@@ -34,6 +36,7 @@ class SessionCallbacks:
 
     def __init__(self, document: Document) -> None:
         self._document = weakref.ref(document)
+        self._share = fair_share(document)
         self._loop = asyncio.get_running_loop() if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -45,7 +48,9 @@ class SessionCallbacks:
         return self._wrap(function, 1)
 
     def _wrap(self, function: Callable[..., Any], most_waiting: int | None) -> Callable[..., Any]:
-        return function if self._loop is None else _LockedCallback(self._loop, self._document, function, most_waiting)
+        if self._loop is None:
+            return function
+        return _LockedCallback(self._loop, self._document, self._share, function, most_waiting)
 
 
 class _LockedCallback:
@@ -53,10 +58,11 @@ class _LockedCallback:
         self,
         loop: asyncio.AbstractEventLoop,
         document: weakref.ref[Document],
+        share: FairShare,
         function: Callable[..., Any],
         most_waiting: int | None,
     ) -> None:
-        self._loop, self._document, self._function = loop, document, function
+        self._loop, self._document, self._share, self._function = loop, document, share, function
         self._calls: deque[Callable[[], Any]] = deque(maxlen=most_waiting)
         self._task: asyncio.Task[None] | None = None
 
@@ -73,7 +79,7 @@ class _LockedCallback:
     async def _run_calls(self) -> None:
         while self._calls and (context := self._open_session()) is not None:
             try:
-                await context.with_locked_document(self._run_one)
+                await self._share.count(context.with_locked_document(self._run_one))
             except Exception:
                 log.exception("the changes of a callback could not be sent")
                 self._calls.clear()

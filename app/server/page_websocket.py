@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
+import time
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,10 +16,15 @@ from bokeh.protocol.exceptions import ProtocolError
 from panel.io.server import WSHandler
 from panel.io.state import set_curdoc
 
+from app.runtime.fair_share import fair_share
+from app.runtime.process_state import process_state
 from app.server.admission import check_session
 from app.server.browser_rules import RefusedMessageError
 from app.server.message_guard import LARGEST_FRAGMENT, MessageGuard, UnacceptableConnectionError
 from app.server.security_headers import SecurityHeaders
+from app.views.components.notice import PASSING_SECONDS, show_passing_notice
+
+DELAYED_NOTICE = "This page keeps the server busy: what you do next is delayed, so that others are served too."
 
 # Close code of a WebSocket (RFC 6455, 7.4.1).
 _POLICY_VIOLATION = 1008
@@ -33,7 +40,8 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     4.2.3.2 and 4.2.3.4).
 
     Messages that no page sends are ignored, with one line in the log; floods and giant messages close the connection. Neither
-    reaches Bokeh.
+    reaches Bokeh. While the page takes more than its share of the event loop's time, its messages wait, and it says so; no more
+    of them are then read from the socket.
     """
 
     # Tornado closes the connection when a part of a message is longer.
@@ -43,6 +51,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
         self._guard, self._closed = MessageGuard(), False
+        self._told = -PASSING_SECONDS
         try:
             check_session(self._token, self.application_context)
             return super().open(*args, **kwargs)
@@ -56,14 +65,32 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             self._refuse_connection(error)
 
     async def on_message(self, message: str | bytes) -> None:
-        """Hand a message on to Bokeh if a page can have sent it."""
+        """Hand a message on to Bokeh if a page can have sent it, when the page has its share of time left."""
         session = self._open_session()
-        if self._closed or (session is None and self.connection is not None):
+        if session is not None:
+            document = session.document
+            await self._wait_for_share(session, document)
+            await fair_share(document).count(self._take_part(message, document))
+        elif self.connection is None and not self._closed:
+            self._refuse_connection(UnacceptableConnectionError("a message before the session is open"))
+
+    async def _wait_for_share(self, session: Any, document: Document) -> None:
+        """Wait until the page may take more time; at once if there is no other page."""
+        while (seconds := fair_share(document).wait_seconds()) and self._has_others() and not self._closed:
+            process_state().metrics.messages_delayed.inc()
+            if time.monotonic() >= self._told + PASSING_SECONDS:
+                self._told = time.monotonic()
+                await session.with_document_locked(show_passing_notice, document, DELAYED_NOTICE)
+            await asyncio.sleep(seconds)
+
+    def _has_others(self) -> bool:
+        return bool(sum(session.connection_count for session in self.application_context.sessions) > 1)
+
+    async def _take_part(self, message: str | bytes, document: Document) -> None:
+        if self._closed or (session := self._open_session()) is None:
             return
         try:
-            if session is None:
-                raise UnacceptableConnectionError("a message before the session is open")
-            parts = self._guard.take(message, session.document)
+            parts = self._guard.take(message, document)
         except UnacceptableConnectionError as error:
             self._refuse_connection(error)
         except RefusedMessageError as refusal:
@@ -71,8 +98,8 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         else:
             for part in parts:
                 await super().on_message(part)
-            if parts and self._guard.choices and session is not None:
-                await session.with_document_locked(_send_again, session.document, self._guard.choices)
+            if parts and self._guard.choices:
+                await session.with_document_locked(_send_again, document, self._guard.choices)
 
     def on_close(self) -> None:
         """Tell Bokeh, unless it has given up the connection before."""

@@ -29,7 +29,6 @@ from engine import (
     StableManifolds,
     TrustMap,
     UncertaintyExponent,
-    default_window,
 )
 from engine.service import (
     BasinMeasuresRequest,
@@ -262,8 +261,7 @@ def _manifolds_request(frame: EscapeMap) -> StableManifoldsRequest | None:
     spec = frame.spec
     if isinstance(spec.energy, tuple) or spec.plane is not Plane.X_PX:
         return None
-    whole = spec.window == default_window(spec.potential, spec.plane, spec.energy)
-    return StableManifoldsRequest(spec.potential, spec.energy, IMAGES, None if whole else spec.window)
+    return StableManifoldsRequest(spec.potential, spec.energy, IMAGES, None if spec.has_default_window() else spec.window)
 
 
 def _describe_manifolds(manifolds: StableManifolds, image: int) -> str:

@@ -32,6 +32,8 @@ class JobContext:
         For many short calls, each of about 50 ms.
     long_call_executor
         For single calls that may take seconds.
+    compilation_executor
+        For compilations of kernels, one at a time.
     cancel
         Set when the job has no subscriber left.
     publish
@@ -44,6 +46,7 @@ class JobContext:
 
     executor: Executor
     long_call_executor: Executor
+    compilation_executor: Executor
     cancel: threading.Event
     publish: Callable[[Any], None]
     find_map: Callable[[JobContext, MapSpec], EscapeMap]

@@ -89,6 +89,8 @@ class Jobs:
     ) -> None:
         self._executor = executor
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads, idle_priority=idle_priority))
+        # Numba compiles one function at a time: more threads would only wait for each other, and orbits for all of them.
+        self._compilations = FairScheduler(create_thread_pool(1, idle_priority=idle_priority))
         self._semaphore = OrbitSemaphore(most_orbits)
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -171,6 +173,7 @@ class Jobs:
     def pause_background(self, paused: bool) -> None:
         """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
+        self._compilations.pause_background(paused)
 
     def stop(self) -> None:
         """Cancel all jobs and subscriptions; the computations end within about 0.2 s."""
@@ -246,10 +249,13 @@ class Jobs:
 
     def _context(self, job: _Job) -> JobContext:
         job.executors = [
-            self._scheduler.executor(job.client, priority) for priority in (job.priority, lambda: Priority.LONG_CALL)
+            self._scheduler.executor(job.client, job.priority),
+            self._scheduler.executor(job.client, lambda: Priority.LONG_CALL),
+            self._compilations.executor(job.client, lambda: Priority.LONG_CALL),
         ]
-        short_calls, long_calls = (self._executor or executor for executor in job.executors)
-        return JobContext(short_calls, long_calls, job.cancel, partial(self._publish, job), self._find_map, self._find_result)
+        calls, long_calls, compilations = (self._executor or executor for executor in job.executors)
+        publish = partial(self._publish, job)
+        return JobContext(calls, long_calls, compilations, job.cancel, publish, self._find_map, self._find_result)
 
     def _find_result(self, context: JobContext, request: JobRequest[Any]) -> Any:
         result = self.cache.get(request)

@@ -147,7 +147,7 @@ class WarmupRequest:
     def run(self, context: JobContext) -> Answer[MapSpec]:
         """Compile what is not compiled yet. Raises ValueError if the spec is not valid."""
         if not is_ready_for_maps(self.unresolved.potential):
-            context.long_call_executor.submit(prepare_for_maps, self.unresolved.potential).result()
+            context.compilation_executor.submit(prepare_for_maps, self.unresolved.potential).result()
         return Answer(self.unresolved.spec())
 
 

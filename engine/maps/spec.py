@@ -125,6 +125,13 @@ class MapSpec:
             states[:, 2:] *= -1.0
         return states
 
+    def has_default_window(self) -> bool:
+        """Whether the window shows the whole interior; False at energies that are too high for a default window."""
+        try:
+            return self.window == default_window(self.potential, self.plane, self.energy)
+        except ValueError:
+            return False
+
     def provenance(self) -> dict[str, Any]:
         """The request in plain values, with the integrator and the package version."""
         window = self.window

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import CASES, Plane, integrate_orbit, start_states
+from engine import CASES, Plane, default_window, integrate_orbit, parse_formula, start_states
 from plots.orbit_curves import (
     MOST_LINE_POINTS,
     TRAIL,
@@ -83,12 +83,20 @@ def test_the_section_has_a_point_for_each_crossing(short: OrbitCurves) -> None:
     assert short.section.shape == (short.orbit.crossings, 2)
 
 
-@pytest.mark.parametrize("t", [0.0, 3.3, 150.0, 1e9])
+@pytest.mark.parametrize("t", [-1.0, 0.0, 3.3, 150.0, 1e9])
 def test_a_trail_ends_at_the_current_position(short: OrbitCurves, t: float) -> None:
     now, orbit = moment(short.orbit, t), short.orbit
-    here = min(int(np.searchsorted(orbit.t, t, side="right")) - 1, orbit.t.size - 1)
+    here = int(np.clip(np.searchsorted(orbit.t, t, side="right") - 1, 0, orbit.t.size - 1))
     assert (now.x[-1], now.y[-1]) == (orbit.x[here], orbit.y[here])
     assert (now.x.size - 1) * orbit.t[1] <= TRAIL + 1e-9
+
+
+def test_an_orbit_outside_with_less_energy_than_the_well_is_shown_with_the_whole_well() -> None:
+    potential = parse_formula("½(x² + y²) − x⁴ − y⁴")
+    state = start_states(potential, Plane.X_H, (-0.5, 0.1), np.ones(1), np.full(1, -0.4))[0]
+    curves = compute_orbit_curves(potential, integrate_orbit(potential, state, 10.0))
+    assert curves.orbit.energy == pytest.approx(-0.4)
+    assert curves.window == default_window(potential, Plane.X_Y, potential.escape_energy)
 
 
 def test_an_envelope_keeps_every_extreme() -> None:

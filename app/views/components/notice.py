@@ -14,6 +14,11 @@ CONNECTION_LOST = "The connection to the server is lost. Reload this page: its a
 NAME = "notice"
 """Name of the Bokeh model, by which the server finds it in a document."""
 
+PASSING_SECONDS = 5.0
+"""Duration of passing notices, as in `theme.css`."""
+
+_numbers = count()
+
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
 pane.setv({text: html}, {sync: false})
@@ -32,7 +37,6 @@ class Notice:
 
     def __init__(self) -> None:
         self._pane = _NamedPane("", width=0, height=0, margin=0, styles={"position": "absolute"})
-        self._numbers = count()
 
     def layout(self) -> pn.viewable.Viewable:
         """The pane; its place on the page does not matter."""
@@ -40,8 +44,7 @@ class Notice:
 
     def show(self, sentence: str) -> None:
         """Show a message for a few seconds."""
-        # The number makes the same message twice two changes.
-        self._pane.object = _html(sentence, f"class='notice passing' data-number='{next(self._numbers)}'")
+        self._pane.object = _passing(sentence)
 
     def warn(self, sentence: str) -> None:
         """Show a warning until `clear`."""
@@ -55,9 +58,12 @@ class Notice:
 
 def show_lasting_notice(document: Document, sentence: str) -> None:
     """Show a message on the page of a document until the page is reloaded; needs the document's lock."""
-    model = document.get_model_by_name(NAME)
-    if model is not None:
-        model.text = escape(_html(sentence))
+    _set_text(document, _html(sentence))
+
+
+def show_passing_notice(document: Document, sentence: str) -> None:
+    """Show a message on the page of a document for `PASSING_SECONDS`; needs the document's lock."""
+    _set_text(document, _passing(sentence))
 
 
 def watch_connection(document: Document) -> None:
@@ -65,6 +71,17 @@ def watch_connection(document: Document) -> None:
     # The Bokeh model of the pane holds escaped HTML.
     args = {"name": NAME, "html": escape(_html(CONNECTION_LOST))}
     document.js_on_event("connection_lost", CustomJS(args=args, code=_ON_CONNECTION_LOST))
+
+
+def _set_text(document: Document, html: str) -> None:
+    model = document.get_model_by_name(NAME)
+    if model is not None:
+        model.text = escape(html)
+
+
+def _passing(sentence: str) -> str:
+    # The number makes the same message twice two changes.
+    return _html(sentence, f"class='notice passing' data-number='{next(_numbers)}'")
 
 
 def _html(sentence: str, attributes: str = "class='notice'", role: str = "status") -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import gc
+import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from weakref import ref
 
 import numpy as np
@@ -22,6 +23,7 @@ from engine import (
     find_divergent_start,
     integrate_orbit,
 )
+from engine.jobs.context import JobContext
 from engine.service import (
     Answer,
     DivergentStartRequest,
@@ -250,6 +252,44 @@ def test_warmup_of_an_invalid_spec_fails() -> None:
     jobs.request(WarmupRequest(UnresolvedMapSpec(CASES["I"], Plane.X_Y, -1.0, (40, 40), None, 1e3)), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert isinstance(inbox.errors[0], ValueError)
+
+
+@dataclass(frozen=True)
+class Compilation:
+    """A compilation that lasts until `end` is set."""
+
+    end: threading.Event
+    begun: threading.Event = field(default_factory=threading.Event)
+
+    def run(self, context: JobContext) -> Answer[None]:
+        def compile_kernels() -> None:
+            self.begun.set()
+            self.end.wait(30)
+
+        context.compilation_executor.submit(compile_kernels).result()
+        return Answer(None)
+
+
+def test_orbits_do_not_wait_for_a_compilation() -> None:
+    jobs, inbox, end = Jobs(threads=1), Inbox(), threading.Event()
+    compilation = Compilation(end)
+    jobs.request(compilation, Inbox().result, Inbox().error)
+    assert compilation.begun.wait(30)
+    jobs.request(REQUEST, inbox.result, inbox.error)
+    assert inbox.done.wait(30)
+    end.set()
+
+
+def test_one_compilation_runs_at_a_time() -> None:
+    jobs, end = Jobs(threads=4), threading.Event()
+    compilations, inboxes = [Compilation(end), Compilation(end)], [Inbox(), Inbox()]
+    for compilation, inbox in zip(compilations, inboxes, strict=True):
+        jobs.request(compilation, inbox.result, inbox.error, client=inbox)
+    wait_until(lambda: jobs._compilations.pending_calls == 1)
+    assert sum(compilation.begun.is_set() for compilation in compilations) <= 1
+    end.set()
+    assert all(inbox.done.wait(30) for inbox in inboxes)
+    assert [inbox.errors for inbox in inboxes] == [[], []]
 
 
 @pytest.fixture

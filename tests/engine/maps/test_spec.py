@@ -82,6 +82,16 @@ def test_plane_must_be_one_of_the_three(plane: Any) -> None:
         spec_with(plane=plane)
 
 
+def test_only_the_window_of_a_map_without_one_is_the_default_window() -> None:
+    assert MapSpec(CASES["I"], Plane.X_H, (0.2, 0.3)).has_default_window()
+    assert not MapSpec(CASES["I"], Plane.X_H, (0.2, 0.3), window=Window(-0.5, 0.5, 0.2, 0.3)).has_default_window()
+
+
+def test_a_window_of_a_plane_up_to_too_high_an_energy_is_not_the_default_window() -> None:
+    potential = CASES["III"].with_parameters(omega_1=0.798719)
+    assert not MapSpec(potential, Plane.X_H, (0.1, 0.638), window=Window(-0.5, 0.5, 0.2, 0.3)).has_default_window()
+
+
 def test_energy_without_exits_raises_for_the_default_window() -> None:
     with pytest.raises(ValueError, match=r"energy=50\.0"):
         spec_with(energy=50.0, window=None)

@@ -1,0 +1,74 @@
+"""The share of the event loop's time that one page may take: beyond it, its messages wait.
+
+One thread serves all pages of a process, so that a page which keeps it busy delays the others, whatever it asks for.
+"""
+
+from __future__ import annotations
+
+import time
+import types
+from collections.abc import Callable, Coroutine, Generator
+from functools import partial
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from bokeh.document import Document
+
+SHARE = 0.5
+"""Largest share of the thread's time that a page takes in the long run; drags with 30 messages per second take 0.2."""
+
+BURST_SECONDS = 3.0
+"""Time that a page may take at once after a pause, and most that it has to make up for."""
+
+
+class FairShare:
+    """Counts the time during which the messages and callbacks of a page occupy the event loop.
+
+    Parameters
+    ----------
+    clock
+        Seconds of a monotonic clock.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._left, self._last = BURST_SECONDS, clock()
+
+    def take(self, seconds: float) -> None:
+        """Count time of the event loop."""
+        now = self._clock()
+        left = min(self._left + SHARE * (now - self._last), BURST_SECONDS) - seconds
+        self._left, self._last = max(left, -BURST_SECONDS), now
+
+    def wait_seconds(self) -> float:
+        """Time until the next message may be handled; 0 within the share."""
+        self.take(0.0)
+        return max(0.0, -self._left / SHARE)
+
+    @types.coroutine
+    def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
+        """Await a coroutine and count the time of its steps, without that of others which run while it waits."""
+        step: Callable[[], Any] = partial(coroutine.send, None)
+        while True:
+            begin = self._clock()
+            try:
+                awaited = step()
+            except StopIteration as end:
+                result: Result = end.value
+                return result
+            finally:
+                self.take(self._clock() - begin)
+            try:
+                yield awaited
+            except BaseException as error:
+                step = partial(coroutine.throw, error)
+            else:
+                step = partial(coroutine.send, None)
+
+
+_shares: WeakKeyDictionary[Document, FairShare] = WeakKeyDictionary()
+
+
+def fair_share(document: Document) -> FairShare:
+    """The share of a document's page, whatever the number of its connections."""
+    return _shares.setdefault(document, FairShare())

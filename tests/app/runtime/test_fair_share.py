@@ -1,0 +1,107 @@
+"""The share of the event loop's time that a page may take."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+from bokeh.document import Document
+
+from app.runtime.fair_share import BURST_SECONDS, SHARE, FairShare, fair_share
+from tests.app.clock import Clock
+from tests.app.other_loop import run_on_new_loop
+
+
+def test_a_drag_with_thirty_messages_per_second_never_waits() -> None:
+    clock = Clock()
+    share = FairShare(clock.monotonic)
+    for _ in range(30 * 600):
+        share.take(0.01)
+        clock.now += 1.0 / 30.0
+        assert share.wait_seconds() == 0.0
+
+
+def test_a_page_that_takes_all_it_gets_has_its_share_after_the_burst() -> None:
+    clock, taken = Clock(), 0.0
+    share, begin = FairShare(clock.monotonic), clock.now
+    while clock.now < begin + 100.0:
+        clock.now += share.wait_seconds() + 0.02
+        share.take(0.02)
+        taken += 0.02
+    assert taken == pytest.approx(BURST_SECONDS + SHARE * 100.0, rel=0.01)
+
+
+def test_the_longest_wait_is_limited() -> None:
+    share = FairShare(Clock().monotonic)
+    share.take(1000.0)
+    assert share.wait_seconds() == BURST_SECONDS / SHARE
+
+
+def test_a_pause_restores_the_burst() -> None:
+    clock = Clock()
+    share = FairShare(clock.monotonic)
+    share.take(BURST_SECONDS)
+    clock.now += 1000.0
+    share.take(BURST_SECONDS)
+    assert share.wait_seconds() == 0.0
+    share.take(1.0)
+    assert share.wait_seconds() == 1.0 / SHARE
+
+
+def test_only_the_steps_of_a_coroutine_count() -> None:
+    clock = Clock()
+    share = FairShare(clock.monotonic)
+
+    async def work(other: asyncio.Event) -> str:
+        clock.now += BURST_SECONDS
+        await other.wait()
+        clock.now += 1.0
+        return "done"
+
+    async def scenario() -> None:
+        other = asyncio.Event()
+        task = asyncio.ensure_future(share.count(work(other)))
+        await asyncio.sleep(0.0)
+        clock.now += 1.0
+        other.set()
+        assert await task == "done"
+        # It has got the share of two seconds and has taken one.
+        assert share.wait_seconds() == 0.0
+        share.take(2.0 * SHARE - 1.0)
+        assert share.wait_seconds() == 0.0
+        share.take(0.1)
+        assert share.wait_seconds() == pytest.approx(0.1 / SHARE)
+
+    run_on_new_loop(scenario)
+
+
+def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
+    seen = []
+
+    async def fail() -> None:
+        raise OSError("no")
+
+    async def wait() -> None:
+        try:
+            await asyncio.Event().wait()
+        except asyncio.CancelledError:
+            seen.append("cancelled")
+            raise
+
+    async def scenario() -> None:
+        with pytest.raises(OSError, match="no"):
+            await FairShare().count(fail())
+        task = asyncio.ensure_future(FairShare().count(wait()))
+        await asyncio.sleep(0.0)
+        task.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await task
+
+    run_on_new_loop(scenario)
+    assert seen == ["cancelled"]
+
+
+def test_each_document_has_its_share() -> None:
+    first, second = Document(), Document()
+    assert fair_share(first) is fair_share(first)
+    assert fair_share(first) is not fair_share(second)

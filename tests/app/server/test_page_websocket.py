@@ -1,0 +1,119 @@
+"""Messages of a page that takes more than its share of the event loop's time wait, and the page says so."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import panel as pn
+import pytest
+from bokeh.application import Application
+from bokeh.application.handlers import FunctionHandler
+from bokeh.document import Document
+from bokeh.models import Slider
+from bokeh.server import tornado as bokeh_tornado
+from bokeh.server.server import Server
+from tornado.httpclient import AsyncHTTPClient
+from tornado.ioloop import IOLoop
+
+from app.runtime import fair_share as fair_share_module
+from app.runtime import process_state as process_state_module
+from app.runtime.fair_share import fair_share
+from app.runtime.process_state import ProcessState
+from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
+from app.server.url_patterns import PageHandler
+from app.views.components.notice import Notice
+from benchmarks.simulated_sessions import Channel
+from tests.app.other_loop import run_on_new_loop
+
+PATTERNS = [("/?", PageHandler), ("/ws", PageWebSocket)]
+
+
+@pytest.fixture
+def state(monkeypatch: pytest.MonkeyPatch) -> ProcessState:
+    """The state of a process."""
+    monkeypatch.setattr(bokeh_tornado, "per_app_patterns", PATTERNS)
+    monkeypatch.setattr(process_state_module, "_started", state := ProcessState())
+    return state
+
+
+def build(document: Document) -> None:
+    pn.Column(Notice().layout()).server_doc(document)
+    document.add_root(Slider(name="slider", start=0, end=9, value=0))
+
+
+@asynccontextmanager
+async def pages(count: int) -> AsyncIterator[tuple[Channel, Document]]:
+    """Open pages; the channel and the document of the last one."""
+    server = Server({"/app": Application(FunctionHandler(build))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
+    server.start()
+    address, channels = f"http://127.0.0.1:{server.port}/app", []
+    for _ in range(count):
+        page = await AsyncHTTPClient().fetch(address)
+        channels.append(await Channel.connect(address, page.body.decode()))
+        assert await receive(channels[-1], "ACK")
+    yield channels[-1], server.get_sessions("/app")[-1].document
+    for channel in channels:
+        channel.close()
+    server.stop()
+
+
+async def receive(channel: Channel, kind: str) -> str:
+    """The content of the next message of a kind."""
+    async for each, content in channel.messages():
+        if each == kind:
+            return content
+    raise EOFError
+
+
+def run(count: int, scenario: Callable[[Channel, Document], Awaitable[None]]) -> None:
+    async def with_pages() -> None:
+        async with asyncio.timeout(30), pages(count) as (channel, document):
+            await scenario(channel, document)
+
+    run_on_new_loop(with_pages)
+
+
+def delayed_messages(state: ProcessState) -> float:
+    count = state.metrics.registry.get_sample_value("escape_explorer_messages_delayed_total")
+    assert count is not None
+    return count
+
+
+def slider_of(document: Document) -> Any:
+    return document.get_model_by_name("slider")
+
+
+async def move_slider(channel: Channel, document: Document) -> None:
+    channel.set(slider_of(document).id, value=5)
+    channel.send("SERVER-INFO-REQ", {})
+    await receive(channel, "SERVER-INFO-REPLY")
+
+
+def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
+    # The page has to make up for at most this.
+    monkeypatch.setattr(fair_share_module, "BURST_SECONDS", 0.5 * fair_share_module.SHARE)
+
+    async def scenario(channel: Channel, document: Document) -> None:
+        fair_share(document).take(10.0)
+        channel.set(slider_of(document).id, value=5)
+        assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
+        assert slider_of(document).value == 0
+        await move_slider(channel, document)
+        assert slider_of(document).value == 5
+
+    run(2, scenario)
+    assert delayed_messages(state) >= 1
+
+
+@pytest.mark.parametrize(("count", "debt"), [(2, 0.0), (1, 10.0)], ids=["within its share", "the only page"])
+def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState) -> None:
+    async def scenario(channel: Channel, document: Document) -> None:
+        fair_share(document).take(debt)
+        await move_slider(channel, document)
+        assert slider_of(document).value == 5
+
+    run(count, scenario)
+    assert delayed_messages(state) == 0
