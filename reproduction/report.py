@@ -16,6 +16,7 @@ from reproduction.late_sections import write_late_escapes, write_super_sticky
 from reproduction.map_shelf import MapShelf
 from reproduction.markdown import write_rows
 from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
+from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
 from reproduction.numbers.unknown_windows import STEP
 
@@ -119,6 +120,7 @@ def _introduce(shelf: MapShelf, search: SuperStickySearch) -> str:
         t_max=f"{quality.t_max:g}",
         search_side=search.spec.resolution[0],
         classified_side=quality.classified_resolution,
+        boundary_pixels=BOUNDARY_PIXELS,
         step=f"{STEP:g}",
         points=f"{POINTS:g}",
         percent=f"{PERCENT:g}",
@@ -231,6 +233,14 @@ there are no others. Elsewhere the paper seems to count starts outside, too, as 
 window that it does not state. For these numbers both are given: the share inside, and the share in the square centred on the
 origin that best explains all numbers stated for the map, in steps of {step}. If no square is within {points} points, its right
 edge is fitted, too.
+
+Some statements need a definition:
+
+- A start is inside a basin if it and its eight neighbours escape through the same channel.
+- A start on a boundary is next to all basins if the boundary of each basin is within {boundary_pixels} pixels ([Wada](wada.md)).
+- The [uncertainty exponent](uncertainty-exponent.md) stands for the fat-fractal exponent of a footnote: both are 1 if there is no
+  fractal.
+- Escape times near islands and near exits are medians over the neighbours of bounded starts and of starts outside.
 
 Differences are computed − stated, in percentage points for shares; the largest for several energies; 0 if a stated bound holds.
 Bold differences are larger than {points} points, or {percent} % for numbers that are not shares."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from string import Formatter
 from types import MappingProxyType
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from engine import PAPER_FITS, Fate, compute_statistics
 from reproduction.numbers.measures import Measures
-from reproduction.numbers.stated_numbers import StatedNumber
+from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 
 
 def explain(measures: Measures, number: StatedNumber) -> str:
@@ -58,6 +59,11 @@ def _share_at_last(measures: Measures, number: StatedNumber) -> float:
     return measures.values(number)[-1]
 
 
+def _below_largest(measures: Measures, number: StatedNumber) -> float:
+    shares = measures.values(replace(number, quantity=Quantity.ESCAPED_BY))
+    return max(shares) - shares[number.energies.index(number.value)]
+
+
 FACTS: Mapping[str, Callable[[Measures, StatedNumber], float]] = MappingProxyType(
     {
         "late_escapes": _late_escapes,
@@ -69,6 +75,7 @@ FACTS: Mapping[str, Callable[[Measures, StatedNumber], float]] = MappingProxyTyp
         "last_bounded": _last_bounded,
         "paper_direct": _paper_direct,
         "share_at_last": _share_at_last,
+        "below_largest": _below_largest,
     }
 )
 """Computed values for the remarks of numbers, by name."""

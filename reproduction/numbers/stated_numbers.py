@@ -118,7 +118,7 @@ _X_Y, _X_PX, _X_H = Plane.X_Y, Plane.X_PX, Plane.X_H
 _MEDIAN = "Only {late_escapes:.1f} % of the escapes are so late."
 _HALF = "{bounded_at_5000:.1f} % of the starts are bounded at t = 5000, {bounded_at_20000:.1f} % at t = 20 000."
 _REGULAR = (
-    "SALI of {chaotic_orbits} bounded orbits falls below its threshold; {chaotic_escapes} of them leave later, see "
+    "Bounded orbits whose SALI falls below its threshold: {chaotic_orbits}, of which leave later: {chaotic_escapes}; see "
     "[chaotic bounded orbits](#chaotic-bounded-orbits)."
 )
 _TINY = "Above the stated h {bounded_above} starts are bounded: tiny islands, which a coarser grid misses."
@@ -130,9 +130,10 @@ _LAST_ISLANDS = "Islands exist up to h = {last_bounded:.3f} on (x, h); the paper
 _NINE_TENTHS = "The computed {share_at_last:.0f} % may be stated as about 90."
 _ACCIDENT = "Such late escapes depend on rounding; of {chaotic_orbits} chaotic orbits {chaotic_escapes} escape, in the paper all."
 _LYAPUNOV = "On the Lyapunov orbits R² is just above 1, its value at the saddles; 1.26 is well outside of them."
-_GRID = "Depends on the grid: a start is inside a basin if its eight neighbours escape through the same channel."
-_STILL_FRACTAL = "The exponent rises with h, but the boundaries are still fractal at the highest h of the paper."
-_NEAR = "Depends on the grid: near means next to a bounded start, or next to a start beyond an exit."
+_GRID = "Depends on the grid and on the definition: finer grids have fewer starts near boundaries."
+_FLAT = "At the stated h the share is lower by {below_largest:.1f} points only."
+_STILL_FRACTAL = "The boundaries are still fractal at the highest h of the paper."
+_NEAR = "Depends on the grid and on the definition: times next to an island rise with the resolution."
 
 _SHARED = "three equal shares"
 _HALVED = "half of the rest"
@@ -161,7 +162,7 @@ _CASE_I = (
     StatedNumber("I", _X_Y, (0.285, 0.3, 0.4), "> 0.28", _BOUNDED, _ABOUT, 0.0),
     StatedNumber("I", _X_Y, (0.38, 0.44, 0.5), "> 0.35", _THROUGH, _ABOUT, 65.0, (1,), _WINDOW),
     StatedNumber("I", _X_Y, (0.38, 0.44, 0.5), "> 0.37", _THROUGH, _ABOUT, 35.0, (2,), _WINDOW),
-    StatedNumber("I", _X_Y, _TURN, "0.15 to 0.19", Quantity.LARGEST_SHARE_ENERGY, _ABOUT, 0.17, (2,), _INTERIOR),
+    StatedNumber("I", _X_Y, _TURN, "0.15 to 0.19", Quantity.LARGEST_SHARE_ENERGY, _ABOUT, 0.17, (2,), _INTERIOR, _FLAT),
     StatedNumber("I", _X_Y, (0.5,), "high", _IN_BASINS, _ABOUT, 90.0, (), _WINDOW, _GRID),
     StatedNumber("I", _X_Y, _EXPONENTS, "high", Quantity.EXPONENT, Relation.RISES_TO, 1.0, (), _INTERIOR, _STILL_FRACTAL),
     StatedNumber("I", _X_PX, (0.13,), "0.13", _BOUNDED, _ABOUT, 50.0, remark=_HALF),
