@@ -40,7 +40,7 @@ from engine.jobs.subscription import Subscription
 from engine.maps.origin_fates import join_origin_fates
 from engine.maps.preview import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
 from engine.maps.result import describe_codes
-from engine.maps.spec import LARGEST_SIDE
+from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from engine.potentials.catalogue import PotentialEntry
 from engine.potentials.formula_parser import LONGEST_TEXT
@@ -68,6 +68,7 @@ from engine.warmup import (
 from engine.wording import format_number, format_time, format_whole
 
 __all__ = [
+    "DEFAULT_RESOLUTION",
     "ENTROPY_COUNTS_BOUNDED",
     "FREQUENCIES",
     "LARGEST_NUMBER",

@@ -9,7 +9,18 @@ from dataclasses import replace
 
 import xarray as xr
 
-from engine import CASES, EscapeMap, MapSpec, Plane, RegularityMap, Window, compute_map, compute_regularity
+from engine import (
+    CASES,
+    EscapeMap,
+    MapSpec,
+    Plane,
+    RegularityMap,
+    UncertaintyExponent,
+    Window,
+    compute_map,
+    compute_regularity,
+    compute_uncertainty_exponent,
+)
 from engine.service import SuperStickySearch, find_super_sticky_orbits, tabulate_crossing_statistics
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
@@ -44,7 +55,8 @@ class MapShelf:
         self._maps: dict[MapSpec, EscapeMap] = {}
         self._curves: dict[tuple[str, Plane], xr.Dataset] = {}
         self._regularities: dict[MapSpec, RegularityMap] = {}
-        self._super_sticky: SuperStickySearch | None = None
+        self._searches: dict[MapSpec, SuperStickySearch] = {}
+        self._exponents: dict[MapSpec, UncertaintyExponent] = {}
 
     def map(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
         """Map of a case of the paper.
@@ -102,21 +114,49 @@ class MapShelf:
         concurrent.futures.CancelledError
             If cancelled.
         """
-        if self._super_sticky is None:
-            side = self.quality.search_resolution
-            frame = self._stored(replace(self._spec(STICKY_CASE, Plane.X_PX, STICKY_ENERGY, None), resolution=(side, side)))
-            self._super_sticky = find_super_sticky_orbits(
+        return self._search(STICKY_CASE, STICKY_ENERGY, self.quality.search_resolution)
+
+    def late_escapes(self, case: str, energy: float) -> SuperStickySearch:
+        """Continuation of the chaotic bounded orbits of case I or II on (x, px), from fewer starts.
+
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            If cancelled.
+        """
+        return self._search(case, energy, self.quality.classified_resolution)
+
+    def exponent(self, case: str, plane: Plane, energy: float) -> UncertaintyExponent:
+        """Uncertainty exponent of the basins of a case.
+
+        Raises
+        ------
+        concurrent.futures.CancelledError
+            If cancelled.
+        """
+        spec = self._spec(case, plane, energy)
+        if spec not in self._exponents:
+            self._exponents[spec] = compute_uncertainty_exponent(
+                spec, work=self.quality.exponent_work, executor=self.executor, cancel=self.cancel
+            )
+        return self._exponents[spec]
+
+    def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
+        spec = replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side))
+        if spec not in self._searches:
+            frame = self._stored(spec)
+            self._searches[spec] = find_super_sticky_orbits(
                 frame, self.regularity(frame), self.quality.search_t_max, executor=self.executor, cancel=self.cancel
             )
-        return self._super_sticky
+        return self._searches[spec]
 
-    def _spec(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None) -> MapSpec:
+    def _spec(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None = None) -> MapSpec:
         side, t_max = self.quality.resolution, self.quality.t_max
         return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)  # type: ignore[arg-type]  # None is the whole interior
 
     def _curve_maps(self, case: str, plane: Plane) -> Iterator[EscapeMap]:
         for energy in curve_energies(case, self.quality.curve_points):
-            spec = self._spec(case, plane, energy, None)
+            spec = self._spec(case, plane, energy)
             yield self._maps[spec] if spec in self._maps else self._compute(spec)
 
     def _stored(self, spec: MapSpec) -> EscapeMap:

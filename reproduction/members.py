@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from reproduction.comparisons import compare_all
 from reproduction.figures import FIGURES
 from reproduction.map_shelf import MapShelf
+from reproduction.numbers.comparisons import compare_all
 from reproduction.report import write_report, write_table
 
 TABLES = "tables"

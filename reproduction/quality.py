@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from engine.service import DEFAULT_RESOLUTION
+
 
 @dataclass(frozen=True)
 class Quality:
@@ -14,13 +16,19 @@ class Quality:
     name
         Name on the command line.
     resolution
-        Columns and rows of every map.
+        Columns and rows of every map; even, as an odd number puts a column of starts on the symmetry line x = 0 of III, where
+        orbits on the y axis never escape.
     t_max
         Integration time of orbits, dimensionless.
     curve_points
         Number of energies of curves against h.
     search_resolution, search_t_max
-        Columns and rows of the map whose chaotic bounded orbits are continued, and until which time.
+        Columns and rows of the map of III whose chaotic bounded orbits are continued, and until which time.
+    classified_resolution
+        Columns and rows of the maps of I and II whose chaotic bounded orbits are continued; a classification takes ten times as
+        long as the map.
+    exponent_work
+        Limit of the work for each uncertainty exponent, as `work` of `engine.compute_uncertainty_exponent`.
     """
 
     name: str
@@ -29,10 +37,18 @@ class Quality:
     curve_points: int
     search_resolution: int
     search_t_max: float
+    classified_resolution: int
+    exponent_work: float
 
 
-FULL = Quality("full", resolution=224, t_max=1e5, curve_points=75, search_resolution=224, search_t_max=4e6)
+FULL = Quality(
+    "full", resolution=DEFAULT_RESOLUTION[0], t_max=1e5, curve_points=75, search_resolution=DEFAULT_RESOLUTION[0],
+    search_t_max=4e6, classified_resolution=74, exponent_work=1.5e8,
+)  # fmt: skip
 """As in the paper: about 50 000 starts per map, integrated to 1e5."""
 
-QUICK = Quality("quick", resolution=74, t_max=1e5, curve_points=19, search_resolution=44, search_t_max=4e6)
+QUICK = Quality(
+    "quick", resolution=74, t_max=1e5, curve_points=19, search_resolution=44, search_t_max=4e6, classified_resolution=24,
+    exponent_work=1.5e7,
+)  # fmt: skip
 """One ninth of the starts."""

@@ -11,20 +11,22 @@ import numpy as np
 
 from engine import CASES
 from engine.service import SuperStickySearch
-from reproduction.comparisons import CLASSIFIED_SIDE, PERCENT, POINTS, Comparison, compare_all
 from reproduction.fit_sections import write_fits, write_laws
+from reproduction.late_sections import write_late_escapes, write_super_sticky
 from reproduction.map_shelf import MapShelf
 from reproduction.markdown import write_rows
-from reproduction.stated_numbers import Counting, StatedNumber
-from reproduction.unknown_windows import STEP
+from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
+from reproduction.numbers.map_structure import BOUNDARY_PIXELS
+from reproduction.numbers.stated_numbers import Counting, StatedNumber
+from reproduction.numbers.unknown_windows import STEP
 
 _HEADS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
 _COLUMNS = (
     "case", "plane", "h", "what", "relation", "stated", "unit", "computed", "difference", "needs_window", "agrees",
-    "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "remark",
+    "half_side", "right_edge", "outside_share", "counted", "counted_difference", "agrees_when_counted", "derivation", "reason",
 )  # fmt: skip
-# Number of the latest escapes that are listed.
-_LISTED = 20
+# Fewest computed values that are listed with their energies instead of their range.
+_LISTED = 4
 
 
 def write_report(shelf: MapShelf, search: SuperStickySearch, rows: tuple[Comparison, ...] | None = None) -> str:
@@ -50,7 +52,8 @@ def write_report(shelf: MapShelf, search: SuperStickySearch, rows: tuple[Compari
         mine = [row for row in rows if row.stated.case == case]
         parts += [f"## Case {case}: {potential.channels} channels", write_rows(_HEADS, map(_page_row, mine))]
     parts += ["## Fits", write_fits(shelf), "## Late escapes", write_laws(shelf)]
-    parts += ["## Super-sticky orbits", _describe_search(search), "## Open points of the paper", _OPEN]
+    parts += ["## Chaotic bounded orbits", write_late_escapes(shelf), "## Super-sticky orbits", write_super_sticky(search)]
+    parts += ["## Open points of the paper", _OPEN]
     return "\n\n".join(parts) + "\n"
 
 
@@ -69,7 +72,8 @@ def describe_verdict(rows: Sequence[Comparison]) -> str:
     )
     failing = [row for row in (*free, *others) if not row.agrees]
     lines = [
-        f"- {_describe_place(row.stated)}: {_stated(row.stated)} stated, {_computed(row)} computed. {row.stated.remark}"
+        f"- {_describe_place(row.stated)}: {_value(row.stated)} {'derived' if row.stated.derivation else 'stated'}, "
+        f"{_computed(row)} computed. {row.reason}".rstrip()
         for row in failing
     ]
     return (
@@ -93,14 +97,18 @@ def _table_row(row: Comparison, place: int, value: float) -> tuple[object, ...]:
     by_energy = len(row.computed) == len(stated.energies)
     return (
         stated.case, stated.plane.value if stated.plane else "", stated.energies[place] if by_energy else stated.at,
-        _describe_quantity(stated), stated.relation.value, f"{stated.value:.6g}", _unit(stated), f"{value:.6g}",
-        f"{row.difference:.6g}", int(stated.needs_window), int(row.agrees),
+        _describe_quantity(stated), stated.relation.value, f"{stated.value:.6g}", _unit(stated), _cell(value),
+        _cell(row.difference), int(stated.needs_window), int(row.agrees),
         *(("",) * 6 if window is None else (
             f"{window.half_side:g}", f"{window.window.x_high:g}", f"{window.outside_share:.4g}", f"{row.counted[place]:.6g}",
             f"{row.counted_difference:.6g}", int(row.agrees_when_counted),
         )),
-        stated.remark if not row.agrees else "",
+        stated.derivation, row.reason,
     )  # fmt: skip
+
+
+def _cell(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.6g}"
 
 
 def _introduce(shelf: MapShelf, search: SuperStickySearch) -> str:
@@ -111,7 +119,8 @@ def _introduce(shelf: MapShelf, search: SuperStickySearch) -> str:
         side=quality.resolution,
         t_max=f"{quality.t_max:g}",
         search_side=search.spec.resolution[0],
-        classified_side=min(quality.resolution, CLASSIFIED_SIDE),
+        classified_side=quality.classified_resolution,
+        boundary_pixels=BOUNDARY_PIXELS,
         step=f"{STEP:g}",
         points=f"{POINTS:g}",
         percent=f"{PERCENT:g}",
@@ -145,11 +154,13 @@ def _describe_windows(row: Comparison) -> str:
 
 def _explain(row: Comparison) -> str:
     """Reason for a difference."""
-    remark = [row.stated.remark] if row.stated.remark else []
+    reasons = [row.reason] if row.reason else []
+    if any(fitted.window.x_high != fitted.half_side for fitted in row.windows):
+        reasons.append(f"No square centred on the origin is within {POINTS:g} points.")
     if row.windows:
         near = f"within {POINTS:g}" if row.agrees_when_counted else f"still {abs(row.counted_difference):.1f}"
-        remark.append(f"With starts outside counted the difference is {near} points.")
-    return " ".join(remark)
+        reasons.append(f"With starts outside counted the difference is {near} points.")
+    return " ".join(reasons)
 
 
 def _describe_place(stated: StatedNumber) -> str:
@@ -164,18 +175,30 @@ def _describe_quantity(stated: StatedNumber) -> str:
 
 
 def _stated(stated: StatedNumber) -> str:
+    """The number of the paper, with its derivation."""
+    return f"{_value(stated)} (derived: {stated.derivation})" if stated.derivation else _value(stated)
+
+
+def _value(stated: StatedNumber) -> str:
     value = f"{stated.value:.3g} %" if stated.is_share else f"{stated.value:.6g}"
     return f"{stated.relation.value} {value}".strip()
 
 
 def _computed(row: Comparison) -> str:
-    return f"{_range(row.computed, '{:.1f}')} %" if row.stated.is_share else _range(row.computed, "{:.4g}")
+    """Range of the computed values; of many different ones each with its energy."""
+    form, unit = ("{:.1f}", " %") if row.stated.is_share else ("{:.4g}", "")
+    whole, energies = _range(row.computed, form), row.stated.energies
+    if " to " not in whole or len(row.computed) < _LISTED:
+        return whole + unit
+    values = ("none" if np.isnan(value) else form.format(value) for value in row.computed)
+    listed = ", ".join(f"{value} at {energy:g}" for value, energy in zip(values, energies, strict=True))
+    return f"{whole}{unit} ({listed})"
 
 
 def _range(values: Sequence[float], form: str) -> str:
     if np.isnan(values).all():
         return "none"
-    low, high = form.format(min(values)), form.format(max(values))
+    low, high = form.format(np.nanmin(values)), form.format(np.nanmax(values))
     return low if low == high else f"{low} to {high}"
 
 
@@ -193,24 +216,6 @@ def _count(rows: Sequence[Comparison]) -> int:
     return sum(row.agrees for row in rows)
 
 
-def _describe_search(search: SuperStickySearch) -> str:
-    places = search.escapers[-_LISTED:]
-    rows = [
-        (
-            f"{search.escape_time[k]:.0f}",
-            f"{search.fate[k]}",
-            f"{search.crossings[k]}",
-            f"{search.x[k]:.6f}",
-            f"{search.ordinate[k]:.6f}",
-        )
-        for k in places
-    ]
-    stays = search.fate.size - search.escapers.size
-    intro = _SEARCH.format(h=search.spec.energy, side=search.spec.resolution[0], found=search.describe(), stays=stays)
-    heads = ("escape time", "channel", "upward crossings", "x", "px")
-    return "\n\n".join([intro, write_rows(heads, rows)]) if rows else intro
-
-
 _INTRODUCTION = """\
 E. E. Zotos, *Escapes in Hamiltonian systems with multiple exit channels: Part I*, Nonlinear Dynamics (2014),
 doi 10.1007/s11071-014-1524-9, states the numbers below in its text. `escape-explorer reproduce tables` computes them and writes
@@ -218,7 +223,10 @@ this page.
 
 Computed with version {version} at {quality} quality: {side} × {side} starts per map, integrated to t = {t_max};
 {search_side} × {search_side} starts for the super-sticky orbits; bounded orbits of I and II classified on {classified_side} ×
-{classified_side}. The paper has up to 224 × 224 starts and t = 100 000.
+{classified_side}. The paper has up to 225 × 225 starts and t = 100 000. Numbers of starts per side are even here: with an odd
+number a column lies on the symmetry line x = 0, where orbits of III with px = 0 never escape.
+
+Numbers that the text does not state, but implies, are marked as derived.
 
 Shares are percentages of the starts inside, which are allowed and do not lie beyond a Lyapunov orbit. On (x, px) of I and III
 there are no others. Elsewhere the paper seems to count starts outside, too, as escapes through the channel they lie in, in a
@@ -226,15 +234,16 @@ window that it does not state. For these numbers both are given: the share insid
 origin that best explains all numbers stated for the map, in steps of {step}. If no square is within {points} points, its right
 edge is fitted, too.
 
+Some statements need a definition:
+
+- A start is inside a basin if it and its eight neighbours escape through the same channel.
+- A start on a boundary is next to all basins if the boundary of each basin is within {boundary_pixels} pixels ([Wada](wada.md)).
+- The [uncertainty exponent](uncertainty-exponent.md) stands for the fat-fractal exponent of a footnote: both are 1 if there is no
+  fractal.
+- Escape times near islands and near exits are medians over the neighbours of bounded starts and of starts outside.
+
 Differences are computed − stated, in percentage points for shares; the largest for several energies; 0 if a stated bound holds.
 Bold differences are larger than {points} points, or {percent} % for numbers that are not shares."""
-
-_SEARCH = """\
-Case III at h = {h:g} on (x, px), {side} × {side} starts. {found} {stays} have not escaped by then.
-
-The paper states that all escape by 3.5e6, and shows one that escapes through channel 2 at about 851 000. At such times rounding
-errors have grown to the size of the well: the escape time of a given orbit depends on rounding, in the paper and here; the number
-of escapes does not."""
 
 _OPEN = """\
 - The test for saddles in the paper omits the square of the mixed derivative; it is included here.

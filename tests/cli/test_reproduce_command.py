@@ -18,7 +18,10 @@ from reproduction.quality import Quality
 
 Run = Callable[..., tuple[int, str, str]]
 
-TINY = Quality("tiny", resolution=9, t_max=100.0, curve_points=7, search_resolution=9, search_t_max=200.0)
+TINY = Quality(
+    "tiny", resolution=9, t_max=100.0, curve_points=7, search_resolution=9,
+    search_t_max=200.0, classified_resolution=10, exponent_work=1e4,
+)  # fmt: skip
 
 
 @pytest.fixture(autouse=True)

@@ -23,7 +23,10 @@ from reproduction.quality import FULL, QUICK, Quality
 from reproduction.sample_orbits import SHOWN_CROSSINGS, find_sample_starts
 from reproduction.sticky_figures import LONGEST_DRAWN, find_shown
 
-TINY = Quality("tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=2000.0)
+TINY = Quality(
+    "tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9,
+    search_t_max=2000.0, classified_resolution=10, exponent_work=1e4,
+)  # fmt: skip
 # For each family a case to draw, the numbers of maps and of lines in each panel, and the labels of the axes.
 DRAWN = {
     "potential": ("II", 0, [46, 6, 9], {"$x$"}, {"$y$"}),
@@ -162,6 +165,17 @@ def test_the_published_and_the_new_fit_are_drawn_over_the_shares(shelf: MapShelf
     assert np.abs(np.interp(table["h"].values, h, np.asarray(own.get_ydata())) - table["escaped_share"].values).max() < 0.15
 
 
+class ShelfWithSearch(MapShelf):
+    """A shelf with a given search."""
+
+    def __init__(self, search: SuperStickySearch) -> None:
+        super().__init__(TINY)
+        self.search = search
+
+    def super_sticky(self) -> SuperStickySearch:
+        return self.search
+
+
 def search_with(times: list[float], shelf: MapShelf) -> SuperStickySearch:
     count = len(times)
     fate = np.where(np.isfinite(times), 2, 0).astype(np.int8)
@@ -177,8 +191,7 @@ def test_the_last_escape_within_the_axis_is_shown(shelf: MapShelf) -> None:
 
 
 def test_a_search_without_escapes_is_stated(shelf: MapShelf) -> None:
-    stayed = MapShelf(TINY)
-    stayed._super_sticky = search_with([np.nan], shelf)
+    stayed = ShelfWithSearch(search_with([np.nan], shelf))
     assert "no chaotic orbit" in FIGURES["III-super-sticky"].draw(stayed).get_suptitle()
 
 
@@ -187,9 +200,7 @@ def test_the_band_of_a_late_escape_ends_at_its_exit(shelf: MapShelf) -> None:
     row, column = np.argwhere(frame.fate >= 1)[0]
     state = frame.spec.start_states(frame.x[[column]], frame.ordinate[[row]])
     leaving = replace(search_with([float(frame.escape_time[row, column])], shelf), states=state)
-    shown = MapShelf(TINY)
-    shown._super_sticky = leaving
-    figure = FIGURES["III-super-sticky"].draw(shown)
+    figure = FIGURES["III-super-sticky"].draw(ShelfWithSearch(leaving))
     band = figure.axes[1].collections[0].get_paths()[0].vertices
     assert f"channel {frame.fate[row, column]}" in figure.get_suptitle()
     assert 1.003 < float(np.asarray(band)[:, 1].max()) < 1.017

@@ -13,7 +13,10 @@ from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import curve_energies, nine_energies
 from reproduction.quality import Quality
 
-TINY = Quality("tiny", resolution=11, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=2000.0)
+TINY = Quality(
+    "tiny", resolution=11, t_max=300.0, curve_points=7, search_resolution=9,
+    search_t_max=2000.0, classified_resolution=10, exponent_work=1e4,
+)  # fmt: skip
 
 
 def test_a_map_is_computed_once() -> None:

@@ -9,15 +9,20 @@ import pytest
 
 from engine import CASES, MapSpec, Plane
 from engine.service import SuperStickySearch
-from reproduction.comparisons import Comparison, compare_all
+from reproduction.late_sections import write_late_escapes
 from reproduction.map_shelf import MapShelf
 from reproduction.markdown import write_rows
+from reproduction.numbers.comparisons import Comparison, compare_all
+from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
+from reproduction.paper_ranges import nine_energies
 from reproduction.quality import Quality
 from reproduction.report import describe_verdict, write_report, write_table
-from reproduction.stated_numbers import Counting, Quantity, Relation, StatedNumber
 
-SMALL = Quality("small", resolution=15, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=400.0)
-HALF = StatedNumber("I", Plane.X_PX, (0.3, 0.5), "high", Quantity.ESCAPED_BY, Relation.ABOUT, 60.0, (1,), remark="Because.")
+SMALL = Quality(
+    "small", resolution=16, t_max=300.0, curve_points=7, search_resolution=9,
+    search_t_max=400.0, classified_resolution=10, exponent_work=1e4,
+)  # fmt: skip
+HALF = StatedNumber("I", Plane.X_PX, (0.3, 0.5), "high", Quantity.ESCAPED_BY, Relation.ABOUT, 60.0, (1,))
 IN_A_WINDOW = replace(HALF, case="II", energies=(0.5,), counting=Counting.WINDOW, value=70.0)
 SADDLE = StatedNumber("III", None, (), "", Quantity.ESCAPE_ENERGY, Relation.EXACTLY, 0.25)
 
@@ -29,7 +34,7 @@ def make_search() -> SuperStickySearch:
 
 
 def test_the_summary_counts_agreements_and_lists_differences() -> None:
-    rows = [Comparison(HALF, (61.0, 59.0)), Comparison(HALF, (61.0, 55.0)), Comparison(SADDLE, (0.25,))]
+    rows = [Comparison(HALF, (61.0, 59.0)), Comparison(HALF, (61.0, 55.0), reason="Because."), Comparison(SADDLE, (0.25,))]
     verdict = describe_verdict(rows)
     assert "**Of the 2 percentages that do not depend on a window, 1 agree within 2 percentage points.**" in verdict
     assert "Of the 1 other numbers, 1 agree within 2 %." in verdict
@@ -52,9 +57,9 @@ def test_the_table_has_one_line_per_energy() -> None:
 
 def test_the_report_states_its_quality_and_has_every_section() -> None:
     shelf, search = MapShelf(SMALL), make_search()
-    rows = compare_all(shelf, search, (HALF, IN_A_WINDOW, SADDLE))
+    rows = compare_all(shelf, search, (replace(HALF, derivation="the rest to 100"), IN_A_WINDOW, SADDLE))
     page = write_report(shelf, search, rows)
-    assert "at small quality: 15 × 15 starts per map, integrated to t = 300;" in " ".join(page.split())
+    assert "at small quality: 16 × 16 starts per map, integrated to t = 300;" in " ".join(page.split())
     headings = [line for line in page.splitlines() if line.startswith("## ")]
     assert headings == [
         "## Summary",
@@ -63,12 +68,40 @@ def test_the_report_states_its_quality_and_has_every_section() -> None:
         "## Case III: 4 channels",
         "## Fits",
         "## Late escapes",
+        "## Chaotic bounded orbits",
         "## Super-sticky orbits",
         "## Open points of the paper",
     ]
     assert "| I, Ne/N0 | a | 30 |" in page
+    assert "| about 60 % (derived: the rest to 100) |" in page
     assert "| 820000 | 2 | 7 |" in page
     assert "1 have not escaped by then" in page
+
+
+def test_derived_numbers_are_marked() -> None:
+    row = Comparison(replace(HALF, derivation="the rest to 100"), (61.0, 55.0))
+    assert "about 60 % derived, 55.0 to 61.0 % computed" in describe_verdict([row])
+    assert next(csv.DictReader(io.StringIO(write_table([row]))))["derivation"] == "the rest to 100"
+
+
+def test_many_values_are_listed_with_their_energies() -> None:
+    stated = replace(HALF, energies=(0.13, 0.15, 0.3, 0.5), quantity=Quantity.CHAOTIC, channels=())
+    verdict = describe_verdict([Comparison(stated, (24.0, 1.5, np.nan, 0.0))])
+    assert "0.0 to 24.0 % (24.0 at 0.13, 1.5 at 0.15, none at 0.3, 0.0 at 0.5) computed" in verdict
+
+
+def test_missing_values_are_empty_in_the_table() -> None:
+    lines = list(csv.DictReader(io.StringIO(write_table([Comparison(HALF, (61.0, np.nan))]))))
+    assert [line["computed"] for line in lines] == ["61", ""]
+
+
+def test_late_escapes_are_counted_at_each_energy_with_bounded_starts() -> None:
+    shelf = MapShelf(SMALL)
+    counts = [shelf.late_escapes("I", h) for h in nine_energies("I")]
+    rows = [line.split(" | ") for line in write_late_escapes(shelf).splitlines() if line.startswith("| I |")]
+    assert [(row[2], row[3], row[5]) for row in rows] == [
+        (str(s.bounded), str(s.fate.size), str(s.escapers.size)) for s in counts if s.bounded
+    ]
 
 
 def test_bars_in_cells_are_escaped() -> None:

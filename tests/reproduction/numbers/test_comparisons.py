@@ -7,15 +7,28 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, Fate, MapSpec, Plane, Regularity, RegularityMap, Window, compute_map
+from engine import (
+    CASES,
+    Fate,
+    MapSpec,
+    Plane,
+    Regularity,
+    Window,
+    compute_map,
+    compute_regularity,
+    compute_uncertainty_exponent,
+)
 from engine.service import SuperStickySearch
-from reproduction.comparisons import Comparison, compare_all
 from reproduction.map_shelf import MapShelf
+from reproduction.numbers.comparisons import Comparison, compare_all
+from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
+from reproduction.numbers.unknown_windows import fit_window
 from reproduction.quality import Quality
-from reproduction.stated_numbers import Counting, Quantity, Relation, StatedNumber
-from reproduction.unknown_windows import fit_window
 
-SMALL = Quality("small", resolution=21, t_max=300.0, curve_points=7, search_resolution=9, search_t_max=400.0)
+SMALL = Quality(
+    "small", resolution=22, t_max=300.0, curve_points=7, search_resolution=9,
+    search_t_max=400.0, classified_resolution=10, exponent_work=1e4,
+)  # fmt: skip
 
 
 def make_search(fate: list[int], times: list[float]) -> SuperStickySearch:
@@ -72,12 +85,12 @@ def test_times_agree_to_two_percent() -> None:
 
 def test_shares_are_computed_from_the_map_at_each_energy() -> None:
     ours = measure(share_of((1,), (0.3, 0.5))).computed
-    maps = [compute_map(MapSpec(CASES["I"], Plane.X_PX, h, (21, 21), t_max=300.0)) for h in (0.3, 0.5)]
+    maps = [compute_map(MapSpec(CASES["I"], Plane.X_PX, h, (22, 22), t_max=300.0)) for h in (0.3, 0.5)]
     assert ours == pytest.approx([100.0 * np.sum(m.fate == 1) / np.sum(m.fate >= 0) for m in maps])
 
 
 def test_direct_escapes_have_no_crossing() -> None:
-    whole = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.5, (21, 21), t_max=300.0))
+    whole = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.5, (22, 22), t_max=300.0))
     direct = np.sum((whole.fate >= 1) & (whole.crossings == 0)) / np.sum(whole.fate >= 0)
     assert measure(DIRECT).computed == pytest.approx((100.0 * direct,))
 
@@ -95,13 +108,47 @@ def test_without_escapes_there_is_no_last_escape() -> None:
     assert not compare_all(MapShelf(SMALL), make_search([0], [np.nan]), (last,))[0].agrees
 
 
-def test_chaotic_shares_of_other_cases_use_the_classification() -> None:
-    number = StatedNumber("II", Plane.X_PX, (0.17,), "", Quantity.CHAOTIC, Relation.ABOUT, 0.0)
-    shelf = MapShelf(SMALL)
-    frame = shelf.map("II", Plane.X_PX, 0.17)
-    regularity: RegularityMap = shelf.regularity(frame)
-    expected = 100.0 * np.sum(regularity.character == Regularity.CHAOTIC) / np.sum(frame.fate == Fate.BOUNDED)
-    assert measure(number).computed == pytest.approx((expected,))
+def test_chaotic_shares_of_other_cases_are_those_of_the_coarser_maps() -> None:
+    number = StatedNumber("II", Plane.X_PX, (0.17, 0.3), "", Quantity.CHAOTIC, Relation.ABOUT, 0.0)
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.17, (10, 10), t_max=300.0))
+    chaotic = np.sum(compute_regularity(frame).character == Regularity.CHAOTIC)
+    assert measure(number).computed == pytest.approx((100.0 * chaotic / np.sum(frame.fate == Fate.BOUNDED), np.nan), nan_ok=True)
+
+
+def test_energies_without_a_value_do_not_count() -> None:
+    assert Comparison(share_of((1,)), (61.0, float("nan"))).difference == pytest.approx(1.0)
+
+
+def test_a_rising_number_is_compared_at_the_highest_energy() -> None:
+    number = StatedNumber("I", Plane.X_Y, (0.2, 0.5), "", Quantity.EXPONENT, Relation.RISES_TO, 1.0)
+    assert Comparison(number, (0.1, 0.99)).agrees
+    assert not Comparison(number, (1.0, 0.5)).agrees
+    assert not Comparison(number, (1.0, float("nan"))).agrees
+
+
+def test_accurate_orbits_are_counted_inside() -> None:
+    number = StatedNumber("II", Plane.X_PX, (0.3,), "", Quantity.ACCURATE, Relation.MORE_THAN, 50.0)
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (22, 22), t_max=300.0))
+    assert measure(number).computed == (100.0 * np.mean(frame.energy_error[frame.fate >= 0] < 1e-11),)
+
+
+def test_the_energy_of_the_largest_share_is_found() -> None:
+    number = replace(share_of((2,), (0.13, 0.17, 0.5)), plane=Plane.X_Y, quantity=Quantity.LARGEST_SHARE_ENERGY, value=0.17)
+    shares = measure(replace(number, quantity=Quantity.ESCAPED_BY)).computed
+    assert measure(number).computed == (number.energies[int(np.argmax(shares))],)
+
+
+def test_exponents_are_those_of_the_engine() -> None:
+    number = StatedNumber("I", Plane.X_Y, (0.5,), "", Quantity.EXPONENT, Relation.RISES_TO, 1.0)
+    spec = MapSpec(CASES["I"], Plane.X_Y, 0.5, (22, 22), t_max=300.0)
+    assert measure(number).computed == pytest.approx((compute_uncertainty_exponent(spec, work=1e4).exponent,), nan_ok=True)
+
+
+def test_a_reason_is_given_for_a_difference_only() -> None:
+    number = replace(share_of((1,), (0.3, 0.5)), remark="At last {share_at_last:.1f}.")
+    last = measure(number).computed[-1]
+    assert measure(replace(number, value=0.0)).reason == f"At last {last:.1f}."
+    assert measure(replace(number, relation=Relation.LESS_THAN, value=100.0)).reason == ""
 
 
 def test_escape_energy_and_lyapunov_orbits_are_computed() -> None:

@@ -1,0 +1,148 @@
+"""Comparison of the numbers stated in the paper with computed ones.
+
+`compare_all(shelf, search)` returns a `Comparison` for each of `STATED_NUMBERS`; `search` is `shelf.super_sticky()`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engine import Plane
+from engine.service import SuperStickySearch
+from reproduction.map_shelf import MapShelf
+from reproduction.numbers.map_structure import share_in_basins
+from reproduction.numbers.measures import Measures, counted_codes
+from reproduction.numbers.reasons import explain
+from reproduction.numbers.stated_numbers import STATED_NUMBERS, Quantity, Relation, StatedNumber
+from reproduction.numbers.unknown_windows import FittedWindow, fit_window
+
+POINTS = 2.0
+"""Largest difference of shares that agree, in percentage points."""
+
+PERCENT = 2.0
+"""Largest relative difference of other numbers that agree, in percent."""
+
+_FITTED = (Quantity.ESCAPED_BY, Quantity.BOUNDED)
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """One number of the paper with the computed one.
+
+    Attributes
+    ----------
+    stated
+        The number in the paper.
+    computed
+        Computed values in the same unit, one per energy; shares are relative to the starts inside. For Lyapunov orbits the
+        smallest and the largest R². NaN if there is no value.
+    windows
+        For each energy the window that best explains the stated shares; empty if the number needs no window.
+    counted
+        Computed shares in these windows, with starts outside counted.
+    reason
+        Reason for a difference.
+    """
+
+    stated: StatedNumber
+    computed: tuple[float, ...]
+    windows: tuple[FittedWindow, ...] = ()
+    counted: tuple[float, ...] = ()
+    reason: str = ""
+
+    @property
+    def difference(self) -> float:
+        """Largest difference computed − stated, of `RISES_TO` the last one; 0 if a stated bound holds, NaN without a value."""
+        return _furthest(self.stated, self.computed)
+
+    @property
+    def counted_difference(self) -> float:
+        """The same with starts outside counted; NaN if the number needs no window."""
+        return _furthest(self.stated, self.counted)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the difference is within `POINTS` for shares, or `PERCENT` for other numbers."""
+        return _small(self.stated, self.difference)
+
+    @property
+    def agrees_when_counted(self) -> bool:
+        """The same with starts outside counted."""
+        return _small(self.stated, self.counted_difference)
+
+
+def compare_all(
+    shelf: MapShelf, search: SuperStickySearch, numbers: tuple[StatedNumber, ...] = STATED_NUMBERS
+) -> tuple[Comparison, ...]:
+    """Compute all numbers that the paper states.
+
+    Parameters
+    ----------
+    shelf
+        Source of the maps.
+    search
+        Search for super-sticky orbits of case III at h = 0.26.
+    numbers
+        Numbers to compute.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        If the shelf is cancelled.
+    """
+    measures, windows = Measures(shelf, search), _Windows(shelf, numbers)
+    return tuple(_compare(number, measures, windows) for number in numbers)
+
+
+def _compare(number: StatedNumber, measures: Measures, windows: _Windows) -> Comparison:
+    """Compare one number; the reason of a difference is computed only if there is one."""
+    fitted = tuple(windows.fit(number, energy) for energy in number.energies) if number.needs_window else ()
+    row = Comparison(number, measures.values(number), fitted, tuple(_count(number, window) for window in fitted))
+    return row if row.agrees else replace(row, reason=explain(measures, number))
+
+
+def _count(number: StatedNumber, window: FittedWindow) -> float:
+    """A share with starts outside counted."""
+    if number.quantity is Quantity.IN_BASINS:
+        return share_in_basins(window.counted, count_outside=True)
+    return window.share(counted_codes(number))
+
+
+class _Windows:
+    """Windows that explain the shares stated for each map."""
+
+    def __init__(self, shelf: MapShelf, numbers: tuple[StatedNumber, ...]) -> None:
+        self.shelf = shelf
+        self.fitting = [number for number in numbers if number.needs_window and number.quantity in _FITTED]
+        self.windows: dict[tuple[str, Plane, float], FittedWindow] = {}
+
+    def fit(self, number: StatedNumber, energy: float) -> FittedWindow:
+        """Window that explains all shares of channels and of bounded starts stated for one map."""
+        assert number.plane is not None
+        key = (number.case, number.plane, energy)
+        if key not in self.windows:
+            stated = {
+                counted_codes(other): other.value
+                for other in self.fitting
+                if (other.case, other.plane) == key[:2] and energy in other.energies
+            }
+            self.windows[key] = fit_window(self.shelf, number.case, self.shelf.map(*key), stated, POINTS)
+        return self.windows[key]
+
+
+def _furthest(stated: StatedNumber, values: tuple[float, ...]) -> float:
+    differences = np.array(values)[-1 if stated.relation is Relation.RISES_TO else 0 :] - stated.value
+    differences = differences[~np.isnan(differences)]
+    if not differences.size:
+        return float("nan")
+    if stated.relation is Relation.MORE_THAN:
+        differences = np.minimum(differences, 0.0)
+    elif stated.relation is Relation.LESS_THAN:
+        differences = np.maximum(differences, 0.0)
+    return float(differences[np.argmax(np.abs(differences))])
+
+
+def _small(stated: StatedNumber, difference: float) -> bool:
+    return abs(difference) <= (POINTS if stated.is_share else PERCENT / 100.0 * stated.value)

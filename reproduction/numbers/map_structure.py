@@ -1,0 +1,67 @@
+"""Structure of the basins on a map: starts inside basins, starts next to all basins, escape times near islands and exits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine import EscapeMap, Fate, compute_wada_test
+
+BOUNDARY_PIXELS = 2
+"""Largest distance of a start on a boundary from the boundaries of all basins, in pixels, that counts as next to them."""
+
+# A start and its eight neighbours.
+_NEIGHBOURHOOD = (3, 3)
+
+
+def share_in_basins(frame: EscapeMap, *, count_outside: bool = False) -> float:
+    """Percentage of the starts that escape through the same channel as their eight neighbours.
+
+    Parameters
+    ----------
+    frame
+        A complete map.
+    count_outside
+        Whether starts outside count as escaped through the channel they lie in. Otherwise they count neither as starts nor as
+        neighbours.
+    """
+    from scipy import ndimage
+
+    fate = np.where(frame.fate == Fate.OUTSIDE, frame.outside, frame.fate) if count_outside else frame.fate
+    counts, channels = fate >= Fate.BOUNDED, frame.spec.potential.channels
+    lowest = ndimage.minimum_filter(np.where(counts, fate, channels), _NEIGHBOURHOOD, mode="nearest")
+    highest = ndimage.maximum_filter(np.where(counts, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+    return 100.0 * float(np.mean((lowest == highest)[counts] & (fate[counts] >= 1)))
+
+
+def share_next_to_all_basins(frame: EscapeMap) -> float:
+    """Percentage of the starts on a basin boundary within `BOUNDARY_PIXELS` of the boundary of each basin; 100 if it is Wada.
+
+    0 if the basins do not touch, NaN for fewer than three basins.
+    """
+    test = compute_wada_test(frame)
+    if not test.is_applicable:
+        return float("nan")
+    return 100.0 * float(test.shares[: BOUNDARY_PIXELS + 1].max(initial=0.0))
+
+
+def orders_of_escape_times(frame: EscapeMap) -> float:
+    """log10 of the median escape time of the neighbours of bounded starts over that of the neighbours of starts outside.
+
+    NaN without such neighbours.
+
+    Parameters
+    ----------
+    frame
+        A complete map on (x, y).
+    """
+    near_islands, near_exits = (_median_time_next_to(frame, fate) for fate in (Fate.BOUNDED, Fate.OUTSIDE))
+    return float(np.log10(near_islands / near_exits))
+
+
+def _median_time_next_to(frame: EscapeMap, fate: Fate) -> float:
+    """Median escape time of the neighbours of the starts with a fate."""
+    from scipy import ndimage
+
+    near = ndimage.binary_dilation(frame.fate == fate, np.ones(_NEIGHBOURHOOD))
+    times = frame.escape_time[near & (frame.fate >= 1)]
+    return float(np.median(times)) if times.size else float("nan")

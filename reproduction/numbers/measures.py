@@ -1,0 +1,160 @@
+"""Computed values of the quantities of which the paper states numbers: `Measures(shelf, search).values(number)`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from engine import CASES, EscapeMap, Fate, Plane, compute_statistics, find_lyapunov_orbits
+from engine.service import SuperStickySearch
+from reproduction.map_shelf import MapShelf
+from reproduction.numbers.map_structure import orders_of_escape_times, share_in_basins, share_next_to_all_basins
+from reproduction.numbers.stated_numbers import Quantity, StatedNumber
+from reproduction.paper_ranges import STICKY_CASE, plane_energies
+
+ACCURATE = 1e-11
+"""Relative energy error of most orbits of the paper."""
+
+
+class Measures:
+    """Maps and searches from which the numbers are computed.
+
+    Parameters
+    ----------
+    shelf
+        Source of the maps.
+    search
+        Search for super-sticky orbits of case III at h = 0.26.
+    """
+
+    def __init__(self, shelf: MapShelf, search: SuperStickySearch) -> None:
+        self.shelf, self.search = shelf, search
+
+    def values(self, number: StatedNumber) -> tuple[float, ...]:
+        """Computed values in the unit of the stated one, as in `Comparison.computed`."""
+        return _MEASURES[number.quantity](self, number)
+
+    def maps(self, number: StatedNumber) -> list[EscapeMap]:
+        """Maps of a number, one per energy."""
+        assert number.plane is not None
+        return [self.shelf.map(number.case, number.plane, energy) for energy in number.energies]
+
+    def searches(self, number: StatedNumber) -> list[SuperStickySearch]:
+        """Continuations of the chaotic bounded orbits at each energy of a number."""
+        if number.case == STICKY_CASE:
+            return [self.search]
+        return [self.shelf.late_escapes(number.case, energy) for energy in number.energies]
+
+    def energy_plane(self, case: str) -> EscapeMap:
+        """Map on (x, h)."""
+        return self.shelf.map(case, Plane.X_H, plane_energies(case))
+
+    def last_bounded(self, case: str) -> float:
+        """Highest h on (x, h) with a bounded start; NaN if there is none."""
+        frame = self.energy_plane(case)
+        rows = np.flatnonzero((frame.fate == Fate.BOUNDED).any(axis=1))
+        return float(frame.ordinate[rows[-1]]) if rows.size else float("nan")
+
+
+def counted_codes(number: StatedNumber) -> tuple[int, ...]:
+    """Fates that a share counts."""
+    if number.quantity is Quantity.BOUNDED:
+        return (int(Fate.BOUNDED),)
+    return number.channels or tuple(range(1, CASES[number.case].channels + 1))
+
+
+def _measure_shares(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    shares = [frame.fractions() for frame in measures.maps(number)]
+    return tuple(100.0 * sum(share[code] for code in counted_codes(number)) for share in shares)
+
+
+def _measure_direct(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(100.0 * compute_statistics(frame).direct_share for frame in measures.maps(number))
+
+
+def _measure_chaotic(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(100.0 * search.chaotic_share for search in measures.searches(number))
+
+
+def _measure_last_bounded(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return (measures.last_bounded(number.case),)
+
+
+def _measure_median_time(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(compute_statistics(frame).median_escape_time for frame in measures.maps(number))
+
+
+def _measure_energy_error(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    assert number.plane is not None
+    return (float(measures.shelf.curves(number.case, number.plane)["worst_energy_error"].max()),)
+
+
+def _measure_accurate(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(100.0 * float(np.mean(frame.energy_error[frame.interior] < ACCURATE)) for frame in measures.maps(number))
+
+
+def _measure_escape_energy(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return (CASES[number.case].escape_energy,)
+
+
+def _measure_lyapunov_r2(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    orbits = find_lyapunov_orbits(CASES[number.case], number.energies[0])
+    r2 = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
+    return float(r2.min()), float(r2.max())
+
+
+def _measure_last_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    escapers = measures.search.escapers
+    return (float(measures.search.escape_time[escapers[-1]]) if escapers.size else float("nan"),)
+
+
+def _measure_nearest_escape(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    times = measures.search.escape_time[np.isin(measures.search.fate, number.channels)]
+    return (float(times[np.argmin(np.abs(times - number.value))]) if times.size else float("nan"),)
+
+
+def _measure_largest_share_energy(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return (number.energies[int(np.argmax(_measure_shares(measures, number)))],)
+
+
+def _measure_in_basins(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(share_in_basins(frame) for frame in measures.maps(number))
+
+
+def _measure_wada(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(share_next_to_all_basins(frame) for frame in measures.maps(number))
+
+
+def _measure_exponent(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    assert number.plane is not None
+    return tuple(measures.shelf.exponent(number.case, number.plane, energy).exponent for energy in number.energies)
+
+
+def _measure_time_orders(measures: Measures, number: StatedNumber) -> tuple[float, ...]:
+    return tuple(orders_of_escape_times(frame) for frame in measures.maps(number))
+
+
+_MEASURES: Mapping[Quantity, Callable[[Measures, StatedNumber], tuple[float, ...]]] = MappingProxyType(
+    {
+        Quantity.ESCAPED_BY: _measure_shares,
+        Quantity.BOUNDED: _measure_shares,
+        Quantity.ESCAPED: _measure_shares,
+        Quantity.DIRECT: _measure_direct,
+        Quantity.CHAOTIC: _measure_chaotic,
+        Quantity.LAST_BOUNDED_ENERGY: _measure_last_bounded,
+        Quantity.MEDIAN_ESCAPE_TIME: _measure_median_time,
+        Quantity.ENERGY_ERROR: _measure_energy_error,
+        Quantity.ACCURATE: _measure_accurate,
+        Quantity.ESCAPE_ENERGY: _measure_escape_energy,
+        Quantity.LYAPUNOV_R2: _measure_lyapunov_r2,
+        Quantity.LAST_ESCAPE: _measure_last_escape,
+        Quantity.NEAREST_ESCAPE: _measure_nearest_escape,
+        Quantity.LARGEST_SHARE_ENERGY: _measure_largest_share_energy,
+        Quantity.IN_BASINS: _measure_in_basins,
+        Quantity.WADA: _measure_wada,
+        Quantity.EXPONENT: _measure_exponent,
+        Quantity.TIME_ORDERS: _measure_time_orders,
+    }
+)

@@ -1,0 +1,81 @@
+"""Reasons for differences from the paper, with computed values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from string import Formatter
+from types import MappingProxyType
+
+import numpy as np
+
+from engine import PAPER_FITS, Fate, compute_statistics
+from reproduction.numbers.measures import Measures
+from reproduction.numbers.stated_numbers import Quantity, StatedNumber
+
+
+def explain(measures: Measures, number: StatedNumber) -> str:
+    """The remark of a number with its fields filled in; each field is a name of `FACTS`."""
+    names = [name for _, name, _, _ in Formatter().parse(number.remark) if name]
+    return number.remark.format(**{name: FACTS[name](measures, number) for name in names})
+
+
+def _late_escapes(measures: Measures, number: StatedNumber) -> float:
+    times = compute_statistics(measures.maps(number)[0]).escape_times
+    return 100.0 * float(np.mean(times > number.value))
+
+
+def _bounded_at(time: float) -> Callable[[Measures, StatedNumber], float]:
+    def measure(measures: Measures, number: StatedNumber) -> float:
+        frame = measures.maps(number)[0]
+        inside = frame.interior
+        return 100.0 * float(np.mean((frame.fate[inside] == Fate.BOUNDED) | (frame.escape_time[inside] > time)))
+
+    return measure
+
+
+def _chaotic_orbits(measures: Measures, number: StatedNumber) -> int:
+    return sum(search.fate.size for search in measures.searches(number))
+
+
+def _chaotic_escapes(measures: Measures, number: StatedNumber) -> int:
+    return sum(search.escapers.size for search in measures.searches(number))
+
+
+def _bounded_above(measures: Measures, number: StatedNumber) -> int:
+    frame = measures.energy_plane(number.case)
+    return int(np.count_nonzero(frame.fate[frame.ordinate > number.value] == Fate.BOUNDED))
+
+
+def _last_bounded(measures: Measures, number: StatedNumber) -> float:
+    return measures.last_bounded(number.case)
+
+
+def _paper_direct(measures: Measures, number: StatedNumber) -> float:
+    return 100.0 * float(PAPER_FITS[number.case].direct(number.energies[0]))
+
+
+def _share_at_last(measures: Measures, number: StatedNumber) -> float:
+    return measures.values(number)[-1]
+
+
+def _below_largest(measures: Measures, number: StatedNumber) -> float:
+    shares = measures.values(replace(number, quantity=Quantity.ESCAPED_BY))
+    return max(shares) - shares[number.energies.index(number.value)]
+
+
+FACTS: Mapping[str, Callable[[Measures, StatedNumber], float]] = MappingProxyType(
+    {
+        "late_escapes": _late_escapes,
+        "bounded_at_5000": _bounded_at(5e3),
+        "bounded_at_20000": _bounded_at(2e4),
+        "chaotic_orbits": _chaotic_orbits,
+        "chaotic_escapes": _chaotic_escapes,
+        "bounded_above": _bounded_above,
+        "last_bounded": _last_bounded,
+        "paper_direct": _paper_direct,
+        "share_at_last": _share_at_last,
+        "below_largest": _below_largest,
+    }
+)
+"""Computed values for the remarks of numbers, by name."""
