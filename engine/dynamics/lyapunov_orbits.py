@@ -1,47 +1,33 @@
-"""Lyapunov orbits: the unstable periodic orbits over the open saddles. Their paths across the channels are the exits.
-
-At an energy h above the saddle the orbit oscillates between two points at rest on the zero-velocity curve (Contopoulos 1990,
-Astron. Astrophys. 231, 41). An orbit that starts at rest on the zero-velocity curve too close to the well moves inward, one that
-starts too far out moves outward. The Lyapunov orbit is the root of the velocity along the channel at the turning point.
-"""
+"""Lyapunov orbits: the unstable periodic orbits over the open saddles. Their paths across the channels are the exits."""
 
 from __future__ import annotations
 
 import functools
 import itertools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from types import ModuleType
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import read_only
-from engine.dynamics.compiled import kernels_of
+from engine.dynamics.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, saddle_axes
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.representation import Result
-from engine.root_finding import find_root
 from engine.taylor.kernels import events
-from engine.taylor.source.recurrence import ORDER, TOLERANCE
 from engine.validation import checked_number
 
-# Lengths along the channel, in units of the distance of the saddle from the origin: where a trial orbit has left the saddle for
-# good, the first step of the bracket search, and where this search ends.
-_LARGEST_EXCURSION = 1.0
-_FIRST_STRIDE = 0.01
-_LARGEST_OFFSET = 2.0
-
-_SAMPLES_PER_HALF_PERIOD = 100
-_LARGEST_FIT_ERROR = 1e-11
+# In units of the well.
+_LARGEST_FIT_ERROR = 1e-9
+# Ends of two orbits closer than this, in units of the well, are the same.
+_SAME_END = 1e-6
 # Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
 _GATE_MARGIN = 1e-3
-_MOST_STEPS = 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
-# The lines beyond the ends of an exit are sampled from this |s| − 1 on.
-_FIRST_BEYOND, _SAMPLES_BEYOND = 1e-3, 400
+# The lines beyond the ends of an exit are sampled from this |s| − 1 on, up to this multiple of the distance of the saddle.
+_FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +83,8 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     Raises
     ------
     ValueError
-        If `energy` is not finite, or so high that a Lyapunov orbit is not found or not a graph across its channel, or that
-        exits meet.
+        If `energy` is not finite, or above a maximum between two exits, or if a Lyapunov orbit is not found or not a graph over
+        a line, or if exits meet.
 
     Examples
     --------
@@ -109,11 +95,21 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     ()
     """
     energy, units = checked_number("energy", energy), potential.units
+    _check_below_maxima(potential, energy)
     try:
         orbits = _find_orbits(potential.in_well_units, energy / units.energy)
     except _SearchError as error:
         raise ValueError(f"energy={energy}: {error} (potential {potential.name})") from None
     return orbits if units == WellUnits() else tuple(_rescaled(orbit, units) for orbit in orbits)
+
+
+def _check_below_maxima(potential: Potential, energy: float) -> None:
+    for merger in potential.channel_mergers:
+        if energy > merger.energy:
+            raise ValueError(
+                f"energy={energy}: {merger.describe()} are one above the maximum between them, V = {merger.energy:.6g} at "
+                f"({merger.x:.6g}, {merger.y:.6g}); choose a lower energy (potential {potential.name})"
+            )
 
 
 class _SearchError(Exception):
@@ -122,11 +118,19 @@ class _SearchError(Exception):
 
 @functools.lru_cache(maxsize=4096)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
-    """The orbits of a potential in units of its well; those of mirror channels are exact mirror images."""
+    """The orbits of a potential in units of its well."""
+    try:
+        return _find_separate_orbits(potential, energy, follow=False)
+    except _SearchError:
+        return _find_separate_orbits(potential, energy, follow=True)
+
+
+def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
+    """Orbits that do not meet, searched at this energy or followed up to it; those of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
     for channel in potential.open_channels(energy):
         image = int(potential.mirror_channels[channel]) if potential.mirror_in_x else channel
-        found[channel] = _mirrored(found[image], channel) if image in found else _find_orbit(potential, energy, channel)
+        found[channel] = _mirrored(found[image], channel) if image in found else _find_orbit(potential, energy, channel, follow)
         if image == channel and potential.mirror_in_x:
             found[channel] = _symmetrized(found[channel])
     orbits = tuple(found.values())
@@ -146,8 +150,13 @@ def _rescaled(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
     for one, other in itertools.combinations(orbits, 2):
-        if _paths_cross(one.half_path, other.half_path):
-            raise _SearchError(f"too high, the exits of channels {one.channel} and {other.channel} meet")
+        if _paths_cross(one.half_path, other.half_path) or _same_ends(one.half_path, other.half_path):
+            raise _SearchError(f"the exits of channels {one.channel} and {other.channel} meet; choose a lower energy")
+
+
+def _same_ends(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two paths, (n, 2) each, connect the same points: then they are one, up to rounding errors."""
+    return bool(np.abs(one[[0, -1]] - other[[0, -1]]).max() < _SAME_END)
 
 
 def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
@@ -173,7 +182,7 @@ def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
 def _mirrored_curve(curve: np.ndarray) -> np.ndarray:
     """An exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
     image = curve.copy()
-    image[[events.SADDLE_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
+    image[[events.ORIGIN_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
     image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
     image[events.COEFFICIENTS + 1 :: 2] *= -1.0
     return image
@@ -184,66 +193,23 @@ def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
     return replace(orbit, curve=0.5 * (orbit.curve + _mirrored_curve(orbit.curve)))
 
 
-def _find_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
-    kernels = kernels_of(potential)
-    saddle, outward = potential.saddles[channel - 1], potential.outward_directions[channel - 1]
-    distance = float(np.hypot(*saddle))
-    steps = np.empty((_MOST_STEPS, 5))
-    arguments = (*saddle, *outward, energy, _LARGEST_EXCURSION * distance, TOLERANCE, steps)
-
-    def outward_velocity(u: float) -> float:
-        """The velocity along the channel at the turning point, after a start at rest at offset u from the saddle."""
-        return float(kernels.shoot(u, *arguments)[0])
-
-    bracket = _find_bracket(outward_velocity, distance)
-    if bracket is None:
-        raise _SearchError(f"too high, no Lyapunov orbit was found across channel {channel}; choose a lower energy")
-    u = find_root(outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
-    _, half_period, count = kernels.shoot(u, *arguments)
-    if not np.isfinite(half_period):
-        raise _SearchError(f"the Lyapunov orbit of channel {channel} does not turn back")
-    x, y = _sample_path(kernels, steps[:count], half_period)
-    curve = _fit_exit_curve(saddle, outward, x, y)
+def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
+    orbit = (continue_in_energy if follow else find_directly)(potential, energy, channel)
+    if orbit is None:
+        raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
+    axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)
+    curve = _fit_exit_curve(axes, potential.saddles[channel - 1], orbit.path)
     if curve is None:
-        raise _SearchError(f"too high, across channel {channel} the Lyapunov orbit is not a smooth graph and defines no exit")
+        raise _SearchError(f"the Lyapunov orbit across channel {channel} is not a smooth graph; choose another energy")
     curve[events.REACH] = _find_reach(potential, energy, curve)
+    x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
-    return LyapunovOrbit(channel, energy, 2.0 * half_period, x[there_and_back], y[there_and_back], curve)
+    return LyapunovOrbit(channel, energy, 2.0 * orbit.half_period, x[there_and_back], y[there_and_back], curve)
 
 
-def _find_bracket(outward_velocity: Callable[[float], float], distance: float) -> tuple[float, float] | None:
-    """An inner start that moves inward and an outer one that moves outward, searched from the saddle with growing strides."""
-    here, stride = 0.0, _FIRST_STRIDE * distance
-    first = outward_velocity(here)
-    if np.isnan(first):
-        return None
-    inward = first < 0
-    while abs(here) < _LARGEST_OFFSET * distance:
-        there = here + stride if inward else here - stride
-        velocity = outward_velocity(there)
-        if np.isnan(velocity):
-            return None
-        if (velocity < 0) != inward:
-            return (here, there) if inward else (there, here)
-        here, stride = there, 1.5 * stride
-    return None
-
-
-def _sample_path(kernels: ModuleType, steps: np.ndarray, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """x and y (101,) at evenly spaced times from 0 to `duration`, from the Taylor series of the steps (x, y, px, py, t)."""
-    x_jet, y_jet = np.empty((2, ORDER + 1, len(steps)))
-    kernels.jets(len(steps), *(np.ascontiguousarray(column) for column in steps[:, :4].T), x_jet, y_jet)
-    times = np.linspace(0.0, duration, _SAMPLES_PER_HALF_PERIOD + 1)
-    row = np.searchsorted(steps[:, 4], times, side="right") - 1
-    tau = times - steps[row, 4]
-    powers = tau ** np.arange(ORDER + 1)[:, None]
-    return (x_jet[:, row] * powers).sum(axis=0), (y_jet[:, row] * powers).sum(axis=0)
-
-
-def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray | None:
+def _fit_exit_curve(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
     """The path as a graph u = f(s), s ∈ [−1, 1]; None if it is not a graph or not smooth enough for the fit."""
-    u = outward[0] * (x - saddle[0]) + outward[1] * (y - saddle[1])
-    q = outward[0] * (y - saddle[1]) - outward[1] * (x - saddle[0])
+    u, q = axes.coordinates(path)
     middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
     s = (q - middle) / half_width
     if np.any(np.diff(s) <= 0):
@@ -253,7 +219,7 @@ def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: n
     if np.max(np.abs(basis @ fit - u)) > _LARGEST_FIT_ERROR:
         return None
     end_slopes = chebyshev.chebval([-1.0, 1.0], chebyshev.chebder(fit))
-    curve = _straight_curve(saddle, outward)
+    curve = _straight_curve(axes, saddle)
     curve[events.OPEN] = 1.0
     curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
     curve[events.COEFFICIENTS :] = fit
@@ -263,8 +229,8 @@ def _fit_exit_curve(saddle: np.ndarray, outward: np.ndarray, x: np.ndarray, y: n
 def _find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
     """The |s| up to which a crossing counts: half of the way along the straight lines beyond the ends to where V ≤ h again."""
     reach = np.inf
-    saddle, outward = curve[[events.SADDLE_X, events.SADDLE_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
-    farthest = _LARGEST_OFFSET * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
+    saddle, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
+    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
     beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
     for end, slope in ((-1.0, curve[events.SLOPE_LOW]), (1.0, curve[events.SLOPE_HIGH])):
         u = chebyshev.chebval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
@@ -274,10 +240,10 @@ def _find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float
     return float(reach)
 
 
-def _straight_curve(saddle: np.ndarray, outward: np.ndarray) -> np.ndarray:
-    """(columns,) the exit curve of a closed channel: a short straight line across the saddle."""
+def _straight_curve(axes: Axes, saddle: np.ndarray) -> np.ndarray:
+    """(columns,) the exit curve of a closed channel: a short straight line through the origin of the axes."""
     curve = np.zeros(events.CURVE_COLUMNS)
-    curve[events.SADDLE_X : events.OUTWARD_Y + 1] = *saddle, *outward
+    curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
     curve[events.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
     curve[events.REACH] = 1.0
@@ -286,7 +252,7 @@ def _straight_curve(saddle: np.ndarray, outward: np.ndarray) -> np.ndarray:
 
 def closed_channel_curves(potential: Potential) -> np.ndarray:
     """(channels, columns) exit curves for closed channels: short lines across the saddles, where V is above any lower energy."""
-    rows = [_straight_curve(*row) for row in zip(potential.saddles, potential.outward_directions, strict=True)]
+    rows = [_straight_curve(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)]
     return np.array(rows).reshape(potential.channels, events.CURVE_COLUMNS)
 
 
@@ -312,9 +278,12 @@ def exit_gates(curves: np.ndarray) -> np.ndarray:
     channels, columns = curves.shape[-2:]
     rows = curves.reshape(math.prod(curves.shape[:-2]), channels, columns)
     s = np.linspace(-1.0, 1.0, 201)
-    lowest = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0)).min(axis=(0, -1))
-    outward = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
-    saddles = rows[0, :, events.SADDLE_X : events.SADDLE_Y + 1]
-    length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*saddles.T).tolist()])
-    offset = np.sum(outward * saddles, axis=1) + lowest - _GATE_MARGIN * length
-    return np.column_stack([outward, offset])
+    u = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
+    q = rows[..., events.MIDDLE, None] + rows[..., events.HALF_WIDTH, None] * s
+    origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., events.ORIGIN_X : events.OUTWARD_Y + 1, None], 2, 0)
+    x, y = origin_x + u * outward_x - q * outward_y, origin_y + u * outward_y + q * outward_x
+    gates = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
+    lowest = (gates[:, :1] * x + gates[:, 1:] * y).min(axis=(0, -1))
+    origins = rows[0, :, events.ORIGIN_X : events.ORIGIN_Y + 1]
+    length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*origins.T).tolist()])
+    return np.column_stack([gates, lowest - _GATE_MARGIN * length])

@@ -1,21 +1,23 @@
-"""Which saddles of a potential lead out of the well at the origin.
+"""Which saddles of a potential lead out of the well at the origin, and which maxima lie beside them.
 
 From a saddle two lines of steepest descent start, one on each side along its unstable direction. If one ends at the origin and
-the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well.
+the other elsewhere, at another minimum or at infinity, the saddle is an exit of the well. The two lines of steepest ascent run
+through the walls of the channel; above the energy of a maximum at which one of them ends, the channel has no wall there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 Gradient = Callable[..., tuple[np.ndarray, np.ndarray]]
 Hessian = Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]
 
-# Distance from the saddle at which a descent starts and from a critical point at which it ends, in units of the distance of the
-# critical point nearest to the origin.
+# Distance from the saddle at which a descent starts, in units of the distance of the nearest other critical point.
 _START_DISTANCE = 1e-3
+# Distance from a critical point at which a descent ends, in units of the distance of the one nearest to the origin.
 _END_DISTANCE = 1e-4
 # A descent has gone to infinity at this distance from the origin, in units of the distance of the outermost critical point.
 _FAR = 10.0
@@ -47,6 +49,33 @@ def leads_out_of_well(gradient: Gradient, hessian: Hessian, points: np.ndarray) 
         one, other = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
         flags[k] = (int(origin[0]) in one) != (int(origin[0]) in other)
     return flags
+
+
+def find_maxima_beside(gradient: Gradient, hessian: Hessian, points: np.ndarray, saddles: np.ndarray) -> np.ndarray:
+    """(m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
+
+    Parameters
+    ----------
+    gradient, hessian
+        (V_x, V_y) and (V_xx, V_xy, V_yy) of the potential as functions of x and y.
+    points
+        (n, 2) all critical points.
+    saddles
+        (m,) indices of saddles.
+    """
+    vxx, vxy, vyy = hessian(points[:, 0], points[:, 1])
+    flags = np.zeros((len(saddles), len(points)), bool)
+    if not len(saddles) or not np.any((vxx < 0.0) & (vxx * vyy > vxy**2)):
+        return flags
+    ascent = _Descent(_negative(gradient), _negative(hessian), points, vxx * vyy < vxy**2)
+    for row, saddle in zip(flags, saddles, strict=True):
+        ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
+        row[[end for end in ends if end >= 0]] = True
+    return flags
+
+
+def _negative(derivatives: Callable[..., tuple[np.ndarray, ...]]) -> Callable[..., Any]:
+    return lambda x, y: tuple(-value for value in derivatives(x, y))
 
 
 class _Descent:
@@ -84,9 +113,10 @@ class _Descent:
         """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
         from scipy.integrate import solve_ivp
 
-        start = self.points[saddle] + side * _START_DISTANCE * self.length * self.unstable_directions[saddle]
         distance = np.hypot(*(self.points - self.points[saddle]).T)
         others = self.points[distance > 0.0]
+        first_step = _START_DISTANCE * distance[distance > 0.0].min()
+        start = self.points[saddle] + side * first_step * self.unstable_directions[saddle]
 
         def downhill(_t: float, place: np.ndarray) -> np.ndarray:
             slope = np.array(self.gradient(*place))

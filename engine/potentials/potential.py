@@ -9,14 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from engine.arrays import read_only
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms
 from engine.potentials.critical_points import characteristic_length, find_critical_points
-from engine.potentials.exit_saddles import leads_out_of_well
+from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.stored_points import stored_points
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.representation import Result
@@ -37,6 +37,20 @@ FREQUENCIES = (0.1, 10.0)
 
 STRENGTHS = (0.01, 100.0)
 """Legal range of ε."""
+
+
+class ChannelMerger(NamedTuple):
+    """A maximum (x, y) between exits: above V = `energy` there, the `channels` around it are one channel."""
+
+    energy: float
+    x: float
+    y: float
+    channels: tuple[int, ...]
+
+    def describe(self) -> str:
+        """The channels in words, such as "channels 1 and 3"."""
+        *first, last = self.channels
+        return f"channels {', '.join(map(str, first))} and {last}"
 
 
 @dataclass(frozen=True)
@@ -193,7 +207,15 @@ class Potential(Result):
         # Not through __init__: the legal range of the coefficients is for the potential's own units.
         scaled = object.__new__(Potential)
         terms = tuple((i, j, c * units.length ** (i + j) / units.energy) for i, j, c in self.terms)
-        derived = {"units": WellUnits(), "saddles": self.saddles / units.length, "outward_directions": self.outward_directions}
+        derived = {
+            "units": WellUnits(),
+            "saddles": self.saddles / units.length,
+            "outward_directions": self.outward_directions,
+            "channel_mergers": tuple(
+                ChannelMerger(m.energy / units.energy, m.x / units.length, m.y / units.length, m.channels)
+                for m in self.channel_mergers
+            ),
+        }
         scaled.__dict__.update(derived, name=self.name, terms=terms, in_well_units=scaled)
         return scaled
 
@@ -243,6 +265,23 @@ class Potential(Result):
     def escape_energy(self) -> float:
         """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none."""
         return float(self.saddle_energies.min(initial=np.inf))
+
+    @cached_property
+    def channel_mergers(self) -> tuple[ChannelMerger, ...]:
+        """The maxima that separate exits from each other, the lowest first.
+
+        A maximum lies between two exits if a line of steepest ascent from the saddle of each ends at it.
+        """
+        points = self.critical_points
+        saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
+        beside = stored_points(
+            "maxima", self.coefficients, lambda: find_maxima_beside(self.gradient, self.hessian, points, saddles)
+        )
+        mergers = []
+        for k in np.flatnonzero(beside.sum(axis=0) > 1):
+            (x, y), channels = points[k].tolist(), (np.flatnonzero(beside[:, k]) + 1).tolist()
+            mergers.append(ChannelMerger(float(self.value(x, y)), x, y, tuple(channels)))
+        return tuple(sorted(mergers))
 
     @property
     def channels(self) -> int:

@@ -67,9 +67,8 @@ class PotentialReview(Result):
     channels
         Number of exits.
     highest_energy
-        The lowest energy above the escape energy of a critical point that is not an exit; infinite if there is none. Above it, as
-        above a maximum between two channels, the exits merge or further openings appear. Lyapunov orbits may cease to exist
-        below it: see `find_lyapunov_orbits`.
+        The energy of the lowest maximum between two exits, above which they merge; infinite if there is none. Lyapunov orbits may
+        cease to exist below it: see `find_lyapunov_orbits`.
     mirror_in_x, mirror_in_y
         Whether V is even in x, in y.
     rotations
@@ -135,7 +134,7 @@ def review_potential(potential: Potential) -> PotentialReview:
         critical_points=points,
         escape_energy=potential.escape_energy if points else float("inf"),
         channels=potential.channels if points else 0,
-        highest_energy=_highest_energy(potential, points),
+        highest_energy=potential.channel_mergers[0].energy if points and potential.channel_mergers else float("inf"),
         mirror_in_x=potential.mirror_in_x,
         mirror_in_y=potential.mirror_in_y,
         rotations=count_rotations(potential),
@@ -264,13 +263,6 @@ def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) ->
     return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."
 
 
-def _highest_energy(potential: Potential, points: tuple[CriticalPoint, ...]) -> float:
-    if not points:
-        return float("inf")
-    lowest = potential.escape_energy + EQUAL_ENERGY_TOLERANCE * potential.units.energy
-    return min((point.energy for point in points if not point.channel and point.energy > lowest), default=float("inf"))
-
-
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
     remarks = []
     energies = potential.saddle_energies
@@ -285,9 +277,9 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     if wells:
         places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in wells)
         remarks.append(f"There are other wells, at {places}: an orbit that enters one counts as escaped but may return.")
-    highest = _highest_energy(potential, points)
-    if np.isfinite(highest):
-        remarks.append(f"The exits are separate up to h = {highest:.6g}; above it the channels merge or further openings appear.")
+    if potential.channel_mergers:
+        lowest = potential.channel_mergers[0]
+        remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it {lowest.describe()} merge.")
     if not potential.mirror_in_y:
         remarks.append("V is not even in y: y = 0 is not a symmetry axis, and an orbit may stay on one side of it.")
     if (0, 0) in potential.coefficients:

@@ -1,8 +1,9 @@
 """Events within one step, located in its dense output: exits through a channel and upward crossings of y = 0.
 
-An exit curve is a row of numbers. In coordinates from its saddle, u outward along the unstable direction and q across (90°
-counterclockwise from u), the Lyapunov orbit is the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond
-its ends, which lie on the zero-velocity curve, it is continued by straight lines through the forbidden region, up to |s| = reach.
+An exit curve is a row of numbers. In coordinates u outward and q across (90° counterclockwise from u), from the saddle along its
+unstable direction or from the chord of the orbit along its normal, the Lyapunov orbit is the graph u = f(s), s = (q − middle)/
+half_width ∈ [−1, 1], f a polynomial. Beyond its ends, which lie on the zero-velocity curve, it is continued by straight lines
+through the forbidden region, up to |s| = reach.
 A closed channel is a short straight line across its saddle, in the forbidden region but for the saddle itself.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 from engine.taylor.jit.decorator import subroutine
 
 # Columns of an exit curve.
-SADDLE_X, SADDLE_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, OPEN = range(8)
+ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, OPEN = range(8)
 MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
 
 # Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
@@ -30,14 +31,14 @@ _ROOT_ACCURACY = 1e-15
 @subroutine
 def position_across(x, y, curve):
     """s of a point, −1 and 1 at the ends of the exit."""
-    q = curve[OUTWARD_X] * (y - curve[SADDLE_Y]) - curve[OUTWARD_Y] * (x - curve[SADDLE_X])
+    q = curve[OUTWARD_X] * (y - curve[ORIGIN_Y]) - curve[OUTWARD_Y] * (x - curve[ORIGIN_X])
     return (q - curve[MIDDLE]) / curve[HALF_WIDTH]
 
 
 @subroutine
 def exit_distance(x, y, curve):
     """Distance of (x, y) from an exit curve along the channel: positive outside, negative inside."""
-    u = curve[OUTWARD_X] * (x - curve[SADDLE_X]) + curve[OUTWARD_Y] * (y - curve[SADDLE_Y])
+    u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
     s = position_across(x, y, curve)
     beyond = 0.0
     if s < -1.0:

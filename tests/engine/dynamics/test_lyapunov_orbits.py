@@ -164,12 +164,26 @@ def test_orbits_scale_with_the_well(epsilon: float) -> None:
         assert orbit.period == pytest.approx(usual.period, rel=1e-12)
 
 
-def test_merged_channels_are_refused() -> None:
+def test_energies_above_a_maximum_between_two_exits_are_refused() -> None:
     # ½r² + xy² + x³/3 has a maximum with energy 1/6 between its two exits.
     separable = POTENTIALS["Separable"].potential
     assert len(find_lyapunov_orbits(separable, 0.99 / 6)) == 2
-    with pytest.raises(ValueError, match="Separable"):
+    with pytest.raises(ValueError, match=r"channels 1 and 2 are one above the maximum between them, V = 0\.166667 .*Separable"):
         find_lyapunov_orbits(separable, 1.01 / 6)
+
+
+def test_one_orbit_across_two_merged_channels_is_refused() -> None:
+    # The search finds it from both saddles.
+    terms = ((2, 0, 0.8486), (0, 2, 1.1197), (1, 1, -1.4701), (4, 2, 0.6596), (0, 6, 0.5966), (2, 4, -0.2602))
+    merged = Potential("merged", (*terms, (3, 1, -0.7223), (0, 7, -0.141)))
+    with pytest.raises(ValueError, match="channels 1 and 2 are one"):
+        find_lyapunov_orbits(merged, 2.0 * merged.escape_energy)
+
+
+def test_a_maximum_that_is_not_between_exits_limits_no_energy() -> None:
+    quintic = Potential("", ((2, 0, 0.6238), (0, 2, 0.7403), (0, 4, -0.5267), (2, 2, 0.0085), (4, 0, -0.6295), (5, 0, 0.2549)))
+    assert min(merger.energy for merger in quintic.channel_mergers) > 3.0 * quintic.escape_energy
+    assert find_lyapunov_orbits(quintic, 2.0 * quintic.escape_energy)
 
 
 def test_exits_of_a_separable_well_are_straight() -> None:

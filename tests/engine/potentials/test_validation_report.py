@@ -110,6 +110,16 @@ def test_remark_on_channels_of_different_energies() -> None:
     assert "The channels open at different energies: 1 above 0.208333, 2 above 1.33333." in remarks
 
 
+def test_a_far_saddle_in_a_narrow_valley_is_reviewed() -> None:
+    # It is 27 000 units away, and the curvatures across and along the valley have the ratio 550.
+    terms = (
+        *((2, 0, 0.5303), (0, 2, 0.7672), (1, 1, -0.1449), (2, 1, -0.4607), (1, 4, -0.0938), (1, 3, -0.2776), (0, 5, -0.0645)),
+        *((3, 0, 0.3398), (4, 0, 0.3995), (2, 3, -0.2132), (0, 4, 0.0443), (1, 2, -0.7503), (3, 2, 0.0155)),
+    )
+    review = review_potential(Potential("", terms))
+    assert [point.channel for point in review.critical_points] == [0, 1, 2]
+
+
 def test_maximum_between_two_exits_sets_the_highest_energy() -> None:
     # In u = x + y and v = x − y, V = ¼(u² + v²) + (u³ + v³)/6: the exits merge at the maximum u = v = −1, at energy 1/6.
     assert review_potential(POTENTIALS["Separable"].potential).highest_energy == pytest.approx(1 / 6, rel=1e-12)

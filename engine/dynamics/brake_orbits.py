@@ -1,0 +1,184 @@
+"""Orbits over a saddle between two points at rest on the zero-velocity curve, found by shooting and by continuation in energy.
+
+At an energy h above the saddle such an orbit oscillates between two points at rest (Contopoulos 1990, Astron. Astrophys. 231,
+41). An orbit that starts at rest on the zero-velocity curve too close to the well moves inward, one that starts too far out moves
+outward. The orbit in between is the root of the velocity along the channel at the turning point. All in units of the well.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.dynamics.compiled import kernels_of
+from engine.potentials.potential import Potential
+from engine.root_finding import find_root
+from engine.taylor.source.recurrence import ORDER, TOLERANCE
+
+# Lengths along the channel, in units of the distance of the saddle from the origin: where a trial orbit has left the saddle for
+# good, the first step of the bracket search, and where this search ends.
+_LARGEST_EXCURSION = 1.0
+_FIRST_STRIDE = 0.01
+_LARGEST_OFFSET = 2.0
+
+# Steps of the continuation. Lengths are in units of the distance between the ends of the orbit before: where the line to the
+# zero-velocity curve begins, the first step of the bracket search, and where it ends.
+_LINE_START = 0.1
+_FIRST_SHIFT = 1e-4
+_LARGEST_SHIFT = 0.2
+# Largest relative move of the ends and change of the period; a larger one can be a jump to another orbit.
+_LARGEST_CHANGE = 0.15
+# First and smallest step of the energy, in units of its height above the saddle.
+_FIRST_ENERGY_STEP = 2.0**-4
+_SMALLEST_ENERGY_STEP = 2.0**-14
+
+# Largest speed at the second end, in units of the well: a root at a jump of the velocity is no orbit.
+_REST = 1e-8
+_SAMPLES_PER_HALF_PERIOD = 100
+_MOST_STEPS = 400
+
+
+class BrakeOrbit(NamedTuple):
+    """Half a period of an orbit between two points at rest.
+
+    Attributes
+    ----------
+    half_period
+        Its duration, dimensionless.
+    path
+        (2, 101) x and y, evenly spaced in time, the well on the left.
+    """
+
+    half_period: float
+    path: np.ndarray
+
+
+class Axes(NamedTuple):
+    """Coordinates of a channel: u along `outward` from `origin`, q 90° counterclockwise from it; both (2,)."""
+
+    origin: np.ndarray
+    outward: np.ndarray
+
+    def coordinates(self, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """u and q of a path (2, n)."""
+        dx, dy = path[0] - self.origin[0], path[1] - self.origin[1]
+        return self.outward[0] * dx + self.outward[1] * dy, self.outward[0] * dy - self.outward[1] * dx
+
+
+class _Search(NamedTuple):
+    """Lengths of a bracket search: its first step and its end along the channel."""
+
+    stride: float
+    farthest: float
+
+
+def saddle_axes(potential: Potential, channel: int) -> Axes:
+    """The saddle and its unstable direction."""
+    return Axes(potential.saddles[channel - 1], potential.outward_directions[channel - 1])
+
+
+def chord_axes(path: np.ndarray) -> Axes:
+    """Axes across and along the line between the ends of a path (2, n), near its first end."""
+    chord = path[:, -1] - path[:, 0]
+    return Axes(path[:, 0] + _LINE_START * chord, np.array([chord[1], -chord[0]]) / np.hypot(*chord))
+
+
+def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
+    """The orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
+    distance = _distance(potential, channel)
+    axes, search = saddle_axes(potential, channel), _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
+    orbit = _shoot(potential, energy, channel, axes, search)
+    if orbit is None:
+        return None
+    # A start on a wall of another channel leads to an orbit across that one.
+    _, q = axes.coordinates(orbit.path)
+    return orbit if q[0] < 0.0 < q[-1] else None
+
+
+def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
+    """The orbit over a saddle, followed from small oscillations up to an energy with an adaptive step; None if this fails."""
+    reached = bottom = float(potential.saddle_energies[channel - 1])
+    step = _FIRST_ENERGY_STEP * (energy - bottom)
+    smallest_step = _SMALLEST_ENERGY_STEP * (energy - bottom)
+    orbit: BrakeOrbit | None = None
+    while reached < energy:
+        target = min(reached + step, energy)
+        following = _next_orbit(potential, target, channel, orbit) if orbit else find_directly(potential, target, channel)
+        if following is not None:
+            orbit, reached, step = following, target, 2.0 * step
+        elif step > smallest_step:
+            step *= 0.5
+        else:
+            return None
+    return orbit
+
+
+def _next_orbit(potential: Potential, energy: float, channel: int, before: BrakeOrbit) -> BrakeOrbit | None:
+    """The orbit at an energy close to that of another one, None if it is not close to that one."""
+    ends = before.path[:, [0, -1]]
+    length = float(np.hypot(*(ends[:, 1] - ends[:, 0])))
+    search = _Search(_FIRST_SHIFT * length, _LARGEST_SHIFT * length)
+    orbit = _shoot(potential, energy, channel, chord_axes(before.path), search)
+    if orbit is None:
+        return None
+    move = float(np.hypot(*(orbit.path[:, [0, -1]] - ends)).max()) / length
+    change = abs(orbit.half_period - before.half_period) / before.half_period
+    return orbit if max(move, change) < _LARGEST_CHANGE else None
+
+
+def _distance(potential: Potential, channel: int) -> float:
+    return float(np.hypot(*potential.saddles[channel - 1]))
+
+
+def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search) -> BrakeOrbit | None:
+    """The orbit whose start is the nearest, along the channel, to the origin of the axes; None if there is none."""
+    kernels = kernels_of(potential)
+    steps = np.empty((_MOST_STEPS, 5))
+    reach = _LARGEST_EXCURSION * _distance(potential, channel)
+    arguments = (*axes.origin, *axes.outward, energy, reach, TOLERANCE, steps)
+
+    def outward_velocity(u: float) -> float:
+        """The velocity along the channel at the turning point, after a start at rest at offset u."""
+        return float(kernels.shoot(u, *arguments)[0])
+
+    bracket = _find_bracket(outward_velocity, search)
+    if bracket is None:
+        return None
+    u = find_root(outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
+    velocity, half_period, count = kernels.shoot(u, *arguments)
+    if not (np.isfinite(half_period) and abs(velocity) < _REST):
+        return None
+    return BrakeOrbit(half_period, _sample_path(kernels, steps[:count], half_period))
+
+
+def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:
+    """An inner start that moves inward and an outer one that moves outward, searched with growing strides."""
+    here, stride = 0.0, search.stride
+    first = outward_velocity(here)
+    if np.isnan(first):
+        return None
+    inward = first < 0
+    while abs(here) < search.farthest:
+        there = here + stride if inward else here - stride
+        velocity = outward_velocity(there)
+        if np.isnan(velocity):
+            return None
+        if (velocity < 0) != inward:
+            return (here, there) if inward else (there, here)
+        here, stride = there, 1.5 * stride
+    return None
+
+
+def _sample_path(kernels: ModuleType, steps: np.ndarray, duration: float) -> np.ndarray:
+    """(2, 101) x and y at evenly spaced times from 0 to `duration`, from the Taylor series of the steps (x, y, px, py, t)."""
+    jets = np.empty((2, ORDER + 1, len(steps)))
+    kernels.jets(len(steps), *(np.ascontiguousarray(column) for column in steps[:, :4].T), *jets)
+    times = np.linspace(0.0, duration, _SAMPLES_PER_HALF_PERIOD + 1)
+    row = np.searchsorted(steps[:, 4], times, side="right") - 1
+    tau = times - steps[row, 4]
+    powers = tau ** np.arange(ORDER + 1)[:, None]
+    path: np.ndarray = (jets[:, :, row] * powers).sum(axis=1)
+    return path

@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
+from engine.dynamics.brake_orbits import continue_in_energy, find_directly
+from engine.dynamics.lyapunov_orbits import exit_curves, exit_gates
+from engine.potentials.catalogue import POTENTIALS
+from engine.taylor.kernels.events import exit_distance
+from tests.peers.dop853 import equations
+
+# The line across the saddle at the start of the search lies beyond the zero-velocity curve, which bends away.
+BENT_WALL = Potential(
+    "",
+    (
+        *((2, 0, 0.6868), (0, 2, 0.5375), (3, 1, -0.148), (4, 2, -0.5459)),
+        *((0, 4, 0.424), (5, 2, -0.2063), (0, 5, -0.8177)),
+    ),
+)
+# The search from the saddle ends at a jump between orbits that move inward and outward.
+JUMP = Potential("", ((2, 0, 0.8228), (0, 2, 0.4038), (2, 5, 0.241), (3, 0, -0.1322)))
+# Near its end the orbit passes a place where V is almost flat.
+SLOW_END = Potential(
+    "",
+    (
+        *((2, 0, 0.8722), (0, 2, 0.5414), (3, 2, 0.9988), (1, 5, -0.105), (0, 6, -0.0993), (3, 1, -0.0012)),
+        *((4, 1, 0.6634), (4, 2, -0.0001)),
+    ),
+)
+
+each_well = pytest.mark.parametrize(("potential", "factor"), [(BENT_WALL, 2.0), (JUMP, 2.0), (SLOW_END, 1.25)])
+
+
+def orbits_of(potential: Potential, factor: float) -> tuple[LyapunovOrbit, ...]:
+    return find_lyapunov_orbits(potential, factor * potential.escape_energy)
+
+
+@each_well
+def test_half_a_period_leads_to_rest_at_the_other_end(potential: Potential, factor: float) -> None:
+    for orbit in orbits_of(potential, factor):
+        start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
+        end = solve_ivp(equations(potential), (0.0, 0.5 * orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
+        np.testing.assert_allclose(end, [orbit.x[100], orbit.y[100], 0.0, 0.0], rtol=0, atol=1e-7)
+
+
+@each_well
+def test_every_point_of_the_orbit_lies_on_its_exit_curve_and_beyond_its_gate(potential: Potential, factor: float) -> None:
+    gates = exit_gates(exit_curves(potential, factor * potential.escape_energy)[None])
+    for orbit in orbits_of(potential, factor):
+        distances = [exit_distance(x, y, orbit.curve) for x, y in zip(orbit.x, orbit.y, strict=True)]
+        assert np.abs(distances).max() < 2e-9
+        a, b, c = gates[orbit.channel - 1]
+        assert np.min(a * orbit.x + b * orbit.y) > c
+
+
+@pytest.mark.parametrize("below", [1.02, 1.5])
+def test_gates_of_several_energies_lie_inside_all_exits(below: float) -> None:
+    # At the higher energy the axes of the exit are others.
+    energies = [below * BENT_WALL.escape_energy, 2.0 * BENT_WALL.escape_energy]
+    a, b, c = exit_gates(np.array([exit_curves(BENT_WALL, energy) for energy in energies]))[0]
+    for energy in energies:
+        (orbit,) = find_lyapunov_orbits(BENT_WALL, energy)
+        assert np.min(a * orbit.x + b * orbit.y) > c
+
+
+@pytest.mark.parametrize(("name", "energy"), [("I", 0.3), ("II", 0.5), ("III", 1.0)])
+def test_continuation_finds_the_same_orbit_as_the_search_from_the_saddle(name: str, energy: float) -> None:
+    direct, continued = find_directly(CASES[name], energy, 1), continue_in_energy(CASES[name], energy, 1)
+    assert direct is not None
+    assert continued is not None
+    np.testing.assert_allclose(continued.path, direct.path, rtol=0, atol=1e-11)
+    assert continued.half_period == pytest.approx(direct.half_period, rel=1e-12)
+
+
+@pytest.mark.parametrize(("name", "factor"), [("C6", 4.0), ("C7", 4.0), ("C8", 4.0)])
+def test_rotated_channels_have_rotated_exits(name: str, factor: float) -> None:
+    # The first starts of the search lie on walls of other channels.
+    orbits = orbits_of(POTENTIALS[name].potential, factor)
+    middle = np.array([complex(orbit.x[50], orbit.y[50]) for orbit in orbits])
+    np.testing.assert_allclose(middle, middle[0] * np.exp(2j * np.pi * np.arange(middle.size) / middle.size), atol=1e-10)
+    assert middle[0].real > 0.9
+
+
+def test_an_orbit_too_unstable_for_shooting_is_refused() -> None:
+    # The channel is so flat across that errors grow by a factor of 1e10 in half a period.
+    terms = ((2, 0, 0.3665), (0, 2, 1.118), (1, 1, -0.1327), (2, 4, -0.1639), (0, 7, -0.1339), (1, 5, 0.0783))
+    flat = Potential("flat", terms)
+    with pytest.raises(ValueError, match=r"no Lyapunov orbit was found across channel 1; .*flat"):
+        orbits_of(flat, 1.02)
+
+
+@pytest.mark.parametrize("name", ["I", "II", "III", "C5", "C6", "C7", "C8"])
+def test_exits_are_found_up_to_ten_times_the_escape_energy(name: str) -> None:
+    potential = POTENTIALS[name].potential
+    for factor in (3.0, 6.0, 10.0):
+        orbits = orbits_of(potential, factor)
+        assert len(orbits) == potential.channels
+        start = [orbits[0].x[0], orbits[0].y[0], 0.0, 0.0]
+        end = solve_ivp(equations(potential), (0.0, 0.5 * orbits[0].period), start, "DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
+        np.testing.assert_allclose(end, [orbits[0].x[100], orbits[0].y[100], 0.0, 0.0], rtol=0, atol=1e-9)
