@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from reproduction.figures import FIGURES
+from reproduction.figures.all_figures import FIGURES
 from reproduction.map_shelf import MapShelf
 from reproduction.numbers.comparisons import compare_all
-from reproduction.report import write_report, write_table
+from reproduction.tables.report import write_report, write_table
 
 TABLES = "tables"
 """Name of the member that is not a figure."""

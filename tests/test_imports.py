@@ -45,7 +45,7 @@ def list_lyapunov_orbits() -> None:
 
 
 def import_figures() -> None:
-    import reproduction.figures  # noqa: F401
+    import reproduction.figures.all_figures  # noqa: F401
 
     list_imported("panel", "tornado", "bokeh.server", "matplotlib.pyplot", "matplotlib.figure")
 

@@ -12,7 +12,7 @@ import pytest
 from cli.main import INTERRUPTED, INVALID_REQUEST
 from engine import Plane
 from reproduction import members, quality
-from reproduction.figures import FIGURES
+from reproduction.figures.all_figures import FIGURES
 from reproduction.map_shelf import MapShelf
 from reproduction.quality import Quality
 

@@ -16,12 +16,12 @@ from PIL import Image, ImageColor
 from engine import CASES, Fate, Plane, classify_orbits
 from engine.service import SuperStickySearch
 from plots.palette import PAPER
-from reproduction.figures import FIGURES
+from reproduction.figures.all_figures import FIGURES
+from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_shown
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import curve_energies, nine_energies, plane_energies
 from reproduction.quality import FULL, QUICK, Quality
 from reproduction.sample_orbits import SHOWN_CROSSINGS, find_sample_starts
-from reproduction.sticky_figures import LONGEST_DRAWN, find_shown
 
 TINY = Quality(
     "tiny", resolution=15, t_max=300.0, curve_points=7, search_resolution=9,

@@ -11,14 +11,12 @@ from matplotlib.figure import Figure
 
 from engine import CASES, Plane
 from plots.figure_axes import save_figure, software
-from reproduction.map_figures import draw_energy_plane, draw_nine_maps
+from reproduction.figures.map_figures import draw_energy_plane, draw_nine_maps
+from reproduction.figures.potential_figures import draw_potential
+from reproduction.figures.statistics_figures import draw_percentages, draw_statistics, draw_survival
+from reproduction.figures.sticky_figures import draw_characters, draw_super_sticky
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import CHANNEL_ENERGIES, STICKY_ENERGY, plane_energies
-from reproduction.potential_figures import draw_potential
-from reproduction.share_figures import draw_percentages
-from reproduction.statistics_figures import draw_statistics
-from reproduction.sticky_figures import draw_characters, draw_super_sticky
-from reproduction.survival_figures import draw_survival
 
 
 @dataclass(frozen=True)

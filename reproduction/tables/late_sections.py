@@ -5,8 +5,8 @@ from __future__ import annotations
 from engine import CASES
 from engine.service import SuperStickySearch
 from reproduction.map_shelf import MapShelf
-from reproduction.markdown import write_rows
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
+from reproduction.tables.markdown import write_rows
 
 # Number of the latest escapes that are listed.
 _LISTED = 20

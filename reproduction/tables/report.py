@@ -11,14 +11,14 @@ import numpy as np
 
 from engine import CASES
 from engine.service import SuperStickySearch
-from reproduction.fit_sections import write_fits, write_laws
-from reproduction.late_sections import write_late_escapes, write_super_sticky
 from reproduction.map_shelf import MapShelf
-from reproduction.markdown import write_rows
 from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS
 from reproduction.numbers.stated_numbers import Counting, StatedNumber
 from reproduction.numbers.unknown_windows import STEP
+from reproduction.tables.fit_sections import write_fits, write_laws
+from reproduction.tables.late_sections import write_late_escapes, write_super_sticky
+from reproduction.tables.markdown import write_rows
 
 _HEADS = ("quantity", "h", "paper", "computed, inside", "difference", "best window", "computed in it", "reason")
 _COLUMNS = (

@@ -21,7 +21,7 @@ from plots.figure_axes import (
 )
 from plots.map_analyses import MapAnalyses
 from plots.palette import MEASURED, PAPER, THRESHOLD
-from reproduction.map_figures import draw_map_panel
+from reproduction.figures.map_figures import draw_map_panel
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY

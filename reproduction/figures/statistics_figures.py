@@ -1,4 +1,4 @@
-"""Statistics of the paper in four panels: escapes, direct escapes, and escapes by number of crossings."""
+"""Statistics of the paper: shares against energy, escapes by number of crossings, and starts left after a time."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import PAPER_FITS, Plane, fit_direct_shares, fit_escape_shares
+from engine import CASES, PAPER_FITS, Plane, compute_statistics, fit_decay_laws, fit_direct_shares, fit_escape_shares
 from engine.service import tabulate_crossing_statistics
+from plots.curve_figures import draw_decay_laws, draw_shares
 from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import PLANES
-from reproduction.paper_ranges import nine_energies
+from reproduction.paper_ranges import nine_energies, three_energies
 
 Curve = Callable[[Any], Any]
 """A share against energy."""
@@ -81,3 +82,31 @@ def _draw_crossings(shares: Axes, chances: Axes, table: xr.Dataset) -> None:
         axes.set_xlim(-0.5, MOST_CROSSINGS + 0.5)
         style_axes(axes, grid=True)
     add_panel_legend(shares, "upper right", columns=3)
+
+
+def draw_percentages(case: str, shelf: MapShelf) -> Figure:
+    """Percentages of the interior starts on (x, y) and (x, px)."""
+    figure = new_figure(11.4, 4.6, f"Case {case}: percentages of bounded and escaping starts")
+    panels = list(figure.subplots(1, 2, sharey=True))
+    planes = (Plane.X_Y, Plane.X_PX)
+    for axes, plane in zip(panels, planes, strict=True):
+        table = shelf.curves(case, plane)
+        shares = table["share"].sel(fate=range(CASES[case].channels + 1)).transpose("h", "fate")
+        draw_shares(axes, table["h"].values, shares.values, CASES[case])
+        label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
+    name_panels(panels, [f"the {PLANES[plane]} plane" for plane in planes])
+    add_panel_legend(panels[1], "center right")
+    return figure
+
+
+def draw_survival(case: str, shelf: MapShelf) -> Figure:
+    """One panel per energy, on (x, px)."""
+    energies = three_energies(case)
+    figure = new_figure(12.6, 4.6, f"Case {case}, {PLANES[Plane.X_PX]} plane: share of the starts not yet escaped")
+    panels = list(figure.subplots(1, len(energies), sharex=True))
+    for axes, energy in zip(panels, energies, strict=True):
+        statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
+        draw_decay_laws(axes, fit_decay_laws(statistics, shelf.quality.t_max, cancel=shelf.cancel), shelf.quality.t_max)
+        label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
+    name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
+    return figure

@@ -9,14 +9,14 @@ import pytest
 
 from engine import CASES, MapSpec, Plane
 from engine.service import SuperStickySearch
-from reproduction.late_sections import write_late_escapes
 from reproduction.map_shelf import MapShelf
-from reproduction.markdown import write_rows
 from reproduction.numbers.comparisons import Comparison, compare_all
 from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber
 from reproduction.paper_ranges import nine_energies
 from reproduction.quality import Quality
-from reproduction.report import describe_verdict, write_report, write_table
+from reproduction.tables.late_sections import write_late_escapes
+from reproduction.tables.markdown import write_rows
+from reproduction.tables.report import describe_verdict, write_report, write_table
 
 SMALL = Quality(
     "small", resolution=16, t_max=300.0, curve_points=7, search_resolution=9,

@@ -17,8 +17,8 @@ from engine import (
 )
 from engine.service import HyperbolicTangent, Polynomial, format_number
 from reproduction.map_shelf import MapShelf
-from reproduction.markdown import write_rows
 from reproduction.paper_ranges import three_energies
+from reproduction.tables.markdown import write_rows
 
 _FITS = """\
 {count} evenly spaced energies each, from the lowest energy of the paper's maps to the end of its curves; starts inside, on
