@@ -10,9 +10,6 @@ import types
 from collections.abc import Callable, Coroutine, Generator
 from functools import partial
 from typing import Any
-from weakref import WeakKeyDictionary
-
-from bokeh.document import Document
 
 SHARE = 0.5
 """Largest share of the thread's time that a page takes in the long run; drags with 30 messages per second take 0.2."""
@@ -64,11 +61,3 @@ class FairShare:
                 step = partial(coroutine.throw, error)
             else:
                 step = partial(coroutine.send, None)
-
-
-_shares: WeakKeyDictionary[Document, FairShare] = WeakKeyDictionary()
-
-
-def fair_share(document: Document) -> FairShare:
-    """The share of a document's page, whatever the number of its connections."""
-    return _shares.setdefault(document, FairShare())

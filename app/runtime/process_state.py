@@ -7,7 +7,11 @@ import threading
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
+from weakref import WeakKeyDictionary
 
+from bokeh.document import Document
+
+from app.runtime.fair_share import FairShare
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.settings import Settings, read_settings
@@ -49,6 +53,7 @@ class ProcessState:
     kernels_ready: threading.Event = field(default_factory=threading.Event, init=False)
     kernels_failed: threading.Event = field(default_factory=threading.Event, init=False)
     stopping: threading.Event = field(default_factory=threading.Event, init=False)
+    _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
         compiled_operations.most = self.settings.compiled_operations
@@ -58,6 +63,10 @@ class ProcessState:
             threads=self.settings.threads,
             idle_priority=self.settings.only_idle,
         )
+
+    def fair_share(self, document: Document) -> FairShare:
+        """The share of a document's page, whatever the number of its connections."""
+        return self._shares.setdefault(document, FairShare())
 
     def is_overloaded(self) -> bool:
         """Whether the event loop is delayed or many calls wait for a thread."""

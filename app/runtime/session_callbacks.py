@@ -21,7 +21,8 @@ from bokeh.application.application import SessionContext
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 
-from app.runtime.fair_share import FairShare, fair_share
+from app.runtime.fair_share import FairShare
+from app.runtime.process_state import process_state
 
 log = logging.getLogger(__name__)
 
@@ -36,7 +37,7 @@ class SessionCallbacks:
 
     def __init__(self, document: Document) -> None:
         self._document = weakref.ref(document)
-        self._share = fair_share(document)
+        self._share = process_state().fair_share(document)
         self._loop = asyncio.get_running_loop() if document.session_context is not None else None
 
     def every(self, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -16,7 +16,6 @@ from bokeh.protocol.exceptions import ProtocolError
 from panel.io.server import WSHandler
 from panel.io.state import set_curdoc
 
-from app.runtime.fair_share import fair_share
 from app.runtime.process_state import process_state
 from app.server.admission import check_session
 from app.server.browser_rules import RefusedMessageError
@@ -70,13 +69,13 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         if session is not None:
             document = session.document
             await self._wait_for_share(session, document)
-            await fair_share(document).count(self._take_part(message, document))
+            await process_state().fair_share(document).count(self._take_part(message, document))
         elif self.connection is None and not self._closed:
             self._refuse_connection(UnacceptableConnectionError("a message before the session is open"))
 
     async def _wait_for_share(self, session: Any, document: Document) -> None:
         """Wait until the page may take more time; at once if there is no other page."""
-        while (seconds := fair_share(document).wait_seconds()) and self._has_others() and not self._closed:
+        while (seconds := process_state().fair_share(document).wait_seconds()) and self._has_others() and not self._closed:
             process_state().metrics.messages_delayed.inc()
             if time.monotonic() >= self._told + PASSING_SECONDS:
                 self._told = time.monotonic()

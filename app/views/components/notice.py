@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import time
 from html import escape
-from itertools import count
 from typing import Any
 
 import panel as pn
@@ -16,8 +16,6 @@ NAME = "notice"
 
 PASSING_SECONDS = 5.0
 """Duration of passing notices, as in `theme.css`."""
-
-_numbers = count()
 
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
@@ -80,8 +78,8 @@ def _set_text(document: Document, html: str) -> None:
 
 
 def _passing(sentence: str) -> str:
-    # The number makes the same message twice two changes.
-    return _html(sentence, f"class='notice passing' data-number='{next(_numbers)}'")
+    # The time makes the same message twice two changes.
+    return _html(sentence, f"class='notice passing' data-time='{time.monotonic_ns()}'")
 
 
 def _html(sentence: str, attributes: str = "class='notice'", role: str = "status") -> str:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import asyncio
 
 import pytest
-from bokeh.document import Document
 
-from app.runtime.fair_share import BURST_SECONDS, SHARE, FairShare, fair_share
+from app.runtime.fair_share import BURST_SECONDS, SHARE, FairShare
 from tests.app.clock import Clock
 from tests.app.other_loop import run_on_new_loop
 
@@ -99,9 +98,3 @@ def test_a_counted_coroutine_can_fail_and_be_cancelled() -> None:
 
     run_on_new_loop(scenario)
     assert seen == ["cancelled"]
-
-
-def test_each_document_has_its_share() -> None:
-    first, second = Document(), Document()
-    assert fair_share(first) is fair_share(first)
-    assert fair_share(first) is not fair_share(second)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from bokeh.document import Document
 
 from app.runtime import process_state as module
 from app.runtime.process_state import ProcessState, process_state, start_process_state
@@ -50,3 +51,9 @@ def test_settings_reach_the_jobs() -> None:
 
 def test_idle_process_is_not_overloaded() -> None:
     assert not ProcessState().is_overloaded()
+
+
+def test_each_document_has_its_share() -> None:
+    state, first, second = ProcessState(), Document(), Document()
+    assert state.fair_share(first) is state.fair_share(first)
+    assert state.fair_share(first) is not state.fair_share(second)

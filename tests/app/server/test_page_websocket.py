@@ -20,7 +20,6 @@ from tornado.ioloop import IOLoop
 
 from app.runtime import fair_share as fair_share_module
 from app.runtime import process_state as process_state_module
-from app.runtime.fair_share import fair_share
 from app.runtime.process_state import ProcessState
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
 from app.server.url_patterns import PageHandler
@@ -97,7 +96,7 @@ def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState, monkeypat
     monkeypatch.setattr(fair_share_module, "BURST_SECONDS", 0.5 * fair_share_module.SHARE)
 
     async def scenario(channel: Channel, document: Document) -> None:
-        fair_share(document).take(10.0)
+        state.fair_share(document).take(10.0)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
         assert slider_of(document).value == 0
@@ -111,7 +110,7 @@ def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState, monkeypat
 @pytest.mark.parametrize(("count", "debt"), [(2, 0.0), (1, 10.0)], ids=["within its share", "the only page"])
 def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        fair_share(document).take(debt)
+        state.fair_share(document).take(debt)
         await move_slider(channel, document)
         assert slider_of(document).value == 5
 
