@@ -154,13 +154,14 @@ def tracebacks(log: Path) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "count", [pytest.param(5_000, marks=pytest.mark.slow), pytest.param(100_000, marks=pytest.mark.exhaustive)]
+    "count", [pytest.param(4_000, marks=pytest.mark.slow), pytest.param(100_000, marks=pytest.mark.exhaustive)]
 )
 def test_many_random_messages_leave_no_memory_behind(count: int, served: tuple[RunningApp, Path]) -> None:
     app, output = served
-    assert attack(app, count // 10, seed=100) == count // 10
+    # The first half fills the caches.
+    assert attack(app, count // 2, seed=100) == count // 2
     early = resting_memory(app)
-    assert attack(app, count - count // 10, seed=200) == count - count // 10
+    assert attack(app, count // 2, seed=200) == count // 2
     late = resting_memory(app)
     log.info("%d messages, resident memory from %.0f to %.0f MB", count, early / 2**20, late / 2**20)
     assert tracebacks(output) == []
