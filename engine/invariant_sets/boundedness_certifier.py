@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
@@ -152,8 +153,11 @@ class BoundednessCertifier:
         barriers = _without_enclosed(found, self._points[regular], self._separated[regular])
         left = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
 
+        # Prepared polygons must not be used by two threads at once: each task unpickles its own.
+        pickled = pickle.dumps(barriers)
+
         def select(part: np.ndarray) -> tuple[Any, ...]:
-            return barriers, self._points[part], self._separated[part]
+            return pickled, self._points[part], self._separated[part]
 
         for part, separated in run_parts(_separated_by_any, left if barriers else left[:0], select, **self._execution):
             self._separated[part] = separated
@@ -214,8 +218,9 @@ def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separ
     return kept
 
 
-def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: np.ndarray) -> np.ndarray:
+def _separated_by_any(pickled_barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:
     """(n, channels) bool: the exits from which any barrier separates each point (n, 2), and those known before."""
+    barriers: list[_Barrier] = pickle.loads(pickled_barriers)
     for barrier in barriers:
         left = np.flatnonzero(~separated.all(axis=1))
         separated[left] |= barrier.find_separated(points[left])

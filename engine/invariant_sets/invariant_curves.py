@@ -72,6 +72,8 @@ class InvariantCurve:
 
         side = np.ones(len(points), np.int8)
         for outer, inner in self._bounds:
+            # Unpickled polygons are no longer prepared.
+            shapely.prepare([outer, inner])
             near = shapely.contains_xy(outer, *points.T)
             side[near] = 0
             side[near] -= shapely.contains_xy(inner, *points[near].T)
@@ -80,14 +82,10 @@ class InvariantCurve:
     @cached_property
     def _bounds(self) -> list[tuple[shapely.Polygon, shapely.Polygon]]:
         """For each loop, a polygon that contains the exact curve and one that the exact curve contains."""
-        import shapely
-
-        polygons = [
+        return [
             (loop.buffer(margin, quad_segs=1), loop.buffer(-margin, quad_segs=1))
             for loop, margin in zip(self.loops, self.margins, strict=True)
         ]
-        shapely.prepare([polygon for pair in polygons for polygon in pair])
-        return polygons
 
 
 def find_invariant_curve(points: np.ndarray) -> InvariantCurve | None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -87,3 +90,24 @@ def test_certificates_are_written_to_the_dataset() -> None:
 
 def test_each_certificate_has_its_own_description() -> None:
     assert len({describe_certificate(code) for code in Certificate}) == len(Certificate)
+
+
+class RecordingPool(ThreadPoolExecutor):
+    """A thread pool that remembers the arguments of its calls."""
+
+    def __init__(self) -> None:
+        super().__init__(2)
+        self.calls: dict[str, list[tuple[Any, ...]]] = {}
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Any:
+        self.calls.setdefault(function.__name__, []).append(arguments)
+        return super().submit(function, *arguments, **named)
+
+
+def test_parallel_calls_share_no_polygons() -> None:
+    # GEOS prepares a polygon further at its first use, which two threads must not do at once.
+    with RecordingPool() as pool:
+        compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (60, 60), t_max=1e4), executor=pool)
+    applied = pool.calls["_separated_by_any"]
+    assert len(applied) > 1
+    assert {type(argument) for arguments in applied for argument in arguments} == {bytes, np.ndarray}
