@@ -102,9 +102,10 @@ def _run_on_each(work: Callable[..., Any], potential: Potential, tiles: list[np.
 
 
 def _lanes_per_tile(count: int, workers: int) -> int:
-    """A multiple of `VECTOR`, at most `LANES`, with two tiles for each worker if there are enough states."""
-    share = max(-(-count // (2 * workers)), 1)
-    return min(-(-share // VECTOR) * VECTOR, LANES)
+    """A multiple of `VECTOR`, at most `LANES`, so that each worker gets the same number of tiles, which take equal times."""
+    tiles_per_worker = max(-(-count // (workers * LANES)), 1)
+    share = max(-(-count // (tiles_per_worker * workers)), 1)
+    return -(-share // VECTOR) * VECTOR
 
 
 def _copy_tile(states: np.ndarray, begin: int, lanes: int) -> np.ndarray:

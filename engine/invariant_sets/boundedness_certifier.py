@@ -32,12 +32,14 @@ _MAX_TIME_SHARE, _MAX_WORK_SHARE = 0.4, 0.1
 _MAX_SEEDS = 2 * LANES
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
 # A coarse lattice with fewer candidates is left out, as a round with few orbits does not keep all workers busy.
-_SMALLEST_ROUND = 2 * LANES
+_SMALLEST_ROUND = 16
 # Section points per orbit and the time to collect them; orbits per round for which an invariant curve is computed.
 _CURVE_POINTS = 800
 _CURVE_TIME = 8000.0
 _MAX_CURVES_PER_ROUND = 192
 _FIRST_POINT_TIME = 30.0
+# With so few points it takes longer to share barriers among workers than to apply them.
+_FEW_POINTS = 2000
 
 
 class BoundednessCertifier:
@@ -152,16 +154,21 @@ class BoundednessCertifier:
             return
         barriers = _without_enclosed(found, self._points[regular], self._separated[regular])
         left = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
+        if left.size <= _FEW_POINTS:
+            self._separated[left] = _separated_by_any(barriers, self._points[left], self._separated[left])
+        else:
+            self._separate_in_parallel(barriers, left)
+        self.certificate[self._separated.all(axis=1) & self._uncertified()] = Certificate.ENCLOSED
 
+    def _separate_in_parallel(self, barriers: list[_Barrier], orbits: np.ndarray) -> None:
         # Prepared polygons must not be used by two threads at once: each task unpickles its own.
         pickled = pickle.dumps(barriers)
 
         def select(part: np.ndarray) -> tuple[Any, ...]:
             return pickled, self._points[part], self._separated[part]
 
-        for part, separated in run_parts(_separated_by_any, left if barriers else left[:0], select, **self._execution):
+        for part, separated in run_parts(_separated_by_pickled, orbits, select, **self._execution):
             self._separated[part] = separated
-        self.certificate[self._separated.all(axis=1) & self._uncertified()] = Certificate.ENCLOSED
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,9 +225,13 @@ def _without_enclosed(barriers: list[_Barrier | None], points: np.ndarray, separ
     return kept
 
 
-def _separated_by_any(pickled_barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:
+def _separated_by_pickled(barriers: bytes, points: np.ndarray, separated: np.ndarray) -> np.ndarray:
+    """As `_separated_by_any`; runs in a worker."""
+    return _separated_by_any(pickle.loads(barriers), points, separated)
+
+
+def _separated_by_any(barriers: list[_Barrier], points: np.ndarray, separated: np.ndarray) -> np.ndarray:
     """(n, channels) bool: the exits from which any barrier separates each point (n, 2), and those known before."""
-    barriers: list[_Barrier] = pickle.loads(pickled_barriers)
     for barrier in barriers:
         left = np.flatnonzero(~separated.all(axis=1))
         separated[left] |= barrier.find_separated(points[left])

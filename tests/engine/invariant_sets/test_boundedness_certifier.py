@@ -107,7 +107,7 @@ class RecordingPool(ThreadPoolExecutor):
 def test_parallel_calls_share_no_polygons() -> None:
     # GEOS prepares a polygon further at its first use, which two threads must not do at once.
     with RecordingPool() as pool:
-        compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (60, 60), t_max=1e4), executor=pool)
-    applied = pool.calls["_separated_by_any"]
+        compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (90, 90), t_max=1e4), executor=pool)
+    applied = pool.calls["_separated_by_pickled"]
     assert len(applied) > 1
     assert {type(argument) for arguments in applied for argument in arguments} == {bytes, np.ndarray}
