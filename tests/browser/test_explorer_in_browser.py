@@ -82,9 +82,9 @@ def test_an_energy_can_be_typed(explorer: ExplorerPage) -> None:
 
 def test_an_invalid_energy_gives_a_warning_and_the_picture_stays(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
-    explorer.type_number("Exact h", "7")
+    explorer.type_number("Exact h", "100")
     warning = explorer.page.get_by_role("alert")
-    expect(warning).to_contain_text("energy=7.0")
+    expect(warning).to_contain_text("energy=100.0")
     np.testing.assert_array_equal(explorer.column("fate"), before)
     explorer.type_number("Exact h", "0.2")
     expect(warning).to_have_count(0)
