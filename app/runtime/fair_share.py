@@ -25,10 +25,13 @@ class FairShare:
     ----------
     clock
         Seconds of a monotonic clock.
+    busy_clock
+        Processor time of the event loop's thread: time in which it waits for the interpreter lock, as beside a compilation, is
+        not that of the page.
     """
 
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock = clock
+    def __init__(self, clock: Callable[[], float] = time.monotonic, busy_clock: Callable[[], float] = time.thread_time) -> None:
+        self._clock, self._busy_clock = clock, busy_clock
         self._left, self._last = BURST_SECONDS, clock()
 
     def take(self, seconds: float) -> None:
@@ -47,14 +50,14 @@ class FairShare:
         """Await a coroutine and count the time of its steps, without that of others which run while it waits."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
-            begin = self._clock()
+            begin = self._busy_clock()
             try:
                 awaited = step()
             except StopIteration as end:
                 result: Result = end.value
                 return result
             finally:
-                self.take(self._clock() - begin)
+                self.take(self._busy_clock() - begin)
             try:
                 yield awaited
             except BaseException as error:

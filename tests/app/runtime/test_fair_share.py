@@ -49,7 +49,7 @@ def test_a_pause_restores_the_burst() -> None:
 
 def test_only_the_steps_of_a_coroutine_count() -> None:
     clock = Clock()
-    share = FairShare(clock.monotonic)
+    share = FairShare(clock.monotonic, clock.monotonic)
 
     async def work(other: asyncio.Event) -> str:
         clock.now += BURST_SECONDS
