@@ -34,6 +34,7 @@ _LARGEST_CHANGE = 0.15
 # First and smallest step of the energy, in units of its height above the saddle.
 _FIRST_ENERGY_STEP = 2.0**-4
 _SMALLEST_ENERGY_STEP = 2.0**-14
+_MOST_ENERGY_STEPS = 256
 
 # Largest speed at the second end, in units of the well: a root at a jump of the velocity is no orbit.
 _REST = 1e-8
@@ -104,16 +105,18 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
     step = _FIRST_ENERGY_STEP * (energy - bottom)
     smallest_step = _SMALLEST_ENERGY_STEP * (energy - bottom)
     orbit: BrakeOrbit | None = None
-    while reached < energy:
+    for _ in range(_MOST_ENERGY_STEPS):
         target = min(reached + step, energy)
         following = _next_orbit(potential, target, channel, orbit) if orbit else find_directly(potential, target, channel)
         if following is not None:
             orbit, reached, step = following, target, 2.0 * step
+            if reached == energy:
+                return orbit
         elif step > smallest_step:
             step *= 0.5
         else:
             return None
-    return orbit
+    return None
 
 
 def _next_orbit(potential: Potential, energy: float, channel: int, before: BrakeOrbit) -> BrakeOrbit | None:
