@@ -19,7 +19,7 @@ BURST_SECONDS = 3.0
 
 
 class FairShare:
-    """Counts the time during which the messages and callbacks of a page occupy the event loop.
+    """Counts the processor time that the messages and callbacks of a page take on the event loop.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class FairShare:
         self._left, self._last = BURST_SECONDS, clock()
 
     def take(self, seconds: float) -> None:
-        """Count time of the event loop."""
+        """Count processor time of the event loop."""
         now = self._clock()
         left = min(self._left + SHARE * (now - self._last), BURST_SECONDS) - seconds
         self._left, self._last = max(left, -BURST_SECONDS), now
@@ -47,7 +47,7 @@ class FairShare:
 
     @types.coroutine
     def count[Result](self, coroutine: Coroutine[Any, Any, Result]) -> Generator[Any, Any, Result]:
-        """Await a coroutine and count the time of its steps, without that of others which run while it waits."""
+        """Await a coroutine and count the processor time of its steps, without that of others which run while it waits."""
         step: Callable[[], Any] = partial(coroutine.send, None)
         while True:
             begin = self._busy_clock()
