@@ -8,12 +8,13 @@ through the walls of the channel; above the energy of a maximum at which one of 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
-Gradient = Callable[..., tuple[np.ndarray, np.ndarray]]
-Hessian = Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]
+from engine.polynomials import Terms, degree
+
+Slopes = tuple[Terms, Terms]
+Hessian = Callable[..., tuple[np.ndarray, ...]]
 
 # Distance from the saddle at which a descent starts, in units of the distance of the nearest other critical point.
 _START_DISTANCE = 1e-3
@@ -22,17 +23,24 @@ _END_DISTANCE = 1e-4
 # A descent has gone to infinity at this distance from the origin, in units of the distance of the outermost critical point.
 _FAR = 10.0
 
-# Duration of a descent in units of its longest e-folding time, enough for every descent to end.
-_DURATION = 100.0
+_RELATIVE_ERROR = 1e-9
+# Limit on the steps of all descents of a potential, some seconds. Most potentials need about 1 000.
+_MOST_STEPS = 50_000
 
 
-def leads_out_of_well(gradient: Gradient, hessian: Hessian, points: np.ndarray) -> np.ndarray:
+class DescentError(ValueError):
+    """A line of steepest descent whose end is not found."""
+
+
+def leads_out_of_well(slopes: Slopes, hessian: Hessian, points: np.ndarray) -> np.ndarray:
     """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well at the origin.
 
     Parameters
     ----------
-    gradient, hessian
-        (V_x, V_y) and (V_xx, V_xy, V_yy) of the potential as functions of x and y.
+    slopes
+        The terms of V_x and V_y.
+    hessian
+        (V_xx, V_xy, V_yy) as a function of x and y.
     points
         All critical points, including the origin exactly; if the origin is not a minimum, no point leads out.
     """
@@ -44,20 +52,22 @@ def leads_out_of_well(gradient: Gradient, hessian: Hessian, points: np.ndarray) 
     flags = np.zeros(len(points), bool)
     if not origin.size or determinant[origin[0]] <= 0.0 or vxx[origin[0]] <= 0.0 or len(points) < 2:
         return flags
-    descent = _Descent(gradient, hessian, points, determinant < 0.0)
+    descent = _Descent(slopes, hessian, points, determinant < 0.0)
     for k in np.flatnonzero(determinant < 0.0):
         one, other = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
         flags[k] = (int(origin[0]) in one) != (int(origin[0]) in other)
     return flags
 
 
-def find_maxima_beside(gradient: Gradient, hessian: Hessian, points: np.ndarray, saddles: np.ndarray) -> np.ndarray:
+def find_maxima_beside(slopes: Slopes, hessian: Hessian, points: np.ndarray, saddles: np.ndarray) -> np.ndarray:
     """(m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
 
     Parameters
     ----------
-    gradient, hessian
-        (V_x, V_y) and (V_xx, V_xy, V_yy) of the potential as functions of x and y.
+    slopes
+        The terms of V_x and V_y.
+    hessian
+        (V_xx, V_xy, V_yy) as a function of x and y.
     points
         (n, 2) all critical points.
     saddles
@@ -67,32 +77,49 @@ def find_maxima_beside(gradient: Gradient, hessian: Hessian, points: np.ndarray,
     flags = np.zeros((len(saddles), len(points)), bool)
     if not len(saddles) or not np.any((vxx < 0.0) & (vxx * vyy > vxy**2)):
         return flags
-    ascent = _Descent(_negative(gradient), _negative(hessian), points, vxx * vyy < vxy**2)
+    ascent = _Descent(_negative(slopes), lambda x, y: tuple(-entry for entry in hessian(x, y)), points, vxx * vyy < vxy**2)
     for row, saddle in zip(flags, saddles, strict=True):
         ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
         row[[end for end in ends if end >= 0]] = True
     return flags
 
 
-def _negative(derivatives: Callable[..., tuple[np.ndarray, ...]]) -> Callable[..., Any]:
-    return lambda x, y: tuple(-value for value in derivatives(x, y))
+def _negative(slopes: Slopes) -> Slopes:
+    along_x, along_y = ({powers: -c for powers, c in terms.items()} for terms in slopes)
+    return along_x, along_y
+
+
+def _flow(slopes: Slopes, length: float) -> Callable[[float, np.ndarray], np.ndarray]:
+    """The velocity (2,) of a descent at a time and place: −∇V, slower far away, where a descent takes a finite time to −∞."""
+    highest = max(map(degree, slopes))
+    table = np.zeros((2, highest + 1, highest + 1))
+    for axis, terms in enumerate(slopes):
+        for (i, j), c in terms.items():
+            table[axis, i, j] = -c
+    factors = np.ones((2, highest + 1))
+
+    def velocity(_time: float, place: np.ndarray) -> np.ndarray:
+        factors[:, 1:] = place[:, None]
+        powers_of_x, powers_of_y = np.multiply.accumulate(factors, axis=1)
+        downhill = table @ powers_of_y @ powers_of_x
+        slower: np.ndarray = downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
+        return slower
+
+    return velocity
 
 
 class _Descent:
     """Lines of steepest descent of one potential from its saddles."""
 
-    def __init__(self, gradient: Gradient, hessian: Hessian, points: np.ndarray, is_saddle: np.ndarray) -> None:
-        self.gradient, self.points, self.is_saddle = gradient, points, is_saddle
+    def __init__(self, slopes: Slopes, hessian: Hessian, points: np.ndarray, is_saddle: np.ndarray) -> None:
+        self.points, self.is_saddle = points, is_saddle
         distance = np.hypot(*points.T)
         self.length = float(distance[distance > 0.0].min())
+        self.flow = _flow(slopes, self.length)
         self.far = _FAR * float(distance.max())
         hessians = np.moveaxis(np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)]), 0, -1)
-        curvatures = [np.abs(np.linalg.eigvalsh([[a, b], [b, c]])) for a, b, c in hessians]
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
-        # About the largest slope within the well.
-        at_origin = float(np.max(curvatures[int(np.argmin(distance))]))
-        self.largest_slope = self.length * at_origin
-        self.duration = _DURATION / max(float(np.min(curvatures)), 1e-6 * at_origin)
+        self.steps_left = _MOST_STEPS
 
     def find_ends(self, saddle: int, side: float) -> set[int]:
         """Indices of the critical points where the descent on one side of a saddle ends, −1 for infinity.
@@ -111,31 +138,26 @@ class _Descent:
 
     def _descend(self, saddle: int, side: float) -> int:
         """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
-        from scipy.integrate import solve_ivp
+        from scipy.integrate import LSODA
 
-        distance = np.hypot(*(self.points - self.points[saddle]).T)
-        others = self.points[distance > 0.0]
-        first_step = _START_DISTANCE * distance[distance > 0.0].min()
+        others = np.delete(np.arange(len(self.points)), saddle)
+        first_step = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
         start = self.points[saddle] + side * first_step * self.unstable_directions[saddle]
+        # Without an end in time: a descent takes longer the flatter its valley is.
+        line = LSODA(self.flow, 0.0, start, np.inf, rtol=_RELATIVE_ERROR, atol=_RELATIVE_ERROR * self.length)
+        while self.steps_left and line.status == "running":
+            self.steps_left -= 1
+            line.step()
+            distances = self._distances(line.y)[others]
+            if distances.min() < _END_DISTANCE * self.length:
+                return int(others[np.argmin(distances)])
+            if np.hypot(*line.y) > self.far:
+                return -1
+        x, y = self.points[saddle]
+        raise DescentError(
+            f"The lines of steepest descent from the saddle ({x:.6g}, {y:.6g}) do not end within {_MOST_STEPS} steps."
+        )
 
-        def downhill(_t: float, place: np.ndarray) -> np.ndarray:
-            slope = np.array(self.gradient(*place))
-            # Bounded, as otherwise a polynomial can reach minus infinity in finite time; proportional to the distance far away.
-            speed = (1.0 + np.hypot(*place) / self.length) / (1.0 + np.hypot(*slope) / self.largest_slope)
-            velocity: np.ndarray = -slope * speed
-            return velocity
-
-        def near_critical_point(_t: float, place: np.ndarray) -> float:
-            return float(np.hypot(*(others - place).T).min() - _END_DISTANCE * self.length)
-
-        def far_away(_t: float, place: np.ndarray) -> float:
-            return float(self.far - np.hypot(*place))
-
-        events = (near_critical_point, far_away)
-        for event in events:
-            event.terminal = True  # type: ignore[attr-defined]
-        line = solve_ivp(downhill, (0.0, self.duration), start, "LSODA", events=events, rtol=1e-9, atol=self.length * 1e-9)
-        end: np.ndarray = line.y[:, -1]
-        if line.t_events[1].size:
-            return -1
-        return int(np.argmin(np.hypot(*(self.points - end).T)))
+    def _distances(self, place: np.ndarray) -> np.ndarray:
+        distances: np.ndarray = np.hypot(*(self.points - place).T)
+        return distances

@@ -111,7 +111,8 @@ class Potential(Result):
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """(V_x, V_y) at (x, y); arrays broadcast."""
-        return _evaluate(self.derivative(1, 0), x, y), _evaluate(self.derivative(0, 1), x, y)
+        along_x, along_y = self.slopes
+        return _evaluate(along_x, x, y), _evaluate(along_y, x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
         """(V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
@@ -134,6 +135,11 @@ class Potential(Result):
             terms = derivative(terms, axis)
         return terms
 
+    @cached_property
+    def slopes(self) -> tuple[Terms, Terms]:
+        """The terms of V_x and V_y."""
+        return self.derivative(1, 0), self.derivative(0, 1)
+
     @property
     def mirror_in_x(self) -> bool:
         """Whether V(−x, y) = V(x, y): then (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point."""
@@ -147,7 +153,7 @@ class Potential(Result):
     @cached_property
     def critical_points(self) -> np.ndarray:
         """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve."""
-        slopes = self.derivative(1, 0), self.derivative(0, 1)
+        slopes = self.slopes
         points = stored_points("critical_points", self.coefficients, lambda: find_critical_points(*slopes))
         tiny = _ROUNDING * characteristic_length(*slopes)
         points = np.where(np.abs(points) < tiny, 0.0, points)
@@ -164,9 +170,7 @@ class Potential(Result):
         square of V_xy, which is a misprint.
         """
         points = self.critical_points
-        leads_out = stored_points(
-            "exit_saddles", self.coefficients, lambda: leads_out_of_well(self.gradient, self.hessian, points)
-        )
+        leads_out = stored_points("exit_saddles", self.coefficients, lambda: leads_out_of_well(self.slopes, self.hessian, points))
         points = points[leads_out]
         points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
         angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
@@ -275,7 +279,7 @@ class Potential(Result):
         points = self.critical_points
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
         beside = stored_points(
-            "maxima", self.coefficients, lambda: find_maxima_beside(self.gradient, self.hessian, points, saddles)
+            "maxima", self.coefficients, lambda: find_maxima_beside(self.slopes, self.hessian, points, saddles)
         )
         mergers = []
         for k in np.flatnonzero(beside.sum(axis=0) > 1):

@@ -236,6 +236,14 @@ def test_incomplete_files_of_killed_processes_count_towards_the_limit(folder: Pa
     assert [path.name for path in folder.iterdir()] == [f"new{SUFFIX}"]
 
 
+def test_the_number_of_files_is_limited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel_files, "MOST_FILES", 2)
+    for n, name in enumerate("abc"):
+        kernel_files.write_kernel(folder / f"{name}{SUFFIX}", b"")
+        os.utime(folder / f"{name}{SUFFIX}", ns=(n, n))
+    assert {path.stem for path in folder.iterdir()} == {"b", "c"}
+
+
 @pytest.mark.parametrize("path", ["constants.py", "kernels/events.py", "source/deep/er.py"])
 def test_a_change_anywhere_in_the_package_gives_another_file(
     path: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

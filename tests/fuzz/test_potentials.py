@@ -16,7 +16,7 @@ from cli.potential_argument import PARAMETERS, file_name_part, find_potential
 from engine import POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
 
-LONGEST_REVIEW = 6.0
+LONGEST_REVIEW = 3.0
 """Processor time in seconds; the page waits for the review of a formula in its link."""
 
 exponents = st.integers(0, 6)

@@ -27,6 +27,9 @@ SUFFIX = ".kernel"
 LARGEST_SIZE = 256 * 2**20
 """Size limit of all files together, in bytes; the kernels of one potential take about 0.2 MB."""
 
+MOST_FILES = 4096
+"""Limit on their number: each write lists them all, 0.01 s."""
+
 _PART = ".part"
 _HASH_BYTES = hashlib.sha256().digest_size
 _SUPERUSER = 0
@@ -119,19 +122,21 @@ def _mark_used(path: Path) -> None:
 
 
 def _delete_least_recently_used(folder: Path) -> None:
-    """Keep the files within the size limit; incomplete files of killed processes count too."""
+    """Keep the files within the limits; incomplete files of killed processes count too."""
     files = []
-    for path in folder.iterdir():
-        # Another process may delete it first.
-        with contextlib.suppress(FileNotFoundError):
-            if path.suffix in (SUFFIX, _PART):
-                files.append((path.stat().st_atime_ns, path.stat().st_size, path))
-    excess = sum(size for _, size, _ in files) - LARGEST_SIZE
-    for _, size, path in sorted(files):
-        if excess <= 0:
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            # Another process may delete it first.
+            with contextlib.suppress(FileNotFoundError):
+                if entry.name.endswith((SUFFIX, _PART)):
+                    status = entry.stat()
+                    files.append((status.st_atime_ns, status.st_size, entry.path))
+    count, size = len(files), sum(size for _, size, _ in files)
+    for _, file_size, path in sorted(files):
+        if count <= MOST_FILES and size <= LARGEST_SIZE:
             break
-        path.unlink(missing_ok=True)
-        excess -= size
+        Path(path).unlink(missing_ok=True)
+        count, size = count - 1, size - file_size
 
 
 def _write_atomically(path: Path, content: bytes) -> None:
