@@ -8,7 +8,6 @@ of its generated functions.
 from __future__ import annotations
 
 import functools
-import hashlib
 import inspect
 import linecache
 import sys
@@ -55,16 +54,9 @@ def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleTyp
 
 
 class GeneratedKernel:
-    """A generated function, compiled at its first use for its types in `SIGNATURES` only.
+    """A generated function, compiled at its first use for its types in `SIGNATURES` only."""
 
-    Attributes
-    ----------
-    operations
-        Number of operations of its program; the time to compile it is proportional to this.
-    """
-
-    def __init__(self, dispatcher: Any, operations: int) -> None:
-        self.operations = operations
+    def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
         self._signature = SIGNATURES[dispatcher.__name__]
         self._address: int | None = None
@@ -85,7 +77,6 @@ class GeneratedKernel:
         return self._address
 
     def _compile(self) -> int:
-        compiled_operations.add(self.operations)
         self._dispatcher.compile(self._signature)
         self._dispatcher.disable_compile()
         compiled = self._dispatcher.get_compile_result(self._signature)
@@ -142,7 +133,8 @@ def _load(terms: Terms, channels: int, reach: float) -> ModuleType:
 @functools.cache
 def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]]:
     """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled."""
-    name = f"kernels_{hashlib.sha256(code.source.encode()).hexdigest()[:16]}"
+    compiled_operations.add(code.operations)
+    name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
     # Numba looks here for the module of a kernel that it loads from the cache.
     sys.modules[name] = module
@@ -151,7 +143,4 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]
     programs = {function.program.name: straight_line(function.program) for function in code.functions}
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
     exec(compile(source, f"<{name}>", "exec"), vars(module))
-    return name, {
-        function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))
-        for function in code.functions
-    }
+    return name, {function.name: GeneratedKernel(getattr(module, function.name)) for function in code.functions}

@@ -124,6 +124,8 @@ async def open_page(address: str) -> None:
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
     monkeypatch.setenv("ESCAPE_EXPLORER_CACHE_BYTES", str(32 * 2**20))
+    # Reached in the first half of the long run.
+    monkeypatch.setenv("ESCAPE_EXPLORER_COMPILED_OPERATIONS", "50000")
     # As in the image: otherwise free memory is spread over many arenas.
     monkeypatch.setenv("MALLOC_ARENA_MAX", "2")
     log = tmp_path / "log"

@@ -6,7 +6,7 @@ import threading
 
 
 class CompiledOperations:
-    """The operations of all generated functions that are compiled, each of which takes about 4 kB of memory.
+    """The operations of all generated functions, each of which takes about 4 kB of memory when compiled.
 
     Attributes
     ----------
@@ -22,7 +22,7 @@ class CompiledOperations:
         self._lock = threading.Lock()
 
     def add(self, count: int) -> None:
-        """Count operations that are to be compiled. Raises ValueError if they exceed the limit."""
+        """Count operations before they are compiled. Raises ValueError if they exceed the limit."""
         with self._lock:
             if self.most is not None and self.used + count > self.most:
                 raise ValueError(

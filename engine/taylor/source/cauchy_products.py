@@ -16,6 +16,8 @@ X, Y = (1, 0), (0, 1)
 
 # Relative error up to which coefficients count as equal: those of terms like −x³ ε/3 have a few rounding errors.
 _ROUNDING = 1e-15
+# Cached products, 1 kB each; a potential of degree 8 needs about 4 000.
+_CHEAPEST_PRODUCTS = 4096
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ def _greedy_plan(wanted: list[Monomial]) -> list[Product]:
     return plan
 
 
-@functools.cache
+@functools.lru_cache(maxsize=_CHEAPEST_PRODUCTS)
 def _cheapest(monomial: Monomial, known: frozenset[Monomial]) -> tuple[float, list[Product]]:
     """The cost and the products of the cheapest way to form a monomial."""
     if monomial in known:

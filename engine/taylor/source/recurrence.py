@@ -22,6 +22,7 @@ function's first argument, so that potentials of the same structure share compil
 from __future__ import annotations
 
 import functools
+import hashlib
 import math
 import operator
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -65,6 +66,9 @@ _LARGEST_NORM = 1e90
 HIDDEN, GATE, OVERSHOOT = 1, 2, 4
 """Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon."""
 
+# Cached structures, 3 MB each with eight terms of degree 8.
+_STRUCTURES = 32
+
 Terms = tuple[tuple[int, int, float], ...]
 
 Entry = tuple[Monomial, float, float]
@@ -88,7 +92,7 @@ class GeneratedFunction(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class GeneratedCode:
-    """The generated functions of all potentials of one structure.
+    """The generated functions of all potentials of one structure; equal if all programs and kernels are.
 
     Attributes
     ----------
@@ -103,9 +107,21 @@ class GeneratedCode:
     entries: tuple[Entry, ...]
 
     @functools.cached_property
-    def source(self) -> str:
-        """All programs and kernels as text."""
-        return "\n\n".join(f"{function.program}\n\n{function.kernel}" for function in self.functions)
+    def digest(self) -> str:
+        """A hash of all programs and kernels as text."""
+        text = "\n\n".join(f"{function.program}\n\n{function.kernel}" for function in self.functions)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def operations(self) -> int:
+        """Number of operations of all programs."""
+        return sum(len(function.program.operations) for function in self.functions)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, GeneratedCode) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
 
     def tabulate(self, terms: Terms) -> np.ndarray:
         """(m,) the table of a potential, which every function takes as its first argument; read-only."""
@@ -135,7 +151,7 @@ def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivati
     return {(i, j): ((i + axes.count(0), j + axes.count(1)), factor) for (i, j), factor in factors.items()}
 
 
-@functools.cache
+@functools.lru_cache(maxsize=2 * _STRUCTURES)
 def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
     """The products from which the series of some derivatives of V are formed."""
     return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
@@ -429,7 +445,7 @@ def _sorted(terms: Terms) -> dict[Monomial, float]:
     return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}
 
 
-@functools.cache
+@functools.lru_cache(maxsize=_STRUCTURES)
 def _generate(structure: _Structure) -> GeneratedCode:
     table: dict[Entry, int] = {}
     functions = tuple(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent, _potential_value))
