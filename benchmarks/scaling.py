@@ -12,14 +12,15 @@ longest. The time of the calling thread is added, although much of it overlaps w
 from __future__ import annotations
 
 import argparse
+import os
 import resource
 import statistics
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 from benchmarks.all_maps import specs, title
@@ -29,10 +30,16 @@ from engine.execution import count_cores
 REPEATS, LONG = 5, 3.0
 
 
-@cache
-def one_core() -> ThreadPoolExecutor:
-    """A pool with a single thread."""
-    return ThreadPoolExecutor(1)
+@contextmanager
+def one_core() -> Iterator[ThreadPoolExecutor]:
+    """A pool with a single thread, on the same core as the calling thread."""
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(cores)})
+    try:
+        with ThreadPoolExecutor(1) as executor:
+            yield executor
+    finally:
+        os.sched_setaffinity(0, cores)
 
 
 def seconds(spec: MapSpec, executor: Executor | None = None) -> float:
@@ -88,7 +95,9 @@ def compare_cores() -> None:
     print(f"| case | plane | h | one core, s | {cores} cores, s | ratio |\n|---|---|---|---|---|---|")
     for spec in specs(224):
         compute_map(replace(spec, resolution=(20, 20)))
-        alone, together = seconds(spec, one_core()), seconds(spec)
+        with one_core() as executor:
+            alone = seconds(spec, executor)
+        together = seconds(spec)
         ratios.append(alone / together)
         print(f"| {title(spec)} | {alone:.3f} | {together:.3f} | {ratios[-1]:.2f} |", flush=True)
     print(f"\nGeometric mean {statistics.geometric_mean(ratios):.2f}, smallest {min(ratios):.2f}")

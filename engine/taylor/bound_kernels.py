@@ -54,9 +54,16 @@ def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleTyp
 
 
 class GeneratedKernel:
-    """A generated function, compiled at its first use for its types in `SIGNATURES` only."""
+    """A generated function, compiled at its first use for its types in `SIGNATURES` only.
 
-    def __init__(self, dispatcher: Any) -> None:
+    Attributes
+    ----------
+    operations
+        Number of operations of its program; the time to compile it is proportional to this.
+    """
+
+    def __init__(self, dispatcher: Any, operations: int) -> None:
+        self.operations = operations
         self._dispatcher = dispatcher
         self._signature = SIGNATURES[dispatcher.__name__]
         self._address: int | None = None
@@ -143,4 +150,7 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]
     programs = {function.program.name: straight_line(function.program) for function in code.functions}
     vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
     exec(compile(source, f"<{name}>", "exec"), vars(module))
-    return name, {function.name: GeneratedKernel(getattr(module, function.name)) for function in code.functions}
+    return name, {
+        function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))
+        for function in code.functions
+    }
