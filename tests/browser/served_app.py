@@ -72,7 +72,9 @@ def _wait_until_ready(running: RunningApp) -> None:
             with urllib.request.urlopen(f"{running.root}/readiness", timeout=60):
                 return
         except urllib.error.HTTPError as not_yet:
-            not_yet.close()
+            with not_yet:
+                if "could not be compiled" in not_yet.read().decode():
+                    raise RuntimeError("the server could not compile its kernels") from None
         except OSError:
             pass
         time.sleep(0.3)
