@@ -21,8 +21,12 @@ FIRST = 10
 LARGEST_GROWTH = 0.15
 """Permitted growth of the memory from then on, as a share."""
 
-ENVIRONMENT = {"ESCAPE_EXPLORER_CACHE_BYTES": str(32 * 2**20), "MALLOC_ARENA_MAX": "2"}
-"""Settings of the server: its cache of results is full after the first visitors; two arenas, as in the image."""
+ENVIRONMENT = {
+    "ESCAPE_EXPLORER_CACHE_BYTES": str(32 * 2**20),
+    "MALLOC_ARENA_MAX": "2",
+    "MALLOC_MMAP_THRESHOLD_": str(2**20),
+}
+"""Settings of the server: its cache of results is full after the first visitors; memory is allocated as in the image."""
 
 AT_ONCE = 4
 _STAY_SECONDS = 6.0

@@ -13,6 +13,7 @@ from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 
 from benchmarks.simulated_sessions import Channel
+from benchmarks.visitors import ENVIRONMENT
 from tests.app.other_loop import run_on_new_loop
 from tests.browser.served_app import RunningApp, running_app
 from tests.engine.jobs.inbox import wait_until
@@ -123,11 +124,10 @@ async def open_page(address: str) -> None:
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    monkeypatch.setenv("ESCAPE_EXPLORER_CACHE_BYTES", str(32 * 2**20))
+    for name, value in ENVIRONMENT.items():
+        monkeypatch.setenv(name, value)
     # Reached in the first half of the long run.
     monkeypatch.setenv("ESCAPE_EXPLORER_COMPILED_OPERATIONS", "50000")
-    # As in the image: otherwise free memory is spread over many arenas.
-    monkeypatch.setenv("MALLOC_ARENA_MAX", "2")
     log = tmp_path / "log"
     with running_app(log, "--unused-session-lifetime", "5000", "--check-unused-sessions", "500") as app:
         yield app, log
