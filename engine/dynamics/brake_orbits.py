@@ -38,6 +38,10 @@ _MOST_ENERGY_STEPS = 256
 
 # Largest speed at the second end, in units of the well: a root at a jump of the velocity is no orbit.
 _REST = 1e-8
+# The same for orbits joined from two: there `_REST` is the largest distance between them, in this part of the half period around
+# the middle.
+_NEARLY_AT_REST = 1e-3
+_OVERLAP = 0.05
 _SAMPLES_PER_HALF_PERIOD = 100
 _MOST_STEPS = 400
 
@@ -76,6 +80,32 @@ class _Search(NamedTuple):
     farthest: float
 
 
+class _Shot(NamedTuple):
+    """A trial orbit, at rest at its start and nearly at rest at its end; steps (n, 5) of x, y, px, py, t at their starts."""
+
+    kernels: ModuleType
+    steps: np.ndarray
+    half_period: float
+
+    @property
+    def orbit(self) -> BrakeOrbit:
+        return BrakeOrbit(self.half_period, self.path)
+
+    @property
+    def path(self) -> np.ndarray:
+        """(2, 101) x and y, evenly spaced in time."""
+        return self.positions(np.linspace(0.0, self.half_period, _SAMPLES_PER_HALF_PERIOD + 1))
+
+    def positions(self, times: np.ndarray) -> np.ndarray:
+        """(2, n) x and y at `times` (n,), from the Taylor series of the steps."""
+        jets = np.empty((2, ORDER + 1, len(self.steps)))
+        self.kernels.jets(len(self.steps), *(np.ascontiguousarray(column) for column in self.steps[:, :4].T), *jets)
+        row = np.searchsorted(self.steps[:, 4], times, side="right") - 1
+        powers = (times - self.steps[row, 4]) ** np.arange(ORDER + 1)[:, None]
+        path: np.ndarray = (jets[:, :, row] * powers).sum(axis=1)
+        return path
+
+
 def saddle_axes(potential: Potential, channel: int) -> Axes:
     """The saddle and its unstable direction."""
     return Axes(potential.saddles[channel - 1], potential.outward_directions[channel - 1])
@@ -89,14 +119,22 @@ def chord_axes(path: np.ndarray) -> Axes:
 
 def find_directly(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """The orbit over a saddle at one energy, searched from the saddle; None if it is not found."""
-    distance = _distance(potential, channel)
-    axes, search = saddle_axes(potential, channel), _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
-    orbit = _shoot(potential, energy, channel, axes, search)
-    if orbit is None:
+    shot = _find_from_saddle(potential, energy, channel, saddle_axes(potential, channel), _REST)
+    return shot and shot.orbit
+
+
+def find_from_both_ends(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
+    """The orbit over a saddle at one energy, shot from both ends and joined in its middle; None if it is not found.
+
+    Errors grow over a quarter of a period only, and the zero-velocity curve may bend away at the first end.
+    """
+    axes = saddle_axes(potential, channel)
+    back = _find_from_saddle(potential, energy, channel, Axes(axes.origin, -axes.outward), _NEARLY_AT_REST)
+    if back is None:
         return None
-    # A start on a wall of another channel leads to an orbit across that one.
-    _, q = axes.coordinates(orbit.path)
-    return orbit if q[0] < 0.0 < q[-1] else None
+    path = back.path[:, ::-1]
+    there = _shoot(potential, energy, channel, chord_axes(path), _chord_search(path), _NEARLY_AT_REST)
+    return there and _join(there, back, chord_axes(path))
 
 
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
@@ -119,24 +157,68 @@ def continue_in_energy(potential: Potential, energy: float, channel: int) -> Bra
     return None
 
 
+def _find_from_saddle(potential: Potential, energy: float, channel: int, axes: Axes, rest: float) -> _Shot | None:
+    """The orbit from a point with q < 0 in axes at the saddle to one with q > 0; None if it is not found."""
+    distance = _distance(potential, channel)
+    search = _Search(_FIRST_STRIDE * distance, _LARGEST_OFFSET * distance)
+    shot = _shoot(potential, energy, channel, axes, search, rest)
+    if shot is None:
+        return None
+    # A start on a wall of another channel leads to an orbit across that one.
+    _, q = axes.coordinates(shot.path)
+    return shot if q[0] < 0.0 < q[-1] else None
+
+
+def _join(there: _Shot, back: _Shot, axes: Axes) -> BrakeOrbit | None:
+    """The orbit whose halves two shots from its ends are; None if they are not the same orbit in the middle."""
+    path, other = there.path, back.path[:, ::-1]
+    if np.abs((path - other)[:, [0, -1]]).max() > _LARGEST_CHANGE * _chord_length(other):
+        return None
+    middle = 0.5 * (axes.coordinates(path)[1][0] + axes.coordinates(other)[1][-1])
+    first, last = _time_at(middle, there, axes), _time_at(middle, back, axes)
+    half_period = first + last
+    overlap = first + _OVERLAP * half_period * np.linspace(-1.0, 1.0, 11)
+    if not np.abs(there.positions(overlap) - back.positions(half_period - overlap)).max() < _REST:
+        return None
+    times = np.linspace(0.0, half_period, _SAMPLES_PER_HALF_PERIOD + 1)
+    return BrakeOrbit(half_period, np.where(times < first, there.positions(times), back.positions(half_period - times)))
+
+
+def _time_at(q: float, shot: _Shot, axes: Axes) -> float:
+    """When a trial orbit passes q."""
+
+    def distance(time: float) -> float:
+        return float(axes.coordinates(shot.positions(np.array([time])))[1][0]) - q
+
+    return find_root(distance, 0.0, shot.half_period, absolute=1e-15, relative=4 * float(np.finfo(float).eps))
+
+
 def _next_orbit(potential: Potential, energy: float, channel: int, before: BrakeOrbit) -> BrakeOrbit | None:
     """The orbit at an energy close to that of another one, None if it is not close to that one."""
     ends = before.path[:, [0, -1]]
-    length = float(np.hypot(*(ends[:, 1] - ends[:, 0])))
-    search = _Search(_FIRST_SHIFT * length, _LARGEST_SHIFT * length)
-    orbit = _shoot(potential, energy, channel, chord_axes(before.path), search)
-    if orbit is None:
+    shot = _shoot(potential, energy, channel, chord_axes(before.path), _chord_search(before.path), _REST)
+    if shot is None:
         return None
+    orbit, length = shot.orbit, _chord_length(before.path)
     move = float(np.hypot(*(orbit.path[:, [0, -1]] - ends)).max()) / length
     change = abs(orbit.half_period - before.half_period) / before.half_period
     return orbit if max(move, change) < _LARGEST_CHANGE else None
+
+
+def _chord_length(path: np.ndarray) -> float:
+    return float(np.hypot(*(path[:, -1] - path[:, 0])))
+
+
+def _chord_search(path: np.ndarray) -> _Search:
+    length = _chord_length(path)
+    return _Search(_FIRST_SHIFT * length, _LARGEST_SHIFT * length)
 
 
 def _distance(potential: Potential, channel: int) -> float:
     return float(np.hypot(*potential.saddles[channel - 1]))
 
 
-def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search) -> BrakeOrbit | None:
+def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
     """The orbit whose start is the nearest, along the channel, to the origin of the axes; None if there is none."""
     kernels = kernels_of(potential)
     steps = np.empty((_MOST_STEPS, 5))
@@ -152,9 +234,9 @@ def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search
         return None
     u = find_root(outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
     velocity, half_period, count = kernels.shoot(u, *arguments)
-    if not (np.isfinite(half_period) and abs(velocity) < _REST):
+    if not (np.isfinite(half_period) and abs(velocity) < rest):
         return None
-    return BrakeOrbit(half_period, _sample_path(kernels, steps[:count], half_period))
+    return _Shot(kernels, steps[:count], half_period)
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:
@@ -173,15 +255,3 @@ def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -
             return (here, there) if inward else (there, here)
         here, stride = there, 1.5 * stride
     return None
-
-
-def _sample_path(kernels: ModuleType, steps: np.ndarray, duration: float) -> np.ndarray:
-    """(2, 101) x and y at evenly spaced times from 0 to `duration`, from the Taylor series of the steps (x, y, px, py, t)."""
-    jets = np.empty((2, ORDER + 1, len(steps)))
-    kernels.jets(len(steps), *(np.ascontiguousarray(column) for column in steps[:, :4].T), *jets)
-    times = np.linspace(0.0, duration, _SAMPLES_PER_HALF_PERIOD + 1)
-    row = np.searchsorted(steps[:, 4], times, side="right") - 1
-    tau = times - steps[row, 4]
-    powers = tau ** np.arange(ORDER + 1)[:, None]
-    path: np.ndarray = (jets[:, :, row] * powers).sum(axis=1)
-    return path

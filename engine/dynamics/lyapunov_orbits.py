@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import read_only
-from engine.dynamics.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, saddle_axes
+from engine.dynamics.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.representation import Result
@@ -194,7 +194,8 @@ def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
 
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
-    orbit = (continue_in_energy if follow else find_directly)(potential, energy, channel)
+    place = potential, energy, channel
+    orbit = continue_in_energy(*place) or find_from_both_ends(*place) if follow else find_directly(*place)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)
