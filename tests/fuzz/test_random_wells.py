@@ -160,7 +160,9 @@ def test_random_wells(chunk: int) -> None:
     assert len(refused) <= MOST_REFUSED, refused
 
 
-@pytest.mark.parametrize(("seed", "factor"), [(97, 2.0), (131, 1.25), (155, 2.0)])
+@pytest.mark.parametrize(
+    ("seed", "factor"), [(97, 2.0), *(pytest.param(*well, marks=pytest.mark.slow) for well in ((131, 1.25), (155, 2.0)))]
+)
 def test_exits_found_by_continuation(seed: int, factor: float) -> None:
     potential = random_well(seed)
     assert wrong_outcomes(potential, factor * potential.escape_energy, seed) == 0

@@ -59,6 +59,12 @@ def frame() -> EscapeMap:
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (112, 112), t_max=1e3))
 
 
+@pytest.fixture(autouse=True)
+def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Little work for each exponent of the curves against energy."""
+    monkeypatch.setattr("engine.sweeps.energy_curves._WORK", 1e6)
+
+
 @pytest.fixture
 def open_sessions() -> Iterator[list[Session]]:
     sessions: list[Session] = []
@@ -172,7 +178,7 @@ def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) ->
     session.wait_for(lambda: len(steps.data["t"]) > 0 and float(steps.data["share"][0]) != whole)
 
 
-def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.MEASURES)
     session.presenter.measures.button.clicks += 1
     assert session.presenter.measures.button.disabled
