@@ -19,7 +19,7 @@ sys.dont_write_bytecode = False
 TIMEOUT_MS = 30_000
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 
-settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=25, database=None)
+settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=15, database=None)
 settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
 settings.load_profile("random" if os.environ.get("CI") else "fixed")
 

@@ -91,9 +91,7 @@ def test_an_invalid_energy_gives_a_warning_and_the_picture_stays(explorer: Explo
     expect(warning).to_have_count(0)
 
 
-@pytest.mark.parametrize(
-    "picture", ["curves", "basins", pytest.param("times", marks=SLOW), pytest.param("crossings", marks=SLOW)]
-)
+@pytest.mark.parametrize("picture", ["curves", *(pytest.param(name, marks=SLOW) for name in PICTURES[1:])])
 def test_a_click_integrates_the_orbit_of_that_pixel_and_marks_it(for_orbits: ExplorerPage, picture: str) -> None:
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5)
     pixel = spec.pixel_at(0.1, 0.05)

@@ -21,7 +21,7 @@ HENON_HEILES = MapSpec(CASES["II"], Plane.X_PX, 0.25)
 
 @pytest.fixture(scope="module")
 def henon_heiles() -> UncertaintyExponent:
-    return compute_uncertainty_exponent(HENON_HEILES)
+    return compute_uncertainty_exponent(HENON_HEILES, work=5e7)
 
 
 @pytest.mark.slow
