@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import sys
@@ -18,9 +19,14 @@ sys.dont_write_bytecode = False
 TIMEOUT_MS = 30_000
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 
-settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=25, database=None)
+settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=15, database=None)
 settings.register_profile("random", derandomize=False, deadline=None, max_examples=60, database=None, print_blob=True)
 settings.load_profile("random" if os.environ.get("CI") else "fixed")
+
+
+def pytest_collection_finish() -> None:
+    """Spare garbage collections the imported modules, which stay until the end."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

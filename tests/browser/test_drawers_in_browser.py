@@ -24,6 +24,12 @@ def expect_open(explorer: ExplorerPage, drawer: str | None) -> None:
         expect(heading(explorer, name)).to_be_visible(visible=name == drawer)
 
 
+def close(explorer: ExplorerPage, drawer: str) -> None:
+    """Close a drawer, and wait until it is off the page: what is pressed in it before is lost."""
+    explorer.press(drawer)
+    expect_open(explorer, None)
+
+
 def test_at_most_one_drawer_is_open(explorer: ExplorerPage) -> None:
     expect_open(explorer, None)
     for drawer in HEADINGS:
@@ -57,7 +63,7 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
         expect(card(explorer, preset)).to_contain_text(preset.title)
     picture = card(explorer, PRESETS[0]).locator("img")
     explorer.page.wait_for_function("picture => picture.naturalWidth == 160", arg=picture.element_handle())
-    explorer.press("Gallery")
+    close(explorer, "Gallery")
 
 
 def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
@@ -69,18 +75,18 @@ def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
     assert explorer.ranges("basins")[0] == window.x_low
     expect(explorer.radio("III")).to_be_checked()
     expect(explorer.page.locator("p").filter(has_text=ZOOMED.caption)).to_be_visible()
-    explorer.press("Gallery")
+    close(explorer, "Gallery")
 
 
 def test_the_equations_are_those_of_the_system(explorer: ExplorerPage) -> None:
     explorer.press("Help")
     expect(explorer.text("Equations: Case I")).to_be_visible()
     expect(explorer.page.locator("math").first).to_be_visible()
-    explorer.press("Help")
+    close(explorer, "Help")
     explorer.pick("III")
     explorer.press("Help")
     expect(explorer.text("Equations: Case III")).to_be_visible()
-    explorer.press("Help")
+    close(explorer, "Help")
 
 
 def test_the_page_can_be_read_as_a_table(explorer: ExplorerPage) -> None:
@@ -94,4 +100,4 @@ def test_the_page_can_be_read_as_a_table(explorer: ExplorerPage) -> None:
         "Case I", "½(x² + y²) − xy²", "energy h", "escape through channel 1", "median escape time", "Escaped through channel 1",
     ):  # fmt: skip
         expect(table).to_contain_text(text)
-    explorer.press("Help")
+    close(explorer, "Help")

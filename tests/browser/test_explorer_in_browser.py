@@ -15,6 +15,7 @@ from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_
 from tests.browser.explorer_page import ExplorerPage
 
 PICTURES = ("curves", "basins", "times", "crossings")
+SLOW = pytest.mark.slow
 
 
 def quick_map(energy: float, **options: object) -> EscapeMap:
@@ -40,7 +41,7 @@ def test_the_first_map_is_that_of_the_engine(shared: ExplorerPage, first_map: Es
     assert Fate.FAILED not in np.unique(shared.column("fate"))
 
 
-@pytest.mark.parametrize(("case", "channels"), [pytest.param("II", 3, marks=pytest.mark.slow), ("III", 4)])
+@pytest.mark.parametrize(("case", "channels"), [pytest.param("II", 3, marks=SLOW), ("III", 4)])
 def test_the_case_can_be_changed(explorer: ExplorerPage, case: str, channels: int) -> None:
     explorer.pick(case)
     explorer.wait_for_view(f"case={case}&")
@@ -90,7 +91,7 @@ def test_an_invalid_energy_gives_a_warning_and_the_picture_stays(explorer: Explo
     expect(warning).to_have_count(0)
 
 
-@pytest.mark.parametrize("picture", PICTURES)
+@pytest.mark.parametrize("picture", ["curves", *(pytest.param(name, marks=SLOW) for name in PICTURES[1:])])
 def test_a_click_integrates_the_orbit_of_that_pixel_and_marks_it(for_orbits: ExplorerPage, picture: str) -> None:
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, t_max=1e5)
     pixel = spec.pixel_at(0.1, 0.05)

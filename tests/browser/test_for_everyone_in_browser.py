@@ -117,6 +117,7 @@ def test_the_tour_can_be_taken_from_the_help_and_ended(explorer: ExplorerPage) -
     explorer.page.keyboard.press("Escape")
     expect(tour).to_be_hidden()
     explorer.press("Close")
+    expect(explorer.button("Close")).to_have_count(0)
 
 
 def test_the_keys_are_listed_in_the_help(explorer: ExplorerPage) -> None:

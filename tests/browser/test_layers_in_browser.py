@@ -87,12 +87,17 @@ def test_the_text_of_a_pixel_says_what_all_layers_know(open_explorer: OpenExplor
     expect(explorer.page.locator(".bk-Tooltip").get_by_text("never entered")).to_have_count(0)
 
 
+@pytest.fixture(scope="module")
+def with_statistics(open_for_all: OpenExplorer) -> ExplorerPage:
+    return open_for_all(link=f"{VIEW}&analysis=statistics", height=2000)
+
+
 @pytest.mark.parametrize(
     ("chart", "texts"),
     [("histogram", ("starts", "escape", "from t =")), ("probabilities", ("upward crossings", "of the orbits still inside"))],
 )
-def test_bars_have_texts(open_explorer: OpenExplorer, chart: str, texts: tuple[str, ...]) -> None:
-    explorer = open_explorer(link=f"{VIEW}&analysis=statistics", height=2000)
+def test_bars_have_texts(with_statistics: ExplorerPage, chart: str, texts: tuple[str, ...]) -> None:
+    explorer = with_statistics
     explorer.page.wait_for_function(_BAR, arg=chart)
     expect(explorer.text("interior starts").last).to_be_visible()
     x, y = explorer.page.evaluate(_BAR, chart)

@@ -113,7 +113,7 @@ def test_on_a_middling_screen_the_maps_stand_in_two_rows_beside_the_inspector(mi
     assert hint["y"] < places[2][1]
 
 
-@pytest.mark.parametrize("page", ["wide", pytest.param("middling", marks=pytest.mark.slow), "phone"])
+@pytest.mark.parametrize("page", ["wide", *(pytest.param(page, marks=pytest.mark.slow) for page in ("middling", "phone"))])
 def test_the_maps_do_not_move_when_an_orbit_is_clicked(page: str, request: pytest.FixtureRequest) -> None:
     explorer: ExplorerPage = request.getfixturevalue(page)
     names = ["basins"] if page == "phone" else PICTURES

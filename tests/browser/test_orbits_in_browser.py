@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, Plane, find_section_crossings, integrate_orbit, start_states
+from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 PICTURES = ("curves", "basins", "times", "crossings")
@@ -53,11 +55,11 @@ def test_plots_stay_on_the_page_while_their_orbits_are_integrated(explorer: Expl
     assert explorer.page.evaluate("() => window.gone") == 0
 
 
-def test_a_sixth_start_gives_a_message(for_orbits: ExplorerPage) -> None:
-    click_all(for_orbits, STARTS)
-    for_orbits.click("basins", 0.3, 0.1)
-    expect(for_orbits.text("5 orbits are shown already. Remove one first.")).to_be_visible()
-    assert len(for_orbits.model_data("starts")["x"]) == 5
+def test_a_sixth_start_gives_a_message(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=f"{QUICK}&orbits={';'.join(f'{x},{px}' for x, px in STARTS)}")
+    explorer.click("basins", 0.3, 0.1)
+    expect(explorer.text("5 orbits are shown already. Remove one first.")).to_be_visible()
+    assert len(explorer.model_data("starts")["x"]) == 5
 
 
 def test_another_orbit_can_be_chosen_and_removed(for_orbits: ExplorerPage) -> None:

@@ -44,7 +44,7 @@ def test_the_histogram_counts_every_escape(explorer: ExplorerPage, counted: Esca
     explorer.page.wait_for_function(f"escaped => ({_SUM})().includes(escaped)", arg=escaped)
 
 
-@pytest.mark.parametrize("picture", ["basins", "times"])
+@pytest.mark.parametrize("picture", ["basins", pytest.param("times", marks=pytest.mark.slow)])
 def test_a_box_can_be_counted_and_removed(explorer: ExplorerPage, counted: EscapeMap, picture: str) -> None:
     expect(explorer.button("Count the whole view")).to_be_hidden()
     explorer.set_drag("Count")

@@ -92,7 +92,9 @@ def name_of(scaling: Scaling) -> str:
     return f"L={scaling.length:.3g}, E={scaling.energy:.3g}"
 
 
-exactly_scaled = pytest.mark.parametrize("scaling", EXACT, ids=name_of)
+exactly_scaled = pytest.mark.parametrize(
+    "scaling", [*EXACT[:2], pytest.param(EXACT[2], marks=pytest.mark.exhaustive)], ids=name_of
+)
 roughly_scaled = pytest.mark.parametrize("scaling", INEXACT, ids=name_of)
 each_system = pytest.mark.parametrize("name", ["II", "skew"])
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from numba.core.codegen import JITCPUCodegen
 
 import engine.taylor
 from engine.taylor.jit import disk_cache, kernel_files
@@ -94,6 +95,15 @@ def test_a_folder_in_the_place_of_a_file_is_ignored(folder: Path, caplog: pytest
     file.mkdir()
     assert fresh_kernel()(2.0) == 6.0
     assert warnings(caplog)
+
+
+def test_code_for_another_processor_is_not_loaded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fresh_kernel()(2.0)
+    monkeypatch.setattr(JITCPUCodegen, "magic_tuple", lambda codegen: ("another", "processor"))
+    again = fresh_kernel()
+    assert again(2.0) == 6.0
+    assert hits(again) == 0
+    assert len(list(folder.iterdir())) == 2
 
 
 def test_kernels_work_without_a_cache_folder(

@@ -1,4 +1,4 @@
-"""Hypothesis profile for long runs, 14 000 inputs instead of 900: ``pytest tests/fuzz --hypothesis-profile=thorough``."""
+"""Hypothesis profile for long runs, 14 000 inputs instead of 500: ``pytest tests/fuzz --hypothesis-profile=thorough``."""
 
 from __future__ import annotations
 

@@ -160,7 +160,14 @@ def test_random_wells(chunk: int) -> None:
     assert len(refused) <= MOST_REFUSED, refused
 
 
-@pytest.mark.parametrize(("seed", "factor"), [(97, 2.0), (131, 1.25), (155, 2.0), (275, 1.1), (299, 1.25)])
+@pytest.mark.parametrize(
+    ("seed", "factor"),
+    [
+        (97, 2.0),
+        (299, 1.25),
+        *(pytest.param(*well, marks=pytest.mark.slow) for well in ((131, 1.25), (155, 2.0), (275, 1.1))),
+    ],
+)
 def test_exits_found_by_continuation_or_from_both_ends(seed: int, factor: float) -> None:
     potential = random_well(seed)
     assert wrong_outcomes(potential, factor * potential.escape_energy, seed) == 0

@@ -124,11 +124,10 @@ def test_a_coarse_frame_has_a_pixel_for_each_start() -> None:
     assert not np.any(np.all(pixels == rgba(PAPER.outcomes[Fate.NOT_COMPUTED].colour), axis=-1))
 
 
-@pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
-@pytest.mark.parametrize("picture", TITLES)
-def test_the_map_fills_its_frame_on_white(escape_map: EscapeMap, picture: str, palette: Palette) -> None:
-    image = draw(escape_map, picture, palette, SIDE)
-    assert share_shown(image, escape_map, picture, palette) > 0.9
+@pytest.mark.parametrize(("picture", "palette"), [*((picture, "paper") for picture in TITLES), ("basins", "safe")])
+def test_the_map_fills_its_frame_on_white(escape_map: EscapeMap, picture: str, palette: str) -> None:
+    image = draw(escape_map, picture, PALETTES[palette], SIDE)
+    assert share_shown(image, escape_map, picture, PALETTES[palette]) > 0.9
     assert np.all(np.asarray(image)[0] == 255)
 
 

@@ -55,8 +55,10 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "statistics": lambda: compute_statistics(compute_map(SPEC)),
     "decay": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), SPEC.t_max),
     "wada": lambda: compute_wada_test(*exit_labels(compute_map(SPEC).fate, bounded=False)),
-    "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20),
-    "curves": lambda: compute_energy_curves(EnergyCurvesSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36, 0.4), (20, 20), 100.0)),
+    "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
+    "curves": lambda: compute_energy_curves(
+        EnergyCurvesSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), 100.0, exponent=False)
+    ),
     "shares": lambda: fit_escape_shares([0.3, 0.35, 0.4, 0.45, 0.5], [20, 45, 60, 80, 85], [100] * 5),
     "separation": lambda: compute_separation(POTENTIAL, STATE, (0.1, 0.0, 0.05, 0.60001), 20.0),
     "envelope": lambda: compute_radius_envelope(POTENTIAL, STATE, 20.0),

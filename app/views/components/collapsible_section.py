@@ -111,8 +111,10 @@ class Drawers(Stack):
 
     def show(self, name: str | None) -> None:
         """Open a drawer and close the others; None closes all."""
-        super().show(name)
-        self.buttons.value = [] if name is None else [name]
+        # In one message: a button pressed between two would be added to the one that is still marked.
+        with pn.io.hold():
+            super().show(name)
+            self.buttons.value = [] if name is None else [name]
 
     def _press(self, event: Any) -> None:
         pressed = [name for name in event.new if name != self.shown]

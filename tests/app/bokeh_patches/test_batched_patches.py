@@ -67,6 +67,14 @@ def test_other_documents_and_connections_get_their_own_message() -> None:
     assert [changes(message) for message, _ in batches] == [[("start", 0.5)], [("end", 2.0), ("start", 0.6)]]
 
 
+def test_changes_of_a_document_for_other_connections_have_a_message_of_their_own() -> None:
+    document = new_document()
+    pending = [*patches(document, ("first",), ("start", 0.5)), *patches(document, ("first", "second"), ("end", 2.0))]
+    batches = serialize_batches(pending)
+    assert [connections for _, connections in batches] == [("first",), ("first", "second")]
+    assert [changes(message) for message, _ in batches] == [[("start", 0.5)], [("end", 2.0)]]
+
+
 def test_replaced_function_and_patch_fields_are_unchanged_upstream(monkeypatch: pytest.MonkeyPatch) -> None:
     original = ServerSession._send_pending_patches
     monkeypatch.setattr(ServerSession, "_send_pending_patches", original)

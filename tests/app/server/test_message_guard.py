@@ -126,6 +126,14 @@ def test_floods_close_the_connection() -> None:
         send_many(guard, MOST_AT_ONCE + 1)
 
 
+def test_a_quiet_hour_does_not_permit_a_larger_flood() -> None:
+    clock = Clock()
+    guard = MessageGuard(clock.monotonic)
+    clock.now += 3600.0
+    with pytest.raises(UnacceptableConnectionError, match="each invalid one"):
+        send_many(guard, MOST_AT_ONCE // REFUSED_COUNTS + 1, "PUSH-DOC")
+
+
 def test_a_steady_rate_below_the_limit_is_no_flood() -> None:
     clock = Clock()
     guard = MessageGuard(clock.monotonic)

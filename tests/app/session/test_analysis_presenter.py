@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from app.job_clients.follow_up_requests import FollowUpRequests
 from app.session.analysis_presenter import SWEPT_ENERGIES, AnalysisPresenter
 from app.state.view_state import Analysis, ViewState
 from app.views.maps.map_plots import MapsView
-from engine import CASES, EscapeMap, MapSpec, Plane, Trust, Window, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, Trust, Window, compute_map, compute_uncertainty_exponent
 from engine.service import Jobs
 from plots.map_analyses import MapAnalyses
 
@@ -21,11 +22,11 @@ from plots.map_analyses import MapAnalyses
 class Session:
     """The parts of a session that analyses need."""
 
-    def __init__(self, **chosen: Any) -> None:
+    def __init__(self, jobs: Jobs, **chosen: Any) -> None:
         self.changed = threading.Condition()
         self.analyses = MapAnalyses()
         self.problems: list[str] = []
-        self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=112, t_max=1e3, **chosen), Jobs()
+        self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
         self.maps = MapsView(lambda x, y: None, lambda window: None, lambda: None, lambda box: None)
         self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, lambda curves: None, self.locked)
         self.follow_ups = FollowUpRequests(self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, self.locked)
@@ -59,6 +60,12 @@ def frame() -> EscapeMap:
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (112, 112), t_max=1e3))
 
 
+@pytest.fixture(autouse=True)
+def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Little work for each exponent of the curves against energy."""
+    monkeypatch.setattr("engine.sweeps.energy_curves._WORK", 1e6)
+
+
 @pytest.fixture
 def open_sessions() -> Iterator[list[Session]]:
     sessions: list[Session] = []
@@ -68,10 +75,16 @@ def open_sessions() -> Iterator[list[Session]]:
         session.presenter.close()
 
 
+@pytest.fixture(scope="module")
+def jobs() -> Jobs:
+    """Jobs that keep their results for all sessions."""
+    return Jobs()
+
+
 @pytest.fixture
-def begin(open_sessions: list[Session]) -> Callable[..., Session]:
+def begin(open_sessions: list[Session], jobs: Jobs) -> Callable[..., Session]:
     def begin_session(**chosen: Any) -> Session:
-        open_sessions.append(Session(**chosen))
+        open_sessions.append(Session(jobs, **chosen))
         return open_sessions[-1]
 
     return begin_session
@@ -173,6 +186,7 @@ def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) ->
 
 
 def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("engine.jobs.requests.compute_uncertainty_exponent", partial(compute_uncertainty_exponent, work=1e7))
     session = begin(analysis=Analysis.MEASURES)
     session.presenter.measures.button.clicks += 1
     assert session.presenter.measures.button.disabled

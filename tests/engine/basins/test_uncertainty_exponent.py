@@ -21,7 +21,7 @@ HENON_HEILES = MapSpec(CASES["II"], Plane.X_PX, 0.25)
 
 @pytest.fixture(scope="module")
 def henon_heiles() -> UncertaintyExponent:
-    return compute_uncertainty_exponent(HENON_HEILES)
+    return compute_uncertainty_exponent(HENON_HEILES, work=5e7)
 
 
 @pytest.mark.slow
@@ -138,7 +138,7 @@ def test_a_window_without_interior_has_no_pairs() -> None:
 
 def test_progress_increases_to_1() -> None:
     shares: list[float] = []
-    compute_uncertainty_exponent(HENON_HEILES, pairs=20, separations=6, on_progress=shares.append)
+    compute_uncertainty_exponent(HENON_HEILES, pairs=20, separations=6, work=1e7, on_progress=shares.append)
     assert shares[-1] == 1.0
     assert shares == sorted(shares)
     assert len(shares) > 2

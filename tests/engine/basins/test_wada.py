@@ -111,13 +111,20 @@ def test_random_images_agree_with_comparing_all_pairs_of_pixels(seed: int) -> No
     assert result.shares == pytest.approx([np.mean(reach <= r) for r in range(int(reach[-1]) + 1)])
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_at_most_one_percent_of_the_boundary_pixels_are_further_than_radius_99(seed: int) -> None:
+    result = compute_wada_test(np.kron(np.random.default_rng(seed).integers(0, 3, (5, 5)), np.ones((6, 6), int)))
+    assert result.boundary_pixels >= 100
+    assert result.radius_99 == np.argmax(result.shares >= 0.99)
+
+
 @pytest.mark.parametrize("level", [4, 5, 6, 7])
 def test_basins_around_a_cantor_set_have_the_same_radius_at_any_resolution(level: int) -> None:
     assert compute_wada_test(cantor_basins(level)).radius == 3
 
 
 def test_newtons_basins_have_a_small_radius_at_any_resolution() -> None:
-    for side in (200, 400, 800):
+    for side in (200, 400):
         assert newton(side).radius <= 6
         assert newton(side).radius_99 == 2
 
@@ -204,7 +211,7 @@ def test_invalid_parameters_are_named(parameter: str, labels: np.ndarray, valid:
 
 
 @pytest.mark.parametrize(("case", "energy"), [("II", 0.2), ("II", 0.25), ("III", 0.45)])
-@pytest.mark.parametrize("side", [150, 450])
+@pytest.mark.parametrize("side", [150, 300])
 def test_the_boundaries_of_all_exits_have_a_small_radius_at_any_resolution(case: str, energy: float, side: int) -> None:
     """The basins of Hénon-Heiles (II) are Wada (Aguirre, Vallejo & Sanjuán 2001, PRE 64, 066208); four exits should be too."""
     result = exits(case, energy, side)

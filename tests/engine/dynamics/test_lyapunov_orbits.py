@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
+from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
 from engine.dynamics.lyapunov_orbits import exit_curves, exit_gates
 from engine.potentials.catalogue import POTENTIALS
+from engine.taylor.kernels.events import exit_distance
 from tests.peers.dop853 import equations
 
 ENERGIES = [
@@ -202,3 +203,12 @@ def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None
     terms = ((2, 0, 1.1195), (0, 2, 0.3893), (1, 5, -0.6884), (2, 1, 0.8214), (4, 0, -0.2547), (3, 0, 0.5214))
     potential = Potential("", terms)
     assert len(find_lyapunov_orbits(potential, 2.0 * potential.escape_energy)) == 2
+
+
+def test_exit_curves_of_mirror_channels_are_exact_mirror_images_also_beyond_their_ends() -> None:
+    # The exits are not symmetric, so that their two ends differ.
+    potential = parse_formula("½(x² + y²) − 0.3x²y − x⁴/4")
+    assert potential.mirror_channels.tolist() == [0, 2, 1]
+    one, other = exit_curves(potential, 1.2 * potential.escape_energy)
+    for x, y in np.random.default_rng(1).uniform(-2.0, 2.0, (100, 2)):
+        assert exit_distance(x, y, one) == exit_distance(-x, y, other)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, Potential, start_states
+from engine.invariant_sets import birkhoff_averages
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, count_agreeing_digits, window_weights
 
 # Two uncoupled oscillators, one of them anharmonic: every orbit lies on a torus.
@@ -36,6 +37,14 @@ def test_longer_windows_give_more_digits_on_tori() -> None:
     states = states[np.isfinite(states).all(axis=1)]
     short, long = (np.median(count_agreeing_digits(CASES["I"], states, window)) for window in (100.0, 2000.0))
     assert long > short + 3.0
+
+
+def test_an_orbit_whose_energy_drifts_has_zero_digits(monkeypatch: pytest.MonkeyPatch) -> None:
+    torus = np.array([[0.1, 0.0, 0.0, 0.3]])
+    assert count_agreeing_digits(CASES["II"], torus, 1000.0) > CERTIFIED_DIGITS
+    # With a step that is too long the energy drifts, and averages agree to 6 digits.
+    monkeypatch.setattr(birkhoff_averages, "fixed_step_size", lambda potential: 1.5)
+    assert count_agreeing_digits(CASES["II"], torus, 1000.0) == 0.0
 
 
 def test_escaping_orbit_has_zero_digits() -> None:

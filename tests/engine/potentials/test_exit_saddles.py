@@ -1,14 +1,44 @@
+"""Saddles that lead out of the well at the origin, and the maxima beside them."""
+
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
 from engine.potentials import exit_saddles
+from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.formula_parser import parse_formula
+from engine.potentials.potential import Potential
 from engine.potentials.validation_report import review_potential
+
+# A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.
+RING = parse_formula("((x − 1.1)² + y² − 1)² + 0.924x")
+# Wells at x = 0, 2 and 4.
+ROW = parse_formula("(x(x − 2)(x − 4))²/10 + y²")
 
 # One saddle is at (-0.007, 1897), in a valley whose curvature is 10^11 times the one along it.
 NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4 + 0.082*x^4*y - 0.084*x^2*y^2 + 0.184*x*y^2"
+
+
+def exits(potential: Potential) -> np.ndarray:
+    """(n, 2) the saddles that lead out."""
+    points = potential.critical_points
+    return points[leads_out_of_well(potential.slopes, potential.hessian, points)]
+
+
+def test_a_saddle_with_the_origin_below_on_both_sides_is_no_exit() -> None:
+    assert exits(RING).size == 0
+
+
+def test_a_saddle_between_two_other_wells_is_no_exit() -> None:
+    np.testing.assert_allclose(exits(ROW), [[2.0 - 2.0 / np.sqrt(3.0), 0.0]], atol=1e-12)
+
+
+def test_the_hill_lies_beside_the_saddle_behind_it() -> None:
+    points = RING.critical_points
+    hill, saddle = np.argsort(points[:, 0])[1:]
+    beside = find_maxima_beside(RING.slopes, RING.hessian, points, np.array([saddle]))
+    assert np.flatnonzero(beside).tolist() == [hill]
 
 
 def test_a_saddle_at_the_end_of_a_long_narrow_valley_is_an_exit() -> None:
@@ -21,13 +51,6 @@ def test_a_saddle_at_the_end_of_a_long_narrow_valley_is_an_exit() -> None:
     for _ in range(50):
         x -= potential.gradient(x, y)[0] / potential.hessian(x, y)[0]
     assert (np.diff(potential.value(x, y)) > 0.0).all()
-
-
-def test_a_saddle_between_two_other_wells_is_no_exit() -> None:
-    # Along y = 0 minima at x = 0, 2 and 4, saddles at x = 1 and 3.
-    potential = parse_formula("y²/2 + 12x² − 50x³/3 + 35x⁴/4 − 2x⁵ + x⁶/6")
-    leads_out = exit_saddles.leads_out_of_well(potential.slopes, potential.hessian, potential.critical_points)
-    np.testing.assert_allclose(potential.critical_points[leads_out], [[1.0, 0.0]])
 
 
 def test_descents_that_take_too_many_steps_are_a_refusal(monkeypatch: pytest.MonkeyPatch) -> None:

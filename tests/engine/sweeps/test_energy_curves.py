@@ -72,7 +72,8 @@ def test_frames_come_after_each_energy_from_coarse_to_fine() -> None:
     np.testing.assert_allclose(seen[4], [0.2, 0.25, 0.3, 0.35, 0.4])
 
 
-def test_exponent_is_computed_where_exits_are_open() -> None:
+def test_exponent_is_computed_where_exits_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("engine.sweeps.energy_curves._WORK", 1e6)
     spec = EnergyCurvesSpec(CASES["III"], Plane.X_PX, (0.2, 0.6), (40, 40), 500.0)
     closed, opened = (compute_energy_point(spec.point(energy)) for energy in spec.energies)
     assert np.isnan(closed.exponent)

@@ -12,6 +12,7 @@ from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.analysis.statistics import StatisticsView
 
 
+@pytest.fixture(scope="module")
 def chart_hovers() -> list[HoverTool]:
     """The hover tools of all charts."""
     statistics, measures = StatisticsView(lambda: None, lambda text: None), BasinMeasuresView(lambda: None)
@@ -21,14 +22,14 @@ def chart_hovers() -> list[HoverTool]:
     return [tool for plot in (*plots, *curves._draw().values()) for tool in plot.tools if isinstance(tool, HoverTool)]
 
 
-def test_every_chart_has_a_hover() -> None:
+def test_every_chart_has_a_hover(chart_hovers: list[HoverTool]) -> None:
     # Two charts of statistics, two of measures, the shares, and five curves.
-    assert len(chart_hovers()) == 10
+    assert len(chart_hovers) == 10
 
 
 @pytest.mark.parametrize("place", range(10))
-def test_every_value_of_a_text_has_a_format(place: int) -> None:
-    hover = chart_hovers()[place]
+def test_every_value_of_a_text_has_a_format(chart_hovers: list[HoverTool], place: int) -> None:
+    hover = chart_hovers[place]
     assert isinstance(hover.tooltips, str)
     values = set(re.findall(r"([@$]\w+){custom}", hover.tooltips))
     assert values

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import panel as pn
 import pytest
+from bokeh.document import Document
+from panel.io.state import set_curdoc
 
 from app.views.components.collapsible_section import CollapsibleSection, Drawers, Fold, Stack
 
@@ -95,3 +97,13 @@ def test_a_drawer_closed_by_its_own_button_leaves_no_button_pressed(drawers: Dra
     close = next(part for part in head if isinstance(part, pn.widgets.Button))
     close.clicks += 1
     assert (drawers.shown, drawers.buttons.value) == (None, [])
+
+
+def test_a_drawer_and_its_button_change_in_one_message(drawers: Drawers) -> None:
+    document, held = Document(), list[str | None]()
+    for part, name in ((drawers.layout(), "objects"), (drawers.buttons, "value")):
+        part.param.watch(lambda event: held.append(document.callbacks.hold_value), name)
+    with set_curdoc(document):
+        drawers.show("a")
+    assert held == ["combine", "combine"]
+    assert document.callbacks.hold_value is None
