@@ -16,7 +16,7 @@ from numba import njit
 
 from benchmarks.throughput import multiplications
 from engine import CASES, Plane, Potential, start_states
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_gates
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_gates
 from engine.potentials.catalogue import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES

@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 
 from engine import CASES, Plane, start_states
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_gates
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.kernel_files import CACHE_VARIABLE
 from engine.taylor.kernels import propagate

@@ -23,8 +23,8 @@ from engine.basins.wada import WadaTest, compute_wada_test
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
-from engine.dynamics.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.dynamics.planes import Plane, Window, default_window, start_states, trace_zero_velocity_curve
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.maps.compute import compute_map
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates

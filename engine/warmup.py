@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from engine.dynamics.compiled import kernels_of
-from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
+from engine.compiled import kernels_of
 from engine.dynamics.planes import Plane, start_states
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.invariant_sets.birkhoff_averages import count_agreeing_digits
 from engine.invariant_sets.invariant_curves import LEAST_POINTS, find_invariant_curve
 from engine.invariant_sets.stable_manifolds import find_stable_manifolds

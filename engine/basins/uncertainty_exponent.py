@@ -16,9 +16,9 @@ from engine.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent,
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.dynamics.planes import Plane
 from engine.execution import raise_if_cancelled
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.maps.spec import MapSpec
 from engine.progress import shows_progress
 from engine.validation import checked_count, short_repr

@@ -11,7 +11,7 @@ import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import exit_curves_in_well_units
+from engine.exits.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.potential import Potential
 from engine.representation import Result
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max

@@ -17,8 +17,8 @@ from typing import Never
 
 import numpy as np
 
-from engine.dynamics.interior import find_outside_channels
-from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
+from engine.exits.interior import find_outside_channels
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
 from engine.validation import checked_number, short_repr

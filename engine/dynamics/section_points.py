@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from engine.dynamics.compiled import fixed_step_size, kernels_of
+from engine.compiled import fixed_step_size, kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.potentials.potential import Potential
 

@@ -21,7 +21,7 @@ from concurrent.futures import Executor
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.compiled import fixed_step_size, kernels_of
+from engine.compiled import fixed_step_size, kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.potentials.potential import Potential
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.compiled import kernels_of
+from engine.compiled import kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
-from engine.dynamics.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
 from engine.execution import raise_if_cancelled
+from engine.exits.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
 from engine.taylor.source.recurrence import TOLERANCE

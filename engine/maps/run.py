@@ -15,9 +15,9 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled, run_parts
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices

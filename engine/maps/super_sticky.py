@@ -17,9 +17,9 @@ from engine.arrays import read_only
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.classification import collect_outcomes
 from engine.dynamics.fates import Fate, Regularity
-from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.dynamics.planes import Plane
 from engine.execution import raise_if_cancelled
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.maps.pixels import MirrorPixels
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap

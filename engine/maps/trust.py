@@ -11,13 +11,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from engine.compiled import kernels_of
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
-from engine.dynamics.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.execution import SerialExecutor, count_workers, default_executor
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.file_lock import hold_lock
 from engine.maps.compute import LARGEST_RUN, compute_map
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap

@@ -11,9 +11,9 @@ import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import find_lyapunov_orbits
 from engine.dynamics.planes import Plane, start_states
 from engine.execution import raise_if_cancelled
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.representation import Result
 from engine.validation import checked_number, checked_t_max

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
+from engine.compiled import kernels_of
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.compiled import kernels_of
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.potentials.potential import Potential

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.compiled import kernels_of
+from engine.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.representation import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_steps

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from engine.arrays import read_only
+from engine.compiled import kernels_of
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.compiled import kernels_of
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled

@@ -15,7 +15,7 @@ import pytest
 from scipy import ndimage
 
 from engine import LyapunovOrbit, Potential, classify_orbits, find_lyapunov_orbits, review_potential
-from engine.dynamics.interior import find_outside_channels
+from engine.exits.interior import find_outside_channels
 from tests.peers import taylor_heyoka
 
 CHUNK = 20

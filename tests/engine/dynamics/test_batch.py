@@ -9,8 +9,8 @@ import pytest
 
 from engine import CASES, Fate, Plane, start_states
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.execution import create_thread_pool, default_executor
+from engine.exits.lyapunov_orbits import exit_curves
 
 POTENTIAL, ENERGY = CASES["III"], 0.4
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, integrate_orbit, start_states
-from engine.dynamics.compiled import fixed_step_size
+from engine.compiled import fixed_step_size
 from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
 from engine.dynamics.fates import is_chaotic
 

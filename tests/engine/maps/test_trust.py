@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
+from engine.compiled import kernels_of
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.compiled import kernels_of
-from engine.dynamics.lyapunov_orbits import exit_curves
 from engine.dynamics.planes import find_mirror_images
 from engine.execution import SerialExecutor
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.maps.spec import FINEST_PIXEL
 from engine.maps.trust import (
     APART,

@@ -21,7 +21,7 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.dynamics.interior import find_outside_channels
+from engine.exits.interior import find_outside_channels
 from engine.service import DecayLaw, LawFit, compute_survival
 from engine.statistics.decay_laws import MIN_ESCAPES
 from engine.statistics.escape_statistics import MAX_SURVIVAL_POINTS

@@ -7,7 +7,7 @@ import pytest
 
 from engine import CASES, Plane, Potential, start_states
 from engine.dynamics.fates import Fate
-from engine.dynamics.lyapunov_orbits import exit_curves, exit_gates
+from engine.exits.lyapunov_orbits import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels.propagate import Exits, Orbits
 from engine.taylor.source.recurrence import HIDDEN, ORDER, OVERSHOOT, TOLERANCE

@@ -8,7 +8,7 @@ from math import comb
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.lyapunov_orbits import exit_curves
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.potentials.potential import Potential
 from engine.taylor.kernels import interior
 

@@ -5,8 +5,8 @@ import pytest
 from scipy import ndimage
 
 from engine import CASES, Fate, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, find_lyapunov_orbits
-from engine.dynamics.interior import find_outside_channels
-from engine.dynamics.lyapunov_orbits import exit_curves
+from engine.exits.interior import find_outside_channels
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.taylor.kernels.events import BEARING_X, BEARING_Y, exit_distance
 
 # Beyond the exit the outer region turns back and passes behind the line on which the exit lies.

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
-from engine.dynamics.lyapunov_orbits import exit_curves, exit_gates
+from engine.exits.lyapunov_orbits import exit_curves, exit_gates
 from engine.potentials.catalogue import POTENTIALS
 from engine.taylor.kernels.events import exit_distance
 from tests.peers.dop853 import equations

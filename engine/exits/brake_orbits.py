@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.dynamics.compiled import kernels_of
+from engine.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.root_finding import find_root
 from engine.taylor.source.recurrence import ORDER, TOLERANCE

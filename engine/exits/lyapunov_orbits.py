@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import read_only
-from engine.dynamics.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
+from engine.exits.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.representation import Result
