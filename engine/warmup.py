@@ -25,6 +25,7 @@ from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.taylor.jit.compiled_operations import CompiledCodeLimitError
 from engine.trajectories.trajectory import integrate_orbit
 
 # Integration time, in units of the well, of the calls that trigger compilation.
@@ -97,7 +98,10 @@ def _expected_seconds(potential: Potential) -> float:
 
 def is_ready_for_maps(potential: Potential) -> bool:
     """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
-    kernels = kernels_of(potential.in_well_units)
+    try:
+        kernels = kernels_of(potential.in_well_units)
+    except CompiledCodeLimitError:
+        return False
     return all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 

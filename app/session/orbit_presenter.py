@@ -143,7 +143,7 @@ class OrbitPresenter:
         drawings, chosen = self._restricted or [one.drawing for one in self._shown], self._state.chosen
         drawing = drawings[chosen] if drawings else None
         duration = (0.0, float(drawing.orbit.t[-1])) if drawing is not None else None
-        self.plots.show(self._state.potential, drawings, chosen, self._interval)
+        self.plots.show(drawings, chosen, self._interval)
         self.playback.follow(self._interval or duration)
         self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 
+import pytest
+
 from engine import Potential
 from engine.service import (
     is_ready_for_maps,
@@ -12,7 +14,9 @@ from engine.service import (
     prepare_kernels,
     seconds_until_ready_for_maps,
 )
+from engine.taylor import bound_kernels
 from engine.taylor.bound_kernels import load_kernels
+from engine.taylor.jit.compiled_operations import CompiledOperations
 from engine.warmup import _Compilations
 
 # Hénon-Heiles with the orientation of the original paper, and with another term: structures that no other test compiles.
@@ -86,3 +90,10 @@ def test_background_compilation_goes_on_after_an_error() -> None:
         compilations.wait()
     else:
         raise AssertionError("the error was lost")
+
+
+def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready(monkeypatch: pytest.MonkeyPatch) -> None:
+    full = CompiledOperations()
+    full.most = 0
+    monkeypatch.setattr(bound_kernels, "compiled_operations", full)
+    assert not is_ready_for_maps(Potential("refused", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (4, 3, 1e-3))))

@@ -249,6 +249,9 @@ class MapsView:
         """The ranges have stopped: report the window."""
         self._stop_waiting()
         x, y = self._ranges
+        # The page and its browser can change a range at once.
+        if not (x.start < x.end and y.start < y.end):
+            return
         window = Window(x.start, x.end, y.start, y.end)
         if self._spec is None or _is_near(window, self._spec.window):
             return

@@ -76,13 +76,7 @@ class OrbitPlots:
         """The page is used by touch: dragging over a history scrolls the page."""
         self._by_touch = True
 
-    def show(
-        self,
-        potential: Potential,
-        drawings: Sequence[OrbitCurves | None],
-        chosen: int,
-        interval: tuple[float, float] | None = None,
-    ) -> None:
+    def show(self, drawings: Sequence[OrbitCurves | None], chosen: int, interval: tuple[float, float] | None = None) -> None:
         """Draw orbits, highlighting the chosen one; None for orbits that are not known yet.
 
         The histories extend over `interval`; None is the whole duration.
@@ -93,7 +87,7 @@ class OrbitPlots:
         alphas = [1.0 if slot == chosen else _OTHERS_ALPHA for slot, _ in self._drawings]
         for name in _HISTORIES:
             self._histories[name].data = self._columns([getattr(drawing, name) for _, drawing in self._drawings], alphas)
-        self._show_paths(potential, alphas)
+        self._show_paths(alphas)
         self._scale_times(interval)
 
     def set_time(self, t: float | None) -> None:
@@ -171,15 +165,17 @@ class OrbitPlots:
         if interval is not None:
             set_range(self._times, max(begin, earliest), end)
 
-    def _show_paths(self, potential: Potential, alphas: list[float]) -> None:
+    def _show_paths(self, alphas: list[float]) -> None:
         if not self._drawings:
             self._paths.data, self._shades.data = self._columns([], []), {name: [] for name in self._shades.data}
             return
         drawn = self._drawings[-1][1]
         window, (x, y) = drawn.window, self._place
-        outlined = (potential, drawn.orbit.energy, self._palette)
+        orbit = drawn.orbit
+        assert orbit.potential is not None
+        outlined = (orbit.potential, orbit.energy, self._palette)
         if outlined != self._outlined:
-            self.outlines.show(MapSpec(potential, Plane.X_Y, drawn.orbit.energy, window=window))
+            self.outlines.show(MapSpec(orbit.potential, Plane.X_Y, orbit.energy, window=window))
             self._outlined = outlined
         for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
             set_range(edges, low, high)

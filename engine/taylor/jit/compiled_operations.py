@@ -5,6 +5,10 @@ from __future__ import annotations
 import threading
 
 
+class CompiledCodeLimitError(ValueError):
+    """No more code can be compiled."""
+
+
 class CompiledOperations:
     """The operations of all generated functions, each of which takes about 4 kB of memory when compiled.
 
@@ -22,10 +26,10 @@ class CompiledOperations:
         self._lock = threading.Lock()
 
     def add(self, count: int) -> None:
-        """Count operations before they are compiled. Raises ValueError if they exceed the limit."""
+        """Count operations before they are compiled. Raises `CompiledCodeLimitError` beyond the limit."""
         with self._lock:
             if self.most is not None and self.used + count > self.most:
-                raise ValueError(
+                raise CompiledCodeLimitError(
                     "the integrators of as many different potentials are compiled as this program may keep until its next start; "
                     "choose a potential with the same powers of x and y as an earlier one"
                 )

@@ -7,6 +7,7 @@ from bokeh.models import BoxSelectTool, BoxZoomTool, PanTool, WheelZoomTool
 
 from app.views.maps.map_plots import SHORT_TITLES, MapsView
 from app.views.maps.map_toolbar import Drag
+from engine import CASES, MapSpec, Plane, Window
 from plots.map_images import ON_DEMAND, TITLES
 
 ALWAYS = [name for name in TITLES if name not in ON_DEMAND]
@@ -76,3 +77,13 @@ def test_the_picker_of_a_touch_device_marks_one_picture(maps: MapsView) -> None:
     assert [name for name, plot in maps.figures.items() if "picked" in plot.css_classes] == ["origins"]
     maps.show_pictures(frozenset())
     assert picker.value == "basins"
+
+
+def test_reversed_ranges_are_no_window() -> None:
+    zooms: list[Window | None] = []
+    view = MapsView(lambda x, y: None, zooms.append, lambda: None, lambda box: None)
+    view._spec = MapSpec(CASES["I"], Plane.X_PX, 0.19)
+    for start, end in ((0.2, 0.1), (0.1, 0.2)):
+        view._ranges[0].update(start=start, end=end)
+        view._rested()
+    assert [(zoom.x_low, zoom.x_high) for zoom in zooms if zoom] == [(0.1, 0.2)]
