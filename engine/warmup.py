@@ -9,6 +9,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from types import ModuleType
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.taylor.bound_kernels import is_generated
 from engine.taylor.jit.compiled_operations import CompiledCodeLimitError
 from engine.trajectories.trajectory import integrate_orbit
 
@@ -39,6 +41,8 @@ _EXECUTOR = SerialExecutor()
 # kernel that finds starts outside.
 _SECONDS_PER_OPERATION = {"step": 3.0e-4, "jets": 2.5e-4, "potential_value": 2.5e-3}
 _SECONDS = {"shoot": 0.8, "propagate": 3.2}
+# Estimate for a potential of eight terms, as long as the number of operations is not known.
+_SECONDS_OF_NEW_POWERS = 4.0
 _MAP_KERNELS = (*_SECONDS_PER_OPERATION, *_SECONDS)
 
 
@@ -58,6 +62,7 @@ class _Compilations:
 
     def run(self, potential: Potential, calls: tuple[Callable[[], object], ...]) -> None:
         """Make the calls that compile the kernels for maps; background compilation waits meanwhile."""
+        kernels_of(potential.in_well_units)
         try:
             for call in calls:
                 expected, begin = _expected_seconds(potential), time.monotonic()
@@ -88,7 +93,9 @@ _for_maps = _Compilations()
 
 def _expected_seconds(potential: Potential) -> float:
     """Time to compile the kernels of maps that are not compiled yet."""
-    kernels = kernels_of(potential.in_well_units)
+    kernels = _known_kernels(potential)
+    if kernels is None:
+        return _SECONDS_OF_NEW_POWERS
     left = {name: getattr(kernels, name) for name in _MAP_KERNELS if not getattr(kernels, name).signatures}
     return sum(
         _SECONDS[name] if name in _SECONDS else _SECONDS_PER_OPERATION[name] * float(kernel.function.operations)
@@ -96,13 +103,21 @@ def _expected_seconds(potential: Potential) -> float:
     )
 
 
+def _known_kernels(potential: Potential) -> ModuleType | None:
+    """The kernels of a potential; None if they are not generated yet, or cannot be compiled any more."""
+    well = potential.in_well_units
+    if not is_generated(well.terms):
+        return None
+    try:
+        return kernels_of(well)
+    except CompiledCodeLimitError:
+        return None
+
+
 def is_ready_for_maps(potential: Potential) -> bool:
     """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
-    try:
-        kernels = kernels_of(potential.in_well_units)
-    except CompiledCodeLimitError:
-        return False
-    return all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
+    kernels = _known_kernels(potential)
+    return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
 
 def seconds_until_ready_for_maps(potential: Potential) -> float:
@@ -115,8 +130,9 @@ def seconds_until_ready_for_maps(potential: Potential) -> float:
 
     Returns
     -------
-    Seconds, from the number of operations of the kernels that are left and the speed of earlier compilations in this process; 0
-    when they are compiled, or take longer than expected. Kernels that the cache contains take a fraction of a second instead.
+    Seconds, from the number of operations of the kernels that are left, once it is known, and the speed of earlier
+    compilations in this process; 0 when they are compiled, or take longer than expected. Kernels that the cache contains take a
+    fraction of a second instead.
     """
     return _for_maps.seconds_left(potential)
 

@@ -29,6 +29,8 @@ _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages)
 # Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
+# Powers of x and y of the potentials whose functions are generated.
+_generated_powers: set[frozenset[tuple[int, int]]] = set()
 
 
 def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleType:
@@ -51,6 +53,11 @@ def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleTyp
     """
     with _lock:
         return _load(terms, channels, reach)
+
+
+def is_generated(terms: Terms) -> bool:
+    """Whether functions are generated for a potential with the same powers of x and y; this takes 0.3 s."""
+    return _powers(terms) in _generated_powers
 
 
 class GeneratedKernel:
@@ -122,6 +129,7 @@ class _BoundKernel:
 def _load(terms: Terms, channels: int, reach: float) -> ModuleType:
     code = generate_code(terms, channels, reach)
     name, generated = _define_module(code)
+    _generated_powers.add(_powers(terms))
     coefficients = code.tabulate(terms)
     bound = ModuleType(name)
     for each, function in generated.items():
@@ -135,6 +143,10 @@ def _load(terms: Terms, channels: int, reach: float) -> ModuleType:
                 if needed:
                     setattr(bound, each, _BoundKernel(function, needed, coefficients))
     return bound
+
+
+def _powers(terms: Terms) -> frozenset[tuple[int, int]]:
+    return frozenset((i, j) for i, j, _ in terms)
 
 
 @functools.cache

@@ -92,8 +92,22 @@ def test_background_compilation_goes_on_after_an_error() -> None:
         raise AssertionError("the error was lost")
 
 
-def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready(monkeypatch: pytest.MonkeyPatch) -> None:
-    full = CompiledOperations()
-    full.most = 0
-    monkeypatch.setattr(bound_kernels, "compiled_operations", full)
-    assert not is_ready_for_maps(Potential("refused", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (4, 3, 1e-3))))
+@pytest.fixture
+def counted(monkeypatch: pytest.MonkeyPatch) -> CompiledOperations:
+    operations = CompiledOperations()
+    monkeypatch.setattr(bound_kernels, "compiled_operations", operations)
+    return operations
+
+
+def test_the_question_whether_a_potential_is_ready_generates_no_code(counted: CompiledOperations) -> None:
+    potential = Potential("asked", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3), (4, 3, 1e-3)))
+    assert not is_ready_for_maps(potential)
+    assert seconds_until_ready_for_maps(potential) > 0.0
+    assert counted.used == 0
+
+
+def test_a_potential_beyond_the_limit_of_compiled_code_is_not_ready(counted: CompiledOperations) -> None:
+    load_kernels(POTENTIAL.terms, POTENTIAL.channels)
+    counted.most = 0
+    same_powers = Potential("refused", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, 0.7)))
+    assert not is_ready_for_maps(same_powers)
