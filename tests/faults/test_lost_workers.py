@@ -80,7 +80,7 @@ def test_full_disk_is_no_loss_of_the_cluster() -> None:
 def sweep_and_lose(folder: Path, lose: Callable[[Any], None] | None) -> None:
     """Run the command on a cluster of two processes, with a loss after the first block."""
     os.chdir(folder)
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
         run_whole, lost = engine.run_sweep, []
 
         def on_progress(share: float) -> None:

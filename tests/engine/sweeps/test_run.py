@@ -436,7 +436,12 @@ class TestCluster:
     def test_dask_cluster_is_byte_identical(self, tmp_path: Path, straight: Path, processes: bool) -> None:
         distributed = pytest.importorskip("distributed")
         cluster = distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=processes, protocol="tcp", host="127.0.0.1", dashboard_address=None
+            n_workers=2,
+            threads_per_worker=1,
+            processes=processes,
+            protocol="tcp",
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
         )
         with cluster, distributed.Client(cluster) as client:
             executor: Executor = client.get_executor()
