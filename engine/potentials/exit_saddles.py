@@ -24,6 +24,8 @@ _END_DISTANCE = 1e-4
 _FAR = 10.0
 
 _RELATIVE_ERROR = 1e-9
+# Length of the first step, in units of the distance from the saddle.
+_FIRST_MOVE = 1e-6
 # Limit on the steps of all descents of a potential, some seconds. Most potentials need about 1 000.
 _MOST_STEPS = 50_000
 
@@ -144,7 +146,10 @@ class _Descent:
         first_step = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
         start = self.points[saddle] + side * first_step * self.unstable_directions[saddle]
         # Without an end in time: a descent takes longer the flatter its valley is.
-        line = LSODA(self.flow, 0.0, start, np.inf, rtol=_RELATIVE_ERROR, atol=_RELATIVE_ERROR * self.length)
+        tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
+        # LSODA's own first step can be too long for its corrector to converge.
+        first = _FIRST_MOVE * first_step / np.hypot(*self.flow(0.0, start))
+        line = LSODA(self.flow, 0.0, start, np.inf, first_step=first, **tolerances)
         while self.steps_left and line.status == "running":
             self.steps_left -= 1
             line.step()

@@ -10,6 +10,7 @@ from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.formula_parser import parse_formula
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import review_potential
+from tests.fuzz.test_random_wells import random_well
 
 # A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.
 RING = parse_formula("((x − 1.1)² + y² − 1)² + 0.924x")
@@ -58,3 +59,9 @@ def test_descents_that_take_too_many_steps_are_a_refusal(monkeypatch: pytest.Mon
     refusal = review_potential(parse_formula("x²/2 + y²/2 − 0.9876xy²")).refusal
     assert refusal is not None
     assert "steepest descent" in refusal
+
+
+def test_descents_from_a_saddle_far_beyond_the_others_end() -> None:
+    potential = random_well(810)
+    assert np.hypot(*potential.critical_points.T).max() > 560.0
+    assert potential.channels == 4
