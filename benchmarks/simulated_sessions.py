@@ -115,15 +115,16 @@ class Channel:
         """Kind and content of each message from the server until the socket closes; binary buffers are skipped."""
         try:
             while True:
-                header, _, content = [await self._part() for _ in range(3)]
+                header, _, content = [await self.part() for _ in range(3)]
                 header = json.loads(header)
                 for _ in range(2 * header.get("num_buffers", 0)):
-                    await self._part()
+                    await self.part()
                 yield header["msgtype"], content
         except EOFError:
             return
 
-    async def _part(self) -> Any:
+    async def part(self) -> Any:
+        """The next part of a message."""
         # A closed socket gives None once, then no further message.
         part = await self._socket.read_message()
         if part is None:

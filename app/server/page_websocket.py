@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Awaitable, Sequence
 from typing import Any
 
 import panel as pn
@@ -13,8 +13,10 @@ from bokeh.document import Document
 from bokeh.document.events import ModelChangedEvent
 from bokeh.model import Model
 from bokeh.protocol.exceptions import ProtocolError
+from bokeh.protocol.message import Message
 from panel.io.server import WSHandler
 from panel.io.state import set_curdoc
+from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from app.runtime.process_state import process_state
 from app.server.admission import check_session
@@ -50,6 +52,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
         self._guard, self._closed = MessageGuard(), False
+        self._writes: list[Awaitable[None]] = []
         self._told = -PASSING_SECONDS
         try:
             check_session(self._token, self.application_context)
@@ -62,6 +65,22 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             await super()._async_open(token)
         except ProtocolError as error:
             self._refuse_connection(error)
+
+    async def send_message(self, message: Message[Any]) -> None:
+        """Write all parts of a message at once, then wait until the socket has taken them.
+
+        Bokeh waits after each part and locks the socket meanwhile. While it is locked, Panel postpones its changes, and some of
+        them until the next change: ``panel.io.document._dispatch_msgs`` ends the postponement although changes were added.
+        """
+        await super().send_message(message)
+        writes, self._writes = self._writes, []
+        for error in await asyncio.gather(*writes, return_exceptions=True):
+            if isinstance(error, BaseException) and not isinstance(error, WebSocketClosedError):
+                raise error
+
+    async def write_message(self, message: str | bytes | dict[str, Any], binary: bool = False, locked: bool = True) -> None:
+        """Begin to write a part of a message; `send_message` waits for the end."""
+        self._writes.append(WebSocketHandler.write_message(self, message, binary))
 
     async def on_message(self, message: str | bytes) -> None:
         """Hand a message on to Bokeh if a page can have sent it, when the page has its share of time left."""

@@ -1,4 +1,4 @@
-"""Messages of a page that takes more than its share of the event loop's time wait, and the page says so."""
+"""The socket of a page: changes reach the page at once, and messages beyond the page's share of the event loop's time wait."""
 
 from __future__ import annotations
 
@@ -9,15 +9,18 @@ from typing import Any
 
 import panel as pn
 import pytest
-from bokeh.application import Application
 from bokeh.application.handlers import FunctionHandler
 from bokeh.document import Document
 from bokeh.models import Slider
+from bokeh.server import session as bokeh_session
 from bokeh.server import tornado as bokeh_tornado
 from bokeh.server.server import Server
+from panel.io.application import Application
+from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient
 from tornado.ioloop import IOLoop
 
+from app.bokeh_patches.inline_callbacks import call_inline
 from app.runtime import fair_share as fair_share_module
 from app.runtime import process_state as process_state_module
 from app.runtime.process_state import ProcessState
@@ -26,6 +29,9 @@ from app.server.url_patterns import PageHandler
 from app.views.components.notice import Notice
 from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
+
+# More than the buffers of a connection hold.
+LONG = "x" * 8 * 2**20
 
 PATTERNS = [("/?", PageHandler), ("/ws", PageWebSocket)]
 
@@ -44,19 +50,21 @@ def build(document: Document) -> None:
 
 
 @asynccontextmanager
-async def pages(count: int) -> AsyncIterator[tuple[Channel, Document]]:
+async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIterator[tuple[Channel, Document]]:
     """Open pages; the channel and the document of the last one."""
-    server = Server({"/app": Application(FunctionHandler(build))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
+    server = Server({"/app": Application(FunctionHandler(make))}, port=0, io_loop=IOLoop.current(), address="127.0.0.1")
     server.start()
     address, channels = f"http://127.0.0.1:{server.port}/app", []
-    for _ in range(count):
-        page = await AsyncHTTPClient().fetch(address)
-        channels.append(await Channel.connect(address, page.body.decode()))
-        assert await receive(channels[-1], "ACK")
-    yield channels[-1], server.get_sessions("/app")[-1].document
-    for channel in channels:
-        channel.close()
-    server.stop()
+    try:
+        for _ in range(count):
+            page = await AsyncHTTPClient().fetch(address)
+            channels.append(await Channel.connect(address, page.body.decode()))
+            assert await receive(channels[-1], "ACK")
+        yield channels[-1], server.get_sessions("/app")[-1].document
+    finally:
+        for channel in channels:
+            channel.close()
+        server.stop()
 
 
 async def receive(channel: Channel, kind: str) -> str:
@@ -67,9 +75,9 @@ async def receive(channel: Channel, kind: str) -> str:
     raise EOFError
 
 
-def run(count: int, scenario: Callable[[Channel, Document], Awaitable[None]]) -> None:
+def run(count: int, scenario: Callable[[Channel, Document], Awaitable[None]], make: Callable[[Document], None] = build) -> None:
     async def with_pages() -> None:
-        async with asyncio.timeout(30), pages(count) as (channel, document):
+        async with asyncio.timeout(30), pages(count, make) as (channel, document):
             await scenario(channel, document)
 
     run_on_new_loop(with_pages)
@@ -116,3 +124,41 @@ def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState
 
     run(count, scenario)
     assert delayed_messages(state) == 0
+
+
+def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bokeh_session, "_run_in_executor", call_inline)
+    pane = pn.pane.HTML()
+
+    def build_with_pane(document: Document) -> None:
+        build(document)
+        pane.server_doc(document)
+
+    async def scenario(channel: Channel, document: Document) -> None:
+        channel.emit("document_ready")
+        await move_slider(channel, document)
+        session, texts = document.session_context.session, iter(range(5))
+
+        async def lengthen_title() -> asyncio.Task[None]:
+            """Begin to send a long text under the session's lock."""
+            title = f"{next(texts)}{LONG}"
+            task = asyncio.create_task(session.with_document_locked(setattr, slider_of(document), "title", title))
+            for _ in range(100):
+                await asyncio.sleep(0)
+            return task
+
+        tasks = [await lengthen_title()]
+        for _ in range(3):
+            with set_curdoc(document):
+                pane.object = f"{next(texts)}{LONG}"
+        assert "title" in await receive(channel, "PATCH-DOC")
+        # The first part of the three changes, whose end is still under way.
+        await channel.part()
+        tasks.append(await lengthen_title())
+        with set_curdoc(document):
+            pane.object = "the last change"
+        while "the last change" not in str(await channel.part()):
+            pass
+        await asyncio.gather(*tasks)
+
+    run(1, scenario, build_with_pane)
