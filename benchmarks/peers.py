@@ -30,7 +30,7 @@ HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-11
 
 def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
     """Interior starts of a map, (n, 4), and their fates, (n,)."""
-    result = compute_map(spec, executor=one_core())
+    result = compute_map(spec)
     x, ordinate = np.meshgrid(result.x, result.ordinate)
     inside = result.interior
     return start_states(spec.potential, spec.plane, float(spec.energy), x[inside], ordinate[inside]), result.fate[inside]
@@ -154,9 +154,10 @@ def main() -> None:
         potential = CASES[case]
         spec = MapSpec(potential, Plane.X_PX, energy, t_max=T_MAX)
         states, fates = starts_of(spec)
-        begin = time.perf_counter()
-        compute_map(spec, executor=one_core())
-        engine_rate = len(states) / (time.perf_counter() - begin)
+        with one_core() as executor:
+            begin = time.perf_counter()
+            compute_map(spec, executor=executor)
+            engine_rate = len(states) / (time.perf_counter() - begin)
         print(f"| {case} | {energy} | this engine, whole map | {len(states)} | {engine_rate:.0f} | 1 | 0 |")
         order = np.random.default_rng(1).permutation(len(states))
         for name, classify in PEERS.items():

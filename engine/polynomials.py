@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from typing import Any
+
+import numpy as np
 
 Powers = tuple[int, int]
 Terms = Mapping[Powers, float]
@@ -32,6 +35,22 @@ def largest_coefficients(*polynomials: Terms) -> dict[int, float]:
         for (i, j), c in terms.items():
             largest[i + j] = max(largest.get(i + j, 0.0), abs(c))
     return largest
+
+
+def evaluate(terms: Terms, x: Any, y: Any) -> Any:
+    """The polynomial at (x, y); arrays broadcast."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
+    for (i, j), c in terms.items():
+        total = total + c * _power(x, i) * _power(y, j)
+    return total[()]
+
+
+def _power(x: np.ndarray, i: int) -> np.ndarray:
+    """x to an integer power, with results for x and −x equal up to sign; NumPy's powers above 3 are not."""
+    if i < 4:
+        return x**i
+    return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
 
 
 def multiply[C: (float, complex, Fraction)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:

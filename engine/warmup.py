@@ -62,6 +62,7 @@ class _Compilations:
 
     def run(self, potential: Potential, calls: tuple[Callable[[], object], ...]) -> None:
         """Make the calls that compile the kernels for maps; background compilation waits meanwhile."""
+        # The estimates need the number of operations.
         kernels_of(potential.in_well_units)
         try:
             for call in calls:

@@ -8,7 +8,6 @@ outward. The orbit in between is the root of the velocity along the channel at t
 from __future__ import annotations
 
 from collections.abc import Callable
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -81,10 +80,10 @@ class _Search(NamedTuple):
 
 
 class _Shot(NamedTuple):
-    """A trial orbit, at rest at its start and nearly at rest at its end; steps (n, 5) of x, y, px, py, t at their starts."""
+    """A trial orbit, at rest at its start and nearly at rest at its end: Taylor coefficients (2, 20, n) from times (n,)."""
 
-    kernels: ModuleType
-    steps: np.ndarray
+    coefficients: np.ndarray
+    begins: np.ndarray
     half_period: float
 
     @property
@@ -97,12 +96,10 @@ class _Shot(NamedTuple):
         return self.positions(np.linspace(0.0, self.half_period, _SAMPLES_PER_HALF_PERIOD + 1))
 
     def positions(self, times: np.ndarray) -> np.ndarray:
-        """(2, n) x and y at `times` (n,), from the Taylor series of the steps."""
-        jets = np.empty((2, ORDER + 1, len(self.steps)))
-        self.kernels.jets(len(self.steps), *(np.ascontiguousarray(column) for column in self.steps[:, :4].T), *jets)
-        row = np.searchsorted(self.steps[:, 4], times, side="right") - 1
-        powers = (times - self.steps[row, 4]) ** np.arange(ORDER + 1)[:, None]
-        path: np.ndarray = (jets[:, :, row] * powers).sum(axis=1)
+        """(2, m) x and y at `times` (m,)."""
+        step = np.searchsorted(self.begins, times, side="right") - 1
+        powers = (times - self.begins[step]) ** np.arange(ORDER + 1)[:, None]
+        path: np.ndarray = (self.coefficients[:, :, step] * powers).sum(axis=1)
         return path
 
 
@@ -236,7 +233,9 @@ def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search
     velocity, half_period, count = kernels.shoot(u, *arguments)
     if not (np.isfinite(half_period) and abs(velocity) < rest):
         return None
-    return _Shot(kernels, steps[:count], half_period)
+    coefficients = np.empty((2, ORDER + 1, count))
+    kernels.jets(count, *(np.ascontiguousarray(column) for column in steps[:count, :4].T), *coefficients)
+    return _Shot(coefficients, steps[:count, 4], half_period)
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:

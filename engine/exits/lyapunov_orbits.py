@@ -195,7 +195,7 @@ def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
     place = potential, energy, channel
-    orbit = continue_in_energy(*place) or find_from_both_ends(*place) if follow else find_directly(*place)
+    orbit = (continue_in_energy(*place) or find_from_both_ends(*place)) if follow else find_directly(*place)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)

@@ -12,7 +12,7 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from engine.polynomials import Powers, Terms, degree, largest_coefficients, substitute
+from engine.polynomials import Powers, Terms, degree, evaluate, largest_coefficients, substitute
 from engine.taylor.source.cauchy_products import derivative
 
 # Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x.
@@ -94,7 +94,7 @@ def winding_number(first: Terms, second: Terms, radius: float) -> int:
     angle = np.linspace(0.0, 2.0 * np.pi, 721)
     for _ in range(_MOST_REFINEMENTS):
         x, y = radius * np.cos(angle), radius * np.sin(angle)
-        rotation = np.diff(np.arctan2(_evaluate(second, x, y), _evaluate(first, x, y)))
+        rotation = np.diff(np.arctan2(evaluate(second, x, y), evaluate(first, x, y)))
         rotation = (rotation + np.pi) % (2.0 * np.pi) - np.pi
         too_large = np.flatnonzero(np.abs(rotation) > _LARGEST_ROTATION)
         if not too_large.size:
@@ -239,14 +239,7 @@ def _exact_value(terms: Mapping[Powers, Decimal], x: Decimal, y: Decimal) -> Dec
 
 def _is_degenerate(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
     """(n,) whether the Jacobian of (p, q) is singular at each common root: the curves p = 0 and q = 0 touch there."""
-    jacobian = [[_evaluate(derivative(f, axis), *points.T) for axis in (0, 1)] for f in (p, q)]
+    jacobian = [[evaluate(derivative(f, axis), *points.T) for axis in (0, 1)] for f in (p, q)]
     singular_values = np.linalg.svd(np.moveaxis(np.array(jacobian), -1, 0), compute_uv=False)
     flags: np.ndarray = singular_values[:, 1] <= _SINGULAR_RATIO * np.maximum(singular_values[:, 0], 1.0)
     return flags
-
-
-def _evaluate(terms: Terms, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    total = np.zeros_like(x)
-    for (i, j), c in terms.items():
-        total = total + c * x**i * y**j
-    return total

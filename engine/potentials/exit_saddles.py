@@ -24,7 +24,7 @@ _END_DISTANCE = 1e-4
 _FAR = 10.0
 
 _RELATIVE_ERROR = 1e-9
-# Length of the first step, in units of the distance from the saddle.
+# Length of the first step, in units of the start's distance from the saddle.
 _FIRST_MOVE = 1e-6
 # Limit on the steps of all descents of a potential, some seconds. Most potentials need about 1 000.
 _MOST_STEPS = 50_000
@@ -143,13 +143,13 @@ class _Descent:
         from scipy.integrate import LSODA
 
         others = np.delete(np.arange(len(self.points)), saddle)
-        first_step = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
-        start = self.points[saddle] + side * first_step * self.unstable_directions[saddle]
+        distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
+        start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
         # Without an end in time: a descent takes longer the flatter its valley is.
         tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
         # LSODA's own first step can be too long for its corrector to converge.
-        first = _FIRST_MOVE * first_step / np.hypot(*self.flow(0.0, start))
-        line = LSODA(self.flow, 0.0, start, np.inf, first_step=first, **tolerances)
+        first_step = _FIRST_MOVE * distance / np.hypot(*self.flow(0.0, start))
+        line = LSODA(self.flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
         while self.steps_left and line.status == "running":
             self.steps_left -= 1
             line.step()
@@ -159,9 +159,7 @@ class _Descent:
             if np.hypot(*line.y) > self.far:
                 return -1
         x, y = self.points[saddle]
-        raise DescentError(
-            f"The lines of steepest descent from the saddle ({x:.6g}, {y:.6g}) do not end within {_MOST_STEPS} steps."
-        )
+        raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
         distances: np.ndarray = np.hypot(*(self.points - place).T)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.arrays import read_only
-from engine.polynomials import HIGHEST_DEGREE, Powers, Terms
+from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, evaluate
 from engine.potentials.critical_points import characteristic_length, find_critical_points
 from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.stored_points import stored_points
@@ -107,16 +107,16 @@ class Potential(Result):
 
     def value(self, x: Any, y: Any) -> Any:
         """V at (x, y); arrays broadcast."""
-        return _evaluate(self.coefficients, x, y)
+        return evaluate(self.coefficients, x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """(V_x, V_y) at (x, y); arrays broadcast."""
         along_x, along_y = self.slopes
-        return _evaluate(along_x, x, y), _evaluate(along_y, x, y)
+        return evaluate(along_x, x, y), evaluate(along_y, x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
         """(V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
-        return tuple(_evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
+        return tuple(evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
         """(2, 2) the Hessian matrix of V at one point."""
@@ -330,21 +330,6 @@ def _make_symmetric(points: np.ndarray) -> None:
     right = points[points[:, 0] > 0.0]
     for left in np.flatnonzero(points[:, 0] < 0.0):
         points[left] = right[np.argmin(np.hypot(*(right - points[left] * [-1.0, 1.0]).T))] * [-1.0, 1.0]
-
-
-def _evaluate(terms: Terms, x: Any, y: Any) -> Any:
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
-    for (i, j), c in terms.items():
-        total = total + c * _power(x, i) * _power(y, j)
-    return total[()]
-
-
-def _power(x: np.ndarray, i: int) -> np.ndarray:
-    """x to an integer power, with results for x and −x equal up to sign; NumPy's powers above 3 are not."""
-    if i < 4:
-        return x**i
-    return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
 
 
 _HARMONIC = ((2, 0, 0.5), (0, 2, 0.5))

@@ -150,6 +150,7 @@ def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoi
     if refusal is not None:
         return (), refusal
     try:
+        # Both follow lines of steepest descent or ascent, which may fail.
         points, _ = _critical_points(potential), potential.channel_mergers
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"

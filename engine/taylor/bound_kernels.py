@@ -56,7 +56,7 @@ def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleTyp
 
 
 def is_generated(terms: Terms) -> bool:
-    """Whether functions are generated for a potential with the same powers of x and y; this takes 0.3 s."""
+    """Whether functions were generated for a potential with the same powers of x and y; to generate them takes 0.3 s."""
     return _powers(terms) in _generated_powers
 
 
