@@ -15,11 +15,13 @@ from bokeh.models import Slider
 from bokeh.server import session as bokeh_session
 from bokeh.server import tornado as bokeh_tornado
 from bokeh.server.server import Server
+from bokeh.server.session import ServerSession
 from panel.io.application import Application
 from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient
 from tornado.ioloop import IOLoop
 
+from app.bokeh_patches.batched_patches import batch_patches
 from app.bokeh_patches.inline_callbacks import call_inline
 from app.runtime import fair_share as fair_share_module
 from app.runtime import process_state as process_state_module
@@ -64,6 +66,9 @@ async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIt
     finally:
         for channel in channels:
             channel.close()
+            # What is under way must arrive before the server's tasks end.
+            async for _ in channel.messages():
+                pass
         server.stop()
 
 
@@ -128,6 +133,8 @@ def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState
 
 def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bokeh_session, "_run_in_executor", call_inline)
+    monkeypatch.setattr(ServerSession, "_send_pending_patches", ServerSession._send_pending_patches)
+    batch_patches()
     pane = pn.pane.HTML()
 
     def build_with_pane(document: Document) -> None:
