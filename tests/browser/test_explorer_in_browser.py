@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import expect
 
 from app.state.view_state import ViewState
+from app.views.components.notice import PASSING_SECONDS
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map, integrate_orbit
 from tests.browser.explorer_page import ExplorerPage
 
@@ -114,10 +115,12 @@ def test_a_bounded_orbit_is_judged_by_its_sali(for_orbits: ExplorerPage) -> None
     expect(for_orbits.text(re.compile("Bounded (until t = 100 000|for ever .*) and (regular|chaotic)"))).to_be_visible()
 
 
-def test_a_click_on_a_forbidden_pixel_gives_a_message_and_adds_no_start(shared: ExplorerPage) -> None:
+def test_a_click_on_a_forbidden_pixel_gives_a_passing_message_and_adds_no_start(shared: ExplorerPage) -> None:
     x_low, _, low, _ = shared.ranges("basins")
     shared.click("basins", x_low + 0.02, low + 0.02)
-    expect(shared.text("Forbidden: no orbit of this energy can start here")).to_be_visible()
+    message = shared.text("Forbidden: no orbit of this energy can start here")
+    expect(message).to_be_visible()
+    expect(message).to_have_css("animation-duration", f"{PASSING_SECONDS:g}s")
     assert not shared.model_data("starts").get("x")
 
 

@@ -15,7 +15,7 @@ NAME = "notice"
 """Name of the Bokeh model, by which the server finds it in a document."""
 
 PASSING_SECONDS = 5.0
-"""Duration of passing notices, as in `theme.css`."""
+"""Duration of passing notices."""
 
 _ON_CONNECTION_LOST = """
 const pane = Bokeh.documents[0].get_model_by_name(name)
@@ -79,7 +79,8 @@ def _set_text(document: Document, html: str) -> None:
 
 def _passing(sentence: str) -> str:
     # The time makes the same message twice two changes.
-    return _html(sentence, f"class='notice passing' data-time='{time.monotonic_ns()}'")
+    duration = f"style='animation-duration: {PASSING_SECONDS}s'"
+    return _html(sentence, f"class='notice passing' {duration} data-time='{time.monotonic_ns()}'")
 
 
 def _html(sentence: str, attributes: str = "class='notice'", role: str = "status") -> str:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import panel as pn
 from bokeh.document import Document
 
-import app
-from app.views.components.notice import NAME, PASSING_SECONDS, Notice, show_lasting_notice, show_passing_notice
+from app.views.components.notice import NAME, Notice, show_lasting_notice, show_passing_notice
 
 
 def test_the_same_notice_twice_is_two_changes() -> None:
@@ -46,11 +43,6 @@ def test_a_passing_notice_of_the_server_can_be_shown_twice() -> None:
         texts.add(document.get_model_by_name(NAME).text)
     assert len(texts) == 2
     assert all("notice passing" in text for text in texts)
-
-
-def test_passing_notices_last_as_long_as_their_animation() -> None:
-    theme = (Path(app.__file__).parent / "static" / "theme.css").read_text()
-    assert f"animation: notice-passes {PASSING_SECONDS:g}s forwards" in theme
 
 
 def test_a_document_without_a_notice_is_left_alone() -> None:
