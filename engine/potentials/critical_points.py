@@ -28,7 +28,7 @@ _RESIDUAL_TOLERANCE = 1e-12
 _NEWTON_STEPS = 60
 _MANY_DIGITS = 60
 _GRID = np.linspace(-3.0, 3.0, 31)
-# Eigenvalues beyond this distance are infinite ones with rounding errors.
+# Eigenvalues beyond this distance are infinite ones with rounding errors, and Newton's method is on its way to infinity.
 _LARGEST_ROOT = 1e5
 
 _MOST_REFINEMENTS = 60
@@ -166,12 +166,12 @@ def _newton_roots(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
         for _ in range(_NEWTON_STEPS):
             residual, step = _newton_step(polynomials, points)
             scale = 1.0 + np.hypot(*points.T)
-            length = np.hypot(*step.T)
+            length, near = np.hypot(*step.T), scale < _LARGEST_ROOT
             at_root = residual < _RESIDUAL_TOLERANCE * scale**highest
             # On a curve of common roots the step can be infinite or NaN; such a point has converged.
-            converged = at_root & ~(np.isfinite(length) & (length > _SIMPLE_ROOT_TOLERANCE * scale))
+            converged = near & at_root & ~(np.isfinite(length) & (length > _SIMPLE_ROOT_TOLERANCE * scale))
             roots.append(points[converged] - np.where(np.isfinite(step[converged]), step[converged], 0.0))
-            continues = np.isfinite(length) & ~converged & (scale < _LARGEST_ROOT)
+            continues = near & np.isfinite(length) & ~converged
             points = points[continues] - step[continues]
     return np.concatenate([*roots, points[at_root[continues]]])
 
