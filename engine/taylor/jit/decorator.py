@@ -26,6 +26,7 @@ def subroutine(function: Callable[..., Any]) -> Any:
     """The function, compiled as a part of the kernels that call it; from Python it runs uncompiled.
 
     It compiles in less time than a kernel, because it has no interface to Python, no file in the cache, and no second version for
-    arguments that are literals.
+    arguments that are literals. It is always inlined: functions of the same name in several kernels would share the code of the
+    kernel that is loaded first, and the compiler can round differently there.
     """
-    return register_jitable(**_OPTIONS)(function)
+    return register_jitable(**_OPTIONS, forceinline=True)(function)

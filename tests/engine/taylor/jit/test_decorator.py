@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
+from numba import njit
 
+from engine import CASES, find_lyapunov_orbits
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.kernel_files import CACHE_VARIABLE
+from engine.taylor.kernels.periodic_shooting import shoot
 
 
 @subroutine
@@ -29,3 +33,15 @@ def test_a_subroutine_is_part_of_the_file_of_its_kernel(tmp_path: Path, monkeypa
 
 def test_a_subroutine_can_be_called_from_python() -> None:
     assert twice(1.5) == 3.0
+
+
+def test_the_code_of_a_kernel_contains_its_subroutines() -> None:
+    """Code of the same name in another kernel would replace it and round differently, depending on the order of loading."""
+    find_lyapunov_orbits(CASES["I"], 0.2)
+    # Compiled anew, since code from the cache cannot be inspected.
+    signature = shoot.signatures[0]
+    compiled = njit(nogil=True, error_model="numpy", fastmath={"contract"})(shoot.py_func)
+    compiled.compile(signature)
+    defined = re.findall(r"^define .*", compiled.inspect_llvm(signature), re.MULTILINE)
+    assert len(defined) > 1
+    assert not [line for line in defined if "_turning_point" in line or "find_wall" in line]
