@@ -49,6 +49,7 @@ def stored_points(kind: str, terms: Terms, find: Callable[[], np.ndarray]) -> np
 @functools.cache
 def _versions() -> tuple[str, ...]:
     """Whatever else the results depend on: the modules that find them and the libraries below."""
-    modules = (Path(__file__).with_name(f"{name}.py") for name in ("critical_points", "exit_saddles"))
+    engine = Path(__file__).parents[1]
+    modules = (engine / f"{name}.py" for name in ("polynomials", "potentials/critical_points", "potentials/exit_saddles"))
     sources = (hashlib.sha256(module.read_bytes()).hexdigest() for module in modules)
     return (*sources, *(metadata.version(package) for package in ("numpy", "scipy")))

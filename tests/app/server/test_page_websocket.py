@@ -133,6 +133,7 @@ def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState
 
 def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bokeh_session, "_run_in_executor", call_inline)
+    # Restored after the test.
     monkeypatch.setattr(ServerSession, "_send_pending_patches", ServerSession._send_pending_patches)
     batch_patches()
     pane = pn.pane.HTML()

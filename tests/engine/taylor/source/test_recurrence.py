@@ -234,7 +234,7 @@ def test_a_step_is_vectorised_throughout(name: str) -> None:
     assembly = "".join(step.inspect_asm().values())
     packed, scalar = (len(re.findall(rf"\bv(?:fn?m|mul)\w*{kind}\b", assembly)) for kind in ("pd", "sd"))
     assert packed > 300
-    # The scalar remainder of the loop, for a number of lanes that is not a multiple of the vector length, is never run.
+    # The scalar remainder of the loop, for numbers of lanes that are not multiples of the vector length, runs for single orbits.
     assert packed >= scalar
     assert "sqrt" not in assembly
     assert "call" not in assembly.split("vfm", 1)[1].rsplit("vfm", 1)[0]
