@@ -49,7 +49,7 @@ def step_nanoseconds(potential: Potential) -> float:
         orbits = Orbits(state, np.zeros(ORBITS), counts[1], counts[2], fate, pending)
         exits = Exits(gates, curves, counts[0])
         started = time.thread_time()
-        steps = kernels.propagate(np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, ORBITS, exits, orbits)
+        steps = kernels.propagate(np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, 0, exits, orbits)
         shortest = min(shortest, (time.thread_time() - started) / steps)
     return shortest * 1e9
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, fields, replace
-from itertools import islice
 
 import numpy as np
 
@@ -18,16 +17,16 @@ from engine.exits.interior import find_outside_starts
 from engine.exits.lyapunov_orbits import exit_gates
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
-from engine.taylor.source.recurrence import TOLERANCE
-
-LANES = 64
-"""Orbits integrated side by side by a kernel."""
+from engine.taylor.source.recurrence import LANES, TOLERANCE
 
 LARGEST_TILE = 2048
 """Largest number of orbits per tile."""
 
-STEP_BUDGET = 2_000_000
-"""Largest number of steps per kernel call, about 50 ms: the interval at which cancellation and progress are handled."""
+STEP_BUDGET = 1_000_000
+"""Largest number of steps of lanes per kernel call, about 15 ms: the interval at which cancellation and progress are handled."""
+
+# With fewer orbits the lanes are not full enough: a worker gives them back, and they are joined with others.
+_FULL_LANES = LANES - 2 * VECTOR
 
 
 @dataclass
@@ -193,31 +192,50 @@ def _advance_tile(
     tile: _Tile,
     horizon: float,
     final: bool,
-    tolerance: float = TOLERANCE,
+    tolerance: float,
+    least: int,
 ) -> _Tile:
-    """Propagate the active orbits of a tile by `STEP_BUDGET` steps; runs in a worker."""
-    kernels = kernels_of(potential)
-    todo = np.flatnonzero(tile.active)
+    """Propagate the orbits of a tile by `STEP_BUDGET` steps, or until fewer than `least` are active; runs in a worker."""
     b = tile.batch
-    kernels.propagate(
-        todo, horizon, final, tolerance, STEP_BUDGET, LANES, Exits(gates, curves, b.curve_row),
+    kernels_of(potential).propagate(
+        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least, Exits(gates, curves, b.curve_row),
         Orbits(b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active),
     )  # fmt: skip
     return tile
 
 
-def _split_into_tiles(batch: OrbitBatch, which: np.ndarray, workers: int) -> Iterator[_Tile]:
-    """About four tiles per worker, each a multiple of `VECTOR` orbits and at most `LARGEST_TILE`."""
-    share = -(-which.size // (4 * workers))
-    size = int(np.clip(-(-share // VECTOR) * VECTOR, VECTOR, LARGEST_TILE))
-    for begin in range(0, which.size, size):
-        yield _Tile.copy_from(batch, which[begin : begin + size])
+class _Pool:
+    """Orbits that wait for a worker, in the order in which they are propagated.
 
+    Parameters
+    ----------
+    orbits
+        (n,) indices of all orbits to propagate.
+    workers
+        Number of workers.
+    """
 
-def _split_active(tile: _Tile) -> list[np.ndarray]:
-    """The active orbits of a tile, in two parts if they fill more than one SIMD vector."""
-    active = tile.orbits[tile.active != 0]
-    return [part for part in np.array_split(active, 2 if active.size > VECTOR else 1) if part.size]
+    def __init__(self, orbits: np.ndarray, workers: int) -> None:
+        self._waiting, self._workers = orbits, workers
+        self._taken = 0
+
+    @property
+    def waiting(self) -> int:
+        """Number of orbits that wait."""
+        return self._waiting.size
+
+    def take(self) -> np.ndarray:
+        """The share of a worker in the orbits left, in whole SIMD vectors and at most `LARGEST_TILE`."""
+        share = -(-(self._waiting.size + self._taken) // self._workers)
+        size = min(-(-share // VECTOR) * VECTOR, LARGEST_TILE)
+        orbits, self._waiting = np.split(self._waiting, [size])
+        self._taken += orbits.size
+        return orbits
+
+    def give_back(self, tile: _Tile) -> None:
+        """Queue the orbits of a tile that are still active."""
+        self._taken -= tile.orbits.size
+        self._waiting = np.concatenate([self._waiting, tile.orbits[tile.active != 0]])
 
 
 def propagate_batch(
@@ -269,31 +287,26 @@ def propagate_batch(
     workers = count_workers(executor)
     gates = exit_gates(curves)
     undecided = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
-    tiles = _split_into_tiles(batch, undecided, workers)
+    pool = _Pool(undecided, workers)
     running: set[Future[_Tile]] = set()
 
-    def submit(tile: _Tile) -> None:
-        running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance))
+    def keep_workers_busy() -> None:
+        # Tiles are queued ahead only while there are full ones.
+        while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
+            tile = _Tile.copy_from(batch, pool.take())
+            least = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
+            running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least))
 
-    def store_and_continue(tile: _Tile) -> None:
-        tile.copy_to(batch)
-        if is_cancelled(cancel):
-            return
-        pending = [tile] if tile.active.any() else list(islice(tiles, 1))
-        # Near the end, keep all workers busy with smaller tiles.
-        if len(pending) + len(running) < workers:
-            pending = [_Tile.copy_from(batch, part) for tile in pending for part in _split_active(tile)]
-        for tile in pending:
-            submit(tile)
-
-    for tile in islice(tiles, 2 * workers):
-        submit(tile)
+    keep_workers_busy()
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
             propagated = collect_result(future, cancel)
             if propagated is not None:
-                store_and_continue(propagated)
-        if on_progress is not None and not is_cancelled(cancel):
-            on_progress()
+                propagated.copy_to(batch)
+                pool.give_back(propagated)
+        if not is_cancelled(cancel):
+            keep_workers_busy()
+            if on_progress is not None:
+                on_progress()
     return not is_cancelled(cancel)

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.batch import LANES
 from engine.execution import collect_result, count_workers, default_executor, is_cancelled
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR
+from engine.taylor.source.recurrence import LANES
 
 
 def map_tiles(

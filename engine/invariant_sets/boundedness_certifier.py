@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.batch import LANES
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fixed_step_batches import run_tiles
 from engine.dynamics.section_points import find_section_points, trace_section_points
@@ -20,6 +19,7 @@ from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, c
 from engine.invariant_sets.exit_entry_points import find_entry_points
 from engine.invariant_sets.invariant_curves import InvariantCurve, find_invariant_curve
 from engine.potentials.potential import Potential
+from engine.taylor.source.recurrence import LANES
 
 SHORTEST_T_MAX = 1e4
 """Smallest t_max for which certificates cost less than integrating all orbits."""

@@ -17,12 +17,12 @@ _table = types.Array(types.float64, 1, "C", readonly=True)
 _gates = types.Array(types.float64, 2, "C", readonly=True)
 _lanes = types.float64[::1]
 _flags = types.int64[::1]
-_series = types.float64[:, ::1]
+_rows = types.float64[:, ::1]
 
 SIGNATURES: dict[str, Signature] = {
-    "step": types.void(_table, types.int64, types.float64, types.float64, _gates, *[_lanes] * 11, _flags, _flags),
-    "fixed_step": types.void(_table, types.int64, types.float64, types.float64, *[_lanes] * 6),
-    "jets": types.void(_table, types.int64, *[_lanes] * 4, _series, _series),
+    "step": types.void(_table, types.int64, types.float64, types.float64, _gates, _rows, _rows, _flags, _flags),
+    "fixed_step": types.void(_table, types.int64, types.float64, types.float64, _rows, _rows),
+    "jets": types.void(_table, types.int64, *[_lanes] * 4, _rows, _rows),
     "tangent": types.void(_table, types.int64, *[_lanes] * 9),
     "potential_value": types.float64(_table, types.float64, types.float64),
 }

@@ -13,7 +13,7 @@ import numpy as np
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_fixed_step, call_jets, call_tangent
 from engine.taylor.kernels.events import series_slope, series_value
-from engine.taylor.source.recurrence import ORDER
+from engine.taylor.source.recurrence import LANES, ORDER
 
 _STEPS_TO_RENORMALISATION = 8
 _STEPS_BETWEEN_CHECKS = 16
@@ -25,29 +25,42 @@ _ROOT_ACCURACY = 1e-14
 def birkhoff_averages(fixed_step, coefficients, h, weights, state, averages):
     """Weighted averages of x² and y² over two consecutive windows, and over a third one that overlaps half of each.
 
-    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes), zeros.
+    weights (m,): of the samples of a window, h apart; state (4, lanes), changed in place; averages (3, 2, lanes), written.
     """
+    lanes = state.shape[1]
+    current = _load_lanes(state)
+    sums = np.zeros((3, 2, LANES))
     m = weights.shape[0]
     for sample in range(2 * m):
-        sums = averages[sample // m]
-        call_fixed_step(
-            fixed_step,
-            coefficients,
-            state.shape[1],
-            h,
-            weights[sample % m],
-            state[0],
-            state[1],
-            state[2],
-            state[3],
-            sums[0],
-            sums[1],
-        )
+        call_fixed_step(fixed_step, coefficients, lanes, h, weights[sample % m], current, sums[sample // m])
         if m // 2 <= sample < m // 2 + m:
             weight = weights[sample - m // 2]
-            for i in range(state.shape[1]):
-                averages[2, 0, i] += weight * state[0, i] * state[0, i]
-                averages[2, 1, i] += weight * state[1, i] * state[1, i]
+            for i in range(lanes):
+                sums[2, 0, i] += weight * current[0, i] * current[0, i]
+                sums[2, 1, i] += weight * current[1, i] * current[1, i]
+    _store_lanes(current, state)
+    for window in range(3):
+        for c in range(2):
+            for i in range(lanes):
+                averages[window, c, i] = sums[window, c, i]
+
+
+@subroutine
+def _load_lanes(state):
+    """A (4, LANES) array with the states (4, lanes) in its first columns."""
+    current = np.zeros((4, LANES))
+    for c in range(4):
+        for i in range(state.shape[1]):
+            current[c, i] = state[c, i]
+    return current
+
+
+@subroutine
+def _store_lanes(current, state):
+    """Copy the first columns of `current` (4, LANES) to `state` (4, lanes)."""
+    for c in range(4):
+        for i in range(state.shape[1]):
+            state[c, i] = current[c, i]
 
 
 @kernel
@@ -57,8 +70,9 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
     state (4, lanes), changed in place; points (lanes, m, 2), filled from index found (lanes,) on.
     """
     lanes = state.shape[1]
+    current = _load_lanes(state)
     before = np.zeros((4, lanes))
-    ignored_sums = np.zeros((2, lanes))
+    ignored_sums = np.zeros((2, LANES))
     # Steps with a crossing are collected, so that their series are computed together.
     start = np.zeros((4, lanes))
     step_lane = np.zeros(lanes, np.int64)
@@ -66,12 +80,10 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
     for taken in range(steps):
         for c in range(4):
             for i in range(lanes):
-                before[c, i] = state[c, i]
-        call_fixed_step(
-            fixed_step, coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], ignored_sums[0], ignored_sums[1]
-        )
+                before[c, i] = current[c, i]
+        call_fixed_step(fixed_step, coefficients, lanes, h, 0.0, current, ignored_sums)
         for i in range(lanes):
-            if not (before[1, i] < 0.0 and state[1, i] >= 0.0 and found[i] < points.shape[1]):
+            if not (before[1, i] < 0.0 and current[1, i] >= 0.0 and found[i] < points.shape[1]):
                 continue
             for c in range(4):
                 start[c, buffered] = before[c, i]
@@ -84,6 +96,7 @@ def find_section_points(fixed_step, jets, coefficients, h, steps, state, points,
             break
     if buffered > 0:
         _locate_crossings(jets, coefficients, h, buffered, start, step_lane, points, found)
+    _store_lanes(current, state)
 
 
 @subroutine
@@ -142,17 +155,19 @@ def fixed_step_sali(tangent, fixed_step, coefficients, h, steps, state, first, s
     duration = np.zeros(lanes)
     for i in range(lanes):
         duration[i] = h
-    ignored_sums = np.zeros((2, lanes))
+    current = _load_lanes(state)
+    ignored_sums = np.zeros((2, LANES))
     for taken in range(1, steps + 1):
         for w in (first, second):
-            call_tangent(tangent, coefficients, lanes, duration, state[0], state[1], state[2], state[3], w[0], w[1], w[2], w[3])
-        call_fixed_step(
-            fixed_step, coefficients, lanes, h, 0.0, state[0], state[1], state[2], state[3], ignored_sums[0], ignored_sums[1]
-        )
+            call_tangent(
+                tangent, coefficients, lanes, duration, current[0], current[1], current[2], current[3], w[0], w[1], w[2], w[3]
+            )
+        call_fixed_step(fixed_step, coefficients, lanes, h, 0.0, current, ignored_sums)
         if taken % _STEPS_TO_RENORMALISATION == 0 or taken == steps:
             _normalise(first)
             _normalise(second)
             _lower_sali(first, second, sali)
+    _store_lanes(current, state)
 
 
 @subroutine

@@ -10,7 +10,7 @@ import numpy as np
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_potential_value, call_step
 from engine.taylor.kernels.events import series_slope
-from engine.taylor.source.recurrence import ORDER
+from engine.taylor.source.recurrence import LANES, ORDER
 
 _WALL_STRIDE = 0.02
 _FURTHEST_WALL = 20.0
@@ -57,12 +57,10 @@ def shoot(
     Lyapunov orbit. For an orbit that moves further than `reach` along the channel before it turns, returns ∓1 and NaN.
     steps (m, 5): x, y, px, py, t at the start of each step, written in place.
     """
-    lanes = 1
-    now = np.zeros((5, lanes))
-    new = np.zeros((5, lanes))
-    h = np.zeros(lanes)
-    flag = np.zeros(lanes, np.int64)
-    crossed = np.zeros(lanes, np.int64)
+    now = np.zeros((6, LANES))
+    new = np.zeros((6, LANES))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
     # No step is past these gates: exits are ignored.
     gates = np.zeros((_MOST_CHANNELS, 3))
     gates[:, 2] = np.inf
@@ -74,12 +72,9 @@ def shoot(
     for count in range(min(steps.shape[0], _MOST_STEPS)):
         for c in range(5):
             steps[count, c] = now[c, 0]
-        call_step(
-            step, coefficients, lanes, tolerance, np.inf, gates, now[0], now[1], now[2], now[3], now[4],
-            new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
-        )  # fmt: skip
+        call_step(step, coefficients, 1, tolerance, np.inf, gates, now, new, flag, crossed)
         if outward_x * new[3, 0] - outward_y * new[2, 0] <= 0.0:
-            return _turning_point(jets, coefficients, now, h[0], outward_x, outward_y, count)
+            return _turning_point(jets, coefficients, now, new[5, 0], outward_x, outward_y, count)
         moved = outward_x * (new[0, 0] - saddle_x) + outward_y * (new[1, 0] - saddle_y) - u
         if not abs(moved) < reach:
             return (1.0 if moved > 0.0 else -1.0), np.nan, count + 1

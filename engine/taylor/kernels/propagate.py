@@ -4,7 +4,7 @@ Compiled once for all potentials: `step` and `jets` are the addresses of one pot
 `engine.taylor.jit.function_pointers`. A fixed number of lanes is stepped together in vector code, and a lane whose orbit ends
 takes the next orbit. Flags set by the vector step tell which lanes need scalar code. Steps that contain an exit, the horizon or
 possibly hidden crossings are collected in a buffer, and the series of a full buffer are computed together. No orbit's arithmetic
-depends on the other lanes, so results do not depend on the number of lanes, the order, the budget or threads.
+depends on the other lanes, so results do not depend on the order, the budget or threads.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from engine.taylor.kernels.events import (
     series_slope,
     series_value,
 )
-from engine.taylor.source.recurrence import GATE, HIDDEN, ORDER, OVERSHOOT
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, ORDER, OVERSHOOT
 
-VECTOR = 16
+VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""
 
 
@@ -90,50 +90,49 @@ class _StepBuffer(NamedTuple):
 
 
 @kernel
-def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, lanes, exits, orbits):
-    """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps are taken.
+def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits):
+    """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
-    exits: `Exits`; orbits: `Orbits`. With `final` the horizon is t_max: events of the last, partial step are located and an orbit
-    still inside is BOUNDED; without, it stays NOT_COMPUTED. Returns the number of steps taken.
+    It also ends when fewer than `least` orbits are left, as these would not fill the lanes. exits: `Exits`; orbits: `Orbits`.
+    With `final` the horizon is t_max: events of the last, partial step are located and an orbit still inside is BOUNDED; without,
+    it stays NOT_COMPUTED. Returns the number of steps of orbits.
     """
     # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
-    now = np.zeros((5, lanes))
-    new = np.zeros((5, lanes))
+    now = np.zeros((6, LANES))
+    new = np.zeros((6, LANES))
     # Lanes without an orbit take harmless steps that never reach the horizon.
     now[0] = 0.01
     now[4] = -np.inf
-    h = np.zeros(lanes)
-    flag = np.zeros(lanes, np.int64)
-    crossed = np.zeros(lanes, np.int64)
-    lane_orbit = np.zeros(lanes, np.int64)
-    buffer = _StepBuffer(np.zeros((4, lanes)), np.zeros(lanes), np.zeros(lanes, np.int64), np.zeros(lanes, np.int64))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
+    lane_orbit = np.zeros(LANES, np.int64)
+    buffer = _StepBuffer(np.zeros((4, LANES)), np.zeros(LANES), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64))
     buffered = 0
-    active = min(lanes, todo.shape[0])
+    active = min(LANES, todo.shape[0])
     next_orbit = active
     taken = 0
+    left = budget
     for i in range(active):
         _load_orbit(orbits, todo[i], now, i, lane_orbit, crossed)
-    while active > 0 and taken < budget:
+    while active > 0 and left > 0 and (active >= least or next_orbit < todo.shape[0]):
         width = (active + VECTOR - 1) // VECTOR * VECTOR
-        call_step(
-            step, coefficients, width, tolerance, horizon, exits.gates, now[0], now[1], now[2], now[3], now[4],
-            new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
-        )  # fmt: skip
+        call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
         taken += active
+        left -= width
         # Downward, since the last active lane replaces one whose orbit has ended.
         for i in range(active - 1, -1, -1):
             if flag[i] == 0:
                 continue
             j = lane_orbit[i]
-            ends, failed, has_events = _judge_step(flag[i], now, new, i, h[i], final, exits, j)
+            ends, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
             if ends:
                 _store_orbit(now, i, crossed, orbits, j)
                 orbits.pending[j] = 0
                 orbits.fate[j] = FAILED if failed else NOT_COMPUTED
             if has_events:
-                _buffer_step(now, i, h, j, ends, buffer, buffered)
+                _buffer_step(now, new, i, j, ends, buffer, buffered)
                 buffered += 1
-                if buffered == lanes:
+                if buffered == LANES:
                     _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
                     buffered = 0
             elif not ends and now[1, i] < 0.0 and new[1, i] >= 0.0:
@@ -153,12 +152,12 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
 
 
 @subroutine
-def _judge_step(flags, now, new, i, h, final, exits, orbit):
+def _judge_step(flags, now, new, i, final, exits, orbit):
     """Whether an orbit ends in a flagged step, whether it has failed, and whether there are events to locate.
 
-    now, new: lanes at the start and the end of the step; i: lane of the orbit; h: size of the step.
+    now, new: lanes at the start and the end of the step; i: lane of the orbit.
     """
-    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and h > 0.0)
+    failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
     late = flags & OVERSHOOT != 0
     channel = 0
     if not late and flags & GATE != 0:
@@ -170,7 +169,7 @@ def _judge_step(flags, now, new, i, h, final, exits, orbit):
 
 @subroutine
 def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
-    """Put an orbit into lane i of the (5, n) array `lanes`."""
+    """Put an orbit into lane i of the (6, LANES) array `lanes`."""
     for c in range(4):
         lanes[c, i] = orbits.state[orbit, c]
     lanes[4, i] = orbits.t[orbit]
@@ -180,7 +179,7 @@ def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
 
 @subroutine
 def _store_orbit(lanes, i, crossed, orbits, orbit):
-    """Write lane i of the (5, n) array `lanes` back to its orbit."""
+    """Write lane i of the (6, LANES) array `lanes` back to its orbit."""
     for c in range(4):
         orbits.state[orbit, c] = lanes[c, i]
     orbits.t[orbit] = lanes[4, i]
@@ -196,11 +195,11 @@ def _move_lane(lanes, source, target, lane_orbit, crossed):
 
 
 @subroutine
-def _buffer_step(now, i, h, orbit, ends, buffer, k):
+def _buffer_step(now, new, i, orbit, ends, buffer, k):
     """Put the step of lane i into place k of the buffer."""
     for c in range(4):
         buffer.start[c, k] = now[c, i]
-    buffer.h[k] = h[i]
+    buffer.h[k] = new[5, i]
     buffer.orbit[k] = orbit
     buffer.ends[k] = ends
 
@@ -244,11 +243,10 @@ def record_steps(step, coefficients, start, begin, end, tolerance, gates, steps)
     start (4,); gates (channels, 3); steps (m, 5): x, y, px, py, t at the start of each step. Returns the number of rows written:
     fewer than m when the last step reaches `end`, otherwise the last row is where to continue from.
     """
-    now = np.zeros((5, VECTOR))
-    new = np.zeros((5, VECTOR))
-    h = np.zeros(VECTOR)
-    flag = np.zeros(VECTOR, np.int64)
-    crossed = np.zeros(VECTOR, np.int64)
+    now = np.zeros((6, LANES))
+    new = np.zeros((6, LANES))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
     for c in range(4):
         now[c] = start[c]
     now[4] = begin
@@ -257,10 +255,7 @@ def record_steps(step, coefficients, start, begin, end, tolerance, gates, steps)
         for c in range(5):
             steps[count, c] = now[c, 0]
         count += 1
-        call_step(
-            step, coefficients, VECTOR, tolerance, end, gates, now[0], now[1], now[2], now[3], now[4],
-            new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
-        )  # fmt: skip
+        call_step(step, coefficients, VECTOR, tolerance, end, gates, now, new, flag, crossed)
         if flag[0] & OVERSHOOT != 0:
             return count
         now, new = new, now

@@ -13,7 +13,7 @@ from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import crossed_exit, find_exit_time, find_extremum, series_slope, series_value
 from engine.taylor.kernels.propagate import VECTOR
-from engine.taylor.source.recurrence import GATE, HIDDEN, ORDER, OVERSHOOT
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, ORDER, OVERSHOOT
 
 # Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
 _PARTS = 8
@@ -36,20 +36,20 @@ class _StepBuffer(NamedTuple):
 def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, curves, state, passages, found):
     """The first m downward passages of y = 0 of each orbit before it escapes through an exit or passes `horizon`.
 
-    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR`; passages (lanes, m, 3): x, px
-    and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the escape time.
+    gates (channels, 3); curves (channels, columns); state (4, lanes), lanes a multiple of `VECTOR` up to `LANES`;
+    passages (lanes, m, 3): x, px and time; found (lanes,), zeros. A passage goes from y > 0 to y ≤ 0; none is counted after the
+    escape time.
     """
     lanes = state.shape[1]
     most = passages.shape[1]
-    now = np.zeros((5, lanes))
+    now = np.zeros((6, LANES))
     # Element by element: for `now[:4] = state` Numba compiles an error message as well, which takes 2 s.
     for c in range(4):
         for i in range(lanes):
             now[c, i] = state[c, i]
-    new = np.zeros((5, lanes))
-    h = np.zeros(lanes)
-    flag = np.zeros(lanes, np.int64)
-    crossed = np.zeros(lanes, np.int64)
+    new = np.zeros((6, LANES))
+    flag = np.zeros(LANES, np.int64)
+    crossed = np.zeros(LANES, np.int64)
     lane_orbit = np.zeros(lanes, np.int64)
     for i in range(lanes):
         lane_orbit[i] = i
@@ -58,10 +58,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     active = lanes
     while active > 0:
         width = (active + VECTOR - 1) // VECTOR * VECTOR
-        call_step(
-            step, coefficients, width, tolerance, horizon, gates, now[0], now[1], now[2], now[3], now[4],
-            new[0], new[1], new[2], new[3], new[4], h, flag, crossed,
-        )  # fmt: skip
+        call_step(step, coefficients, width, tolerance, horizon, gates, now, new, flag, crossed)
         for i in range(active - 1, -1, -1):
             j = lane_orbit[i]
             full = found[j] == most
@@ -75,7 +72,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
             if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
                     buffer.start[c, buffered] = now[c, i]
-                buffer.start[5, buffered] = h[i]
+                buffer.start[5, buffered] = new[5, i]
                 buffer.orbit[buffered] = j
                 buffer.channel[buffered] = channel
                 buffered += 1

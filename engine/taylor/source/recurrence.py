@@ -63,6 +63,9 @@ REACH = 3.0
 # Norms of the last coefficients above this would give steps too short to change t; an orbit with these, or with NaN, has failed.
 _LARGEST_NORM = 1e90
 
+LANES = 64
+"""Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
+
 HIDDEN, GATE, OVERSHOOT = 1, 2, 4
 """Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon."""
 
@@ -306,12 +309,14 @@ def _lane_loop(
     reads: Mapping[str, str],
     writes: Mapping[str, Value | str],
     constants: Mapping[str, str] | None = None,
+    rows: Sequence[str] = (),
 ) -> GeneratedFunction:
     """A kernel with a loop over lanes that reads inputs from arrays, runs a straight-line program and writes its results.
 
     reads, constants: {input: source}; writes: {left-hand side with its operator: value or source}. Constants are read before the
     loop: read in it, each would be checked for overlap with every array that the loop writes, and beyond some 100 checks nothing
-    is vectorised.
+    is vectorised. rows: the arrays whose rows have the length `LANES`. As this is a constant, the compiler knows that the rows do
+    not overlap; the checks of separate arrays take as long as 16 lanes.
     """
     program.results = [value.index for value in writes.values() if isinstance(value, Value)]
     sources = {target: f"r{value.index}" if isinstance(value, Value) else value for target, value in writes.items()}
@@ -319,6 +324,7 @@ def _lane_loop(
     lines = [
         "@kernel",
         f"def {name}(coefficients, n, {arguments}):",
+        *(f"    if {each}.shape[1] != {LANES}: raise ValueError('{each}: must have {LANES} columns')" for each in rows),
         *(f"    {each} = {source}" for each, source in {TABLE: "read_table(coefficients)", **(constants or {})}.items()),
         "    for i in range(n):",
         *(f"        {each} = {source}" for each, source in reads.items()),
@@ -329,6 +335,11 @@ def _lane_loop(
 
 
 _START = {"x0": "x[i]", "y0": "y[i]", "x1": "px[i]", "y1": "py[i]"}
+
+
+def _start_in(lanes: str) -> dict[str, str]:
+    """The inputs of the recurrence, read from the first rows of an array of lanes."""
+    return {name: f"{lanes}[{row}, i]" for row, name in enumerate(_START)}
 
 
 def _step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
@@ -348,16 +359,11 @@ def _step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
     writes = {
         "crossed[i] +=": where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
         "flag[i] =": flags,
-        "h_taken[i] =": h,
-        "x_new[i] =": x_end,
-        "y_new[i] =": y_end,
-        "px_new[i] =": px_end,
-        "py_new[i] =": py_end,
-        "t_new[i] =": t_end,
+        **{f"new[{row}, i] =": value for row, value in enumerate((x_end, y_end, px_end, py_end, t_end, h))},
     }
-    arguments = "tolerance, horizon, gates, x, y, px, py, t, x_new, y_new, px_new, py_new, t_new, h_taken, flag, crossed"
+    arguments = "tolerance, horizon, gates, now, new, flag, crossed"
     gates = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(structure.channels) for name, column in columns.items()}
-    return _lane_loop(program, arguments, {**_START, "t0": "t[i]"}, writes, gates)
+    return _lane_loop(program, arguments, {**_start_in("now"), "t0": "now[4, i]"}, writes, gates, rows=("now", "new"))
 
 
 def _fixed_step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
@@ -368,14 +374,11 @@ def _fixed_step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunc
     y_end, py_end = _horner(series[Y], h)
     # The sums are left to the loop: within the program they make it up to a sixth slower.
     writes: dict[str, Value | str] = {
-        "x_sum[i] +=": "weight*(x0*x0)",
-        "y_sum[i] +=": "weight*(y0*y0)",
-        "x[i] =": x_end,
-        "y[i] =": y_end,
-        "px[i] =": px_end,
-        "py[i] =": py_end,
+        "sums[0, i] +=": "weight*(x0*x0)",
+        "sums[1, i] +=": "weight*(y0*y0)",
+        **{f"state[{row}, i] =": value for row, value in enumerate((x_end, y_end, px_end, py_end))},
     }
-    return _lane_loop(program, "h, weight, x, y, px, py, x_sum, y_sum", _START, writes)
+    return _lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=("state", "sums"))
 
 
 def _jets(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:

@@ -262,12 +262,6 @@ def test_result_does_not_depend_on_the_number_of_threads(spec: MapSpec, workers:
         assert_bit_identical(compute_map(spec, executor=pool), compute_map(spec))
 
 
-@pytest.mark.parametrize("lanes", [16, 48, 256])
-def test_result_does_not_depend_on_the_number_of_lanes(whole: EscapeMap, lanes: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(orbit_batch, "LANES", lanes)
-    assert_bit_identical(compute_map(SPEC), whole)
-
-
 @pytest.mark.parametrize("budget", [2_000, 50_001])
 def test_result_does_not_depend_on_the_step_budget(whole: EscapeMap, budget: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(orbit_batch, "STEP_BUDGET", budget)

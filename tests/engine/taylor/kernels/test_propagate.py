@@ -1,4 +1,4 @@
-"""Propagation of orbits: no crossing or exit is missed, and results do not depend on lanes, order or budget."""
+"""Propagation of orbits: no crossing or exit is missed, and results do not depend on the order or the budget."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from engine.dynamics.fates import Fate
 from engine.exits.lyapunov_orbits import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels.propagate import Exits, Orbits
-from engine.taylor.source.recurrence import HIDDEN, ORDER, OVERSHOOT, TOLERANCE
+from engine.taylor.source.recurrence import HIDDEN, LANES, ORDER, OVERSHOOT, TOLERANCE
 
 # Not even in y, so orbits can turn anywhere and y = 0 can be grazed.
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 0.3), (0, 3, -0.2), (4, 1, 0.11), (1, 1, 0.07)))
@@ -19,12 +19,17 @@ POTENTIAL, ENERGY = CASES["III"], 0.4
 
 
 def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.inf) -> tuple[np.ndarray, ...]:
-    n = len(states)
-    new, h, flag, crossed = np.empty((5, n)), np.empty(n), np.zeros(n, np.int64), np.zeros(n, np.int64)
+    """(6, n) states, times and step sizes, (n,) flags and (n,) crossings after a step."""
     gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
     kernels = load_kernels(potential.terms, potential.channels)
-    kernels.step(n, TOLERANCE, horizon, gates, *states.T.copy(), np.zeros(n), *new, h, flag, crossed)
-    return new, h, flag, crossed
+    parts = []
+    for part in np.split(states, range(LANES, len(states), LANES)):
+        now, new, counts = np.zeros((6, LANES)), np.zeros((6, LANES)), np.zeros((2, LANES), np.int64)
+        now[:4, : len(part)] = part.T
+        kernels.step(LANES, TOLERANCE, horizon, gates, now, new, *counts)
+        parts.append(np.vstack([new, counts])[:, : len(part)])
+    result = np.hstack(parts)
+    return result[:6], result[6].astype(int), result[7].astype(int)
 
 
 def sampled_y(potential: Potential, states: np.ndarray, h: np.ndarray) -> np.ndarray:
@@ -42,8 +47,8 @@ def test_a_step_without_the_flag_hides_no_crossing(potential: Potential) -> None
     # Half of the steps start close to y = 0 and almost parallel to it, where crossings can be hidden.
     states[::2, 1] *= 1e-2
     states[::2, 3] *= 3e-2
-    _, h, flag, crossed = single_steps(potential, states)
-    y = sampled_y(potential, states, h)
+    new, flag, crossed = single_steps(potential, states)
+    y = sampled_y(potential, states, new[5])
     upward = np.sum((y[:, :-1] < 0) & (y[:, 1:] >= 0), axis=1)
     plain = flag & HIDDEN == 0
     assert plain.sum() > 500
@@ -53,8 +58,8 @@ def test_a_step_without_the_flag_hides_no_crossing(potential: Potential) -> None
 def test_some_steps_do_hide_crossings() -> None:
     # Without such steps the test above would prove nothing.
     states = np.random.default_rng(12).uniform(-0.6, 0.6, (2000, 4)) * [1, 1e-2, 1, 3e-2]
-    new, h, flag, _ = single_steps(ODD, states)
-    y = sampled_y(ODD, states, h)
+    new, flag, _ = single_steps(ODD, states)
+    y = sampled_y(ODD, states, new[5])
     upward = np.sum((y[:, :-1] < 0) & (y[:, 1:] >= 0), axis=1)
     by_signs = (states[:, 1] < 0) & (new[1] >= 0)
     hiding = upward != by_signs
@@ -64,8 +69,8 @@ def test_some_steps_do_hide_crossings() -> None:
 
 def test_a_step_past_the_horizon_has_the_flag() -> None:
     states = np.random.default_rng(1).uniform(-0.4, 0.4, (16, 4))
-    h = single_steps(CASES["I"], states)[1]
-    flags = single_steps(CASES["I"], states, horizon=float(np.median(h)))[2]
+    h = single_steps(CASES["I"], states)[0][5]
+    flags = single_steps(CASES["I"], states, horizon=float(np.median(h)))[1]
     np.testing.assert_array_equal(flags & OVERSHOOT != 0, h > np.median(h))
 
 
@@ -80,12 +85,12 @@ def start_orbits(count: int) -> Orbits:
 
 
 def propagate(
-    orbits: Orbits, todo: np.ndarray, horizon: float, *, final: bool = True, lanes: int = 64, budget: int = 10**9
+    orbits: Orbits, todo: np.ndarray, horizon: float, *, final: bool = True, budget: int = 10**9, least: int = 0
 ) -> int:
     curves = exit_curves(POTENTIAL, ENERGY)[None]
     exits = Exits(exit_gates(curves), curves, np.zeros(orbits.t.size, np.int64))
     kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-    return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, lanes, exits, orbits))
+    return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, least, exits, orbits))
 
 
 def assert_equal(orbits: Orbits, expected: Orbits) -> None:
@@ -101,10 +106,21 @@ def reference() -> Orbits:
     return orbits
 
 
-@pytest.mark.parametrize("lanes", [16, 32, 48, 64, 128, 512])
-def test_number_of_lanes_makes_no_difference(reference: Orbits, lanes: int) -> None:
+@pytest.mark.parametrize("count", [1, 7, 8, 9, 64, 65])
+def test_number_of_orbits_makes_no_difference(reference: Orbits, count: int) -> None:
     orbits = start_orbits(150)
-    propagate(orbits, np.arange(150), 60.0, lanes=lanes)
+    for begin in range(0, 150, count):
+        propagate(orbits, np.arange(begin, min(begin + count, 150)), 60.0)
+    assert_equal(orbits, reference)
+
+
+@pytest.mark.parametrize("least", [1, 8, 48, 150])
+def test_orbits_that_do_not_fill_the_lanes_are_continued_later(reference: Orbits, least: int) -> None:
+    orbits = start_orbits(150)
+    propagate(orbits, np.arange(150), 60.0, least=least)
+    left = np.flatnonzero(orbits.pending)
+    assert left.size < least
+    propagate(orbits, left, 60.0)
     assert_equal(orbits, reference)
 
 

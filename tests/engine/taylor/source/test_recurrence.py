@@ -16,7 +16,7 @@ from engine.dynamics.planes import Plane
 from engine.potentials.catalogue import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
-from engine.taylor.source.recurrence import ORDER, TOLERANCE, crossings_can_hide, generate_code
+from engine.taylor.source.recurrence import LANES, ORDER, TOLERANCE, crossings_can_hide, generate_code
 from tests.peers import taylor_heyoka
 
 # A potential that is not in the paper: odd in both coordinates and of degree 5.
@@ -45,6 +45,15 @@ def flowed(potential: Potential, states: np.ndarray, h: float, order: int = ORDE
     x, y = (jets * powers).sum(axis=1)
     px, py = (jets[:, 1:] * slopes).sum(axis=1)
     return np.column_stack([x, y, px, py])
+
+
+def stepped(potential: Potential, states: np.ndarray, tolerance: float, count: int = LANES) -> np.ndarray:
+    """(6, LANES) states, times and step sizes after one step of the first `count` states (LANES, 4); 0 for the others."""
+    now, new, counts = np.zeros((6, LANES)), np.zeros((6, LANES)), np.zeros((2, LANES), np.int64)
+    now[:4] = states.T
+    gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
+    load_kernels(potential.terms, potential.channels).step(count, tolerance, np.inf, gates, now, new, *counts)
+    return new
 
 
 def transition_matrix(potential: Potential, state: np.ndarray, h: float) -> np.ndarray:
@@ -127,14 +136,22 @@ def test_tangent_flow_maps_the_phase_velocity_at_the_start_to_that_at_the_end(na
 
 @each_potential
 def test_a_step_ends_at_the_value_of_its_series(name: str) -> None:
-    potential, n = POTENTIALS[name], 16
-    states = some_states(n)
-    new, h, flag, crossed = np.empty((5, n)), np.empty(n), np.zeros(n, np.int64), np.zeros(n, np.int64)
-    gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
-    kernels = load_kernels(potential.terms, potential.channels)
-    kernels.step(n, TOLERANCE, np.inf, gates, *states.T.copy(), np.zeros(n), *new, h, flag, crossed)
-    expected = np.concatenate([flowed(potential, state[None], length) for state, length in zip(states, h, strict=True)])
-    np.testing.assert_allclose(new[:4].T, expected, rtol=0, atol=1e-14)
+    potential, states = POTENTIALS[name], some_states(LANES)
+    ends = stepped(potential, states, TOLERANCE)
+    expected = np.concatenate([flowed(potential, state[None], length) for state, length in zip(states, ends[5], strict=True)])
+    np.testing.assert_allclose(ends[:4].T, expected, rtol=0, atol=1e-14)
+
+
+def test_lanes_beyond_the_given_number_stay_unchanged() -> None:
+    ends = stepped(POTENTIALS["odd"], some_states(LANES), TOLERANCE, count=8)
+    assert ends[:, :8].all()
+    assert not ends[:, 8:].any()
+
+
+def test_arrays_of_another_width_are_refused() -> None:
+    potential = POTENTIALS["odd"]
+    with pytest.raises(ValueError, match="must have 64 columns"):
+        load_kernels(potential.terms, potential.channels).fixed_step(8, 0.1, 1.0, np.zeros((4, 8)), np.zeros((2, 8)))
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.16), ("III", 0.24), ("III", 0.26)])
@@ -151,8 +168,8 @@ def test_energy_error_is_at_most_1e_11_over_1e5_time_units(name: str, energy: fl
 def test_generated_functions_compile_for_any_polynomial(terms: tuple) -> None:
     kernels = load_kernels(terms, 0)
     assert kernels.potential_value(0.5, 0.7) == pytest.approx(sum(c * 0.5**i * 0.7**j for i, j, c in terms))
-    state, sums = some_states(16).T.copy(), np.zeros((2, 16))
-    kernels.fixed_step(16, 0.1, 1.0, *state, *sums)
+    state, sums = some_states(LANES).T.copy(), np.zeros((2, LANES))
+    kernels.fixed_step(LANES, 0.1, 1.0, state, sums)
     assert np.isfinite(state).all()
 
 
@@ -175,27 +192,24 @@ def test_crossings_can_hide_where_y_may_turn_back_within_a_step(terms: dict) -> 
 
 @each_potential
 def test_a_fixed_step_is_the_flow_and_adds_weighted_squares(name: str) -> None:
-    n, h = 16, 0.25
-    potential, states = POTENTIALS[name], some_states(n)
-    stepped, sums = states.T.copy(), np.zeros((2, n))
-    load_kernels(potential.terms, potential.channels).fixed_step(n, h, 2.0, *stepped, *sums)
-    np.testing.assert_allclose(stepped.T, flowed(potential, states, h), rtol=0, atol=1e-14)
+    h = 0.25
+    potential, states = POTENTIALS[name], some_states(LANES)
+    ends, sums = states.T.copy(), np.zeros((2, LANES))
+    load_kernels(potential.terms, potential.channels).fixed_step(LANES, h, 2.0, ends, sums)
+    np.testing.assert_allclose(ends.T, flowed(potential, states, h), rtol=0, atol=1e-14)
     np.testing.assert_array_equal(sums.T, 2.0 * states[:, :2] ** 2)
 
 
 @pytest.mark.parametrize("exponent", range(-12, 13, 3))
 def test_the_step_is_the_sixteenth_root_to_within_6_percent(exponent: int) -> None:
-    potential, n = POTENTIALS["odd"], 16
-    states = np.repeat(some_states(1) * 1.5, n, axis=0)
+    potential = POTENTIALS["odd"]
+    states = np.repeat(some_states(1) * 1.5, LANES, axis=0)
     x, y = jets_of(potential, states)[:, :, 0]
     norm = sum(w * (abs(x[-k]) + abs(y[-k])) for k, w in ((1, 1.0), (2, 1.0), (3, 0.3)))
     tolerance = 10.0**exponent * TOLERANCE
-    new, h, flag, crossed = np.empty((5, n)), np.empty(n), np.zeros(n, np.int64), np.zeros(n, np.int64)
-    gates = np.tile([0.0, 0.0, np.inf], (potential.channels, 1))
-    step = load_kernels(potential.terms, potential.channels).step
-    step(n, tolerance, np.inf, gates, *states.T.copy(), np.zeros(n), *new, h, flag, crossed)
+    h = stepped(potential, states, tolerance)[5, 0]
     exact = min((tolerance / norm) ** (1 / 16), 1.0)
-    assert 0.999 * exact <= h[0] <= 1.065 * exact
+    assert 0.999 * exact <= h <= 1.065 * exact
 
 
 def count_products(terms: tuple) -> int:
