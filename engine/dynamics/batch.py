@@ -150,6 +150,15 @@ class OrbitBatch:
         """A deep copy."""
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
 
+    def take(self, which: np.ndarray) -> OrbitBatch:
+        """A copy of the orbits `which` (indices)."""
+        return replace(self, **{field.name: getattr(self, field.name)[which] for field in fields(self)})
+
+    def put(self, which: np.ndarray, orbits: OrbitBatch) -> None:
+        """Replace the orbits `which` (indices) by others."""
+        for field in fields(self):
+            getattr(self, field.name)[which] = getattr(orbits, field.name)
+
 
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
     """(n,) int8: the channel beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
@@ -158,7 +167,7 @@ def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, 
 
 
 @dataclass
-class _Tile:
+class Tile:
     """A part of a batch that one worker propagates.
 
     Attributes
@@ -176,25 +185,21 @@ class _Tile:
     active: np.ndarray
 
     @classmethod
-    def copy_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> _Tile:
-        part = OrbitBatch(**{field.name: getattr(batch, field.name)[orbits] for field in fields(batch)})
-        return cls(orbits, part, np.ones(orbits.size, np.uint8))
-
-    def copy_to(self, batch: OrbitBatch) -> None:
-        for field in fields(batch):
-            getattr(batch, field.name)[self.orbits] = getattr(self.batch, field.name)
+    def copy_from(cls, batch: OrbitBatch, orbits: np.ndarray) -> Tile:
+        """A tile of the orbits (indices), all active."""
+        return cls(orbits, batch.take(orbits), np.ones(orbits.size, np.uint8))
 
 
 def _advance_tile(
     potential: Potential,
     curves: np.ndarray,
     gates: np.ndarray,
-    tile: _Tile,
+    tile: Tile,
     horizon: float,
     final: bool,
     tolerance: float,
     least: int,
-) -> _Tile:
+) -> Tile:
     """Propagate the orbits of a tile by `STEP_BUDGET` steps, or until fewer than `least` are active; runs in a worker."""
     b = tile.batch
     kernels_of(potential).propagate(
@@ -204,7 +209,7 @@ def _advance_tile(
     return tile
 
 
-class _Pool:
+class OrbitPool:
     """Orbits that wait for a worker, in the order in which they are propagated.
 
     Parameters
@@ -232,7 +237,7 @@ class _Pool:
         self._taken += orbits.size
         return orbits
 
-    def give_back(self, tile: _Tile) -> None:
+    def give_back(self, tile: Tile) -> None:
         """Queue the orbits of a tile that are still active."""
         self._taken -= tile.orbits.size
         self._waiting = np.concatenate([self._waiting, tile.orbits[tile.active != 0]])
@@ -287,13 +292,13 @@ def propagate_batch(
     workers = count_workers(executor)
     gates = exit_gates(curves)
     undecided = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
-    pool = _Pool(undecided, workers)
-    running: set[Future[_Tile]] = set()
+    pool = OrbitPool(undecided, workers)
+    running: set[Future[Tile]] = set()
 
     def keep_workers_busy() -> None:
         # Tiles are queued ahead only while there are full ones.
         while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
-            tile = _Tile.copy_from(batch, pool.take())
+            tile = Tile.copy_from(batch, pool.take())
             least = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
             running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least))
 
@@ -303,7 +308,7 @@ def propagate_batch(
         for future in done:
             propagated = collect_result(future, cancel)
             if propagated is not None:
-                propagated.copy_to(batch)
+                batch.put(propagated.orbits, propagated.batch)
                 pool.give_back(propagated)
         if not is_cancelled(cancel):
             keep_workers_busy()

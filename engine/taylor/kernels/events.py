@@ -56,9 +56,11 @@ def exit_distance(x, y, curve):
 
 
 @subroutine
-def crossed_exit(x0, y0, x1, y1, curves):
+def crossed_exit(x0, y0, x1, y1, curves, gates):
     """The channel whose exit an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none."""
     for k in range(curves.shape[0]):
+        if gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
+            continue
         curve = curves[k]
         after = exit_distance(x1, y1, curve)
         if not after > 0.0:

@@ -32,6 +32,10 @@ VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""
 
 
+GOES_ON = -1
+"""In the buffer of steps, instead of a channel: the orbit does not end in the step."""
+
+
 class Exits(NamedTuple):
     """Exits at one or more energies.
 
@@ -80,13 +84,14 @@ class Orbits(NamedTuple):
 class _StepBuffer(NamedTuple):
     """Steps whose events are still to be located.
 
-    start (4, lanes): state; h, orbit, ends (lanes,): size of the step, number of the orbit, and 1 if the orbit ends in it.
+    start (4, lanes): state; h, orbit, channel (lanes,): size of the step, number of the orbit, and the channel through which it
+    escapes, 0 where the step passes the horizon, or GOES_ON.
     """
 
     start: np.ndarray
     h: np.ndarray
     orbit: np.ndarray
-    ends: np.ndarray
+    channel: np.ndarray
 
 
 @kernel
@@ -124,13 +129,13 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
             if flag[i] == 0:
                 continue
             j = lane_orbit[i]
-            ends, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
+            ends, channel, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
             if ends:
                 _store_orbit(now, i, crossed, orbits, j)
                 orbits.pending[j] = 0
                 orbits.fate[j] = FAILED if failed else NOT_COMPUTED
             if has_events:
-                _buffer_step(now, new, i, j, ends, buffer, buffered)
+                _buffer_step(now, new, i, j, channel if ends else GOES_ON, buffer, buffered)
                 buffered += 1
                 if buffered == LANES:
                     _locate_events(jets, coefficients, buffer, buffered, horizon, exits, orbits)
@@ -153,7 +158,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
 
 @subroutine
 def _judge_step(flags, now, new, i, final, exits, orbit):
-    """Whether an orbit ends in a flagged step, whether it has failed, and whether there are events to locate.
+    """What happens in a flagged step: (the orbit ends, channel of the exit it crosses or 0, it fails, events are to be located).
 
     now, new: lanes at the start and the end of the step; i: lane of the orbit.
     """
@@ -161,10 +166,10 @@ def _judge_step(flags, now, new, i, final, exits, orbit):
     late = flags & OVERSHOOT != 0
     channel = 0
     if not late and flags & GATE != 0:
-        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], exits.curves[exits.curve_row[orbit]])
+        channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], exits.curves[exits.curve_row[orbit]], exits.gates)
     ends = late or channel > 0 or failed
     has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
-    return ends, failed, has_events and not failed
+    return ends, channel, failed, has_events and not failed
 
 
 @subroutine
@@ -195,13 +200,13 @@ def _move_lane(lanes, source, target, lane_orbit, crossed):
 
 
 @subroutine
-def _buffer_step(now, new, i, orbit, ends, buffer, k):
+def _buffer_step(now, new, i, orbit, channel, buffer, k):
     """Put the step of lane i into place k of the buffer."""
     for c in range(4):
         buffer.start[c, k] = now[c, i]
     buffer.h[k] = new[5, i]
     buffer.orbit[k] = orbit
-    buffer.ends[k] = ends
+    buffer.channel[k] = channel
 
 
 @subroutine
@@ -214,11 +219,14 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
     for i in range(n):
         j = buffer.orbit[i]
         h = buffer.h[i]
-        if buffer.ends[i] == 0:
+        channel = buffer.channel[i]
+        if channel == GOES_ON:
             orbits.crossings[j] += count_upward_crossings(y_jet, i, h)
             continue
         curves = exits.curves[exits.curve_row[j]]
-        channel = crossed_exit(start[0, i], start[1, i], series_value(x_jet, i, h), series_value(y_jet, i, h), curves)
+        if channel == 0:
+            x_end, y_end = series_value(x_jet, i, h), series_value(y_jet, i, h)
+            channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
         # The whole step decides, so that the escape time is the same to the bit for every horizon.
         tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
         if channel == 0 or orbits.t[j] + tau > horizon:

@@ -68,7 +68,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
             late = flag[i] & OVERSHOOT != 0
             channel = 0
             if not late and flag[i] & GATE != 0:
-                channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves)
+                channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], curves, gates)
             if not late and not full and (down or channel > 0 or flag[i] & HIDDEN != 0):
                 for c in range(5):
                     buffer.start[c, buffered] = now[c, i]

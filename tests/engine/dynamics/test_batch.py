@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, Plane, start_states
-from engine.dynamics.batch import OrbitBatch, propagate_batch
+from engine.dynamics.batch import OrbitBatch, OrbitPool, Tile, propagate_batch
 from engine.execution import create_thread_pool, default_executor
 from engine.exits.lyapunov_orbits import exit_curves
 
@@ -78,3 +78,32 @@ def test_thread_priorities() -> None:
     with create_thread_pool(1) as normal, create_thread_pool(1, idle_priority=True) as idle:
         assert normal.submit(os.sched_getscheduler, 0).result() == os.SCHED_OTHER
         assert idle.submit(os.sched_getscheduler, 0).result() == os.SCHED_IDLE
+
+
+class CountingPool(ThreadPoolExecutor):
+    calls = 0
+
+    def submit(self, *arguments: object, **named: object):
+        self.calls += 1
+        return super().submit(*arguments, **named)
+
+
+def test_a_worker_takes_its_share_of_the_orbits_left_in_whole_vectors() -> None:
+    pool = OrbitPool(np.arange(100), 2)
+    assert [pool.take().size, pool.take().size, pool.waiting] == [56, 44, 0]
+
+
+def test_orbits_that_are_given_back_are_propagated_last(batch: OrbitBatch) -> None:
+    pool = OrbitPool(np.arange(20), 2)
+    tile = Tile.copy_from(batch, pool.take())
+    tile.active[:] = 0
+    tile.active[[3, 5]] = 1
+    pool.give_back(tile)
+    assert pool.take().tolist() == [16, 17, 18, 19, 3, 5]
+
+
+@pytest.mark.parametrize("count", [10, 40, 60])
+def test_orbits_that_do_not_fill_the_lanes_are_propagated_to_the_end(batch: OrbitBatch, curves: np.ndarray, count: int) -> None:
+    with CountingPool(2) as pool:
+        propagate_batch(POTENTIAL, curves, batch, np.arange(count), 50.0, final=True, executor=pool)
+    assert pool.calls <= 2
