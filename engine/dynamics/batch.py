@@ -22,8 +22,8 @@ from engine.taylor.source.recurrence import LANES, TOLERANCE
 LARGEST_TILE = 2048
 """Largest number of orbits per tile."""
 
-STEP_BUDGET = 1_000_000
-"""Largest number of steps of lanes per kernel call, about 15 ms: the interval at which cancellation and progress are handled."""
+STEP_BUDGET = 2_000_000
+"""Largest number of steps of lanes per kernel call, 20 to 50 ms: the interval at which cancellation and progress are handled."""
 
 # With fewer orbits the lanes are not full enough: a worker gives them back, and they are joined with others.
 _FULL_LANES = LANES - 2 * VECTOR
