@@ -116,9 +116,9 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     """
     source, expression = _potential_expression(system)
     names = [source, "MapSpec", "Plane", "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
-    window = spec.window
+    window = spec.find_window()
     edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
-    energy = _numbers(spec.energy) if isinstance(spec.energy, tuple) else repr(float(spec.energy))
+    energy = repr(spec.energy)
     lines = [
         "from matplotlib import pyplot",
         "",
@@ -127,7 +127,7 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         f"potential = {expression}",
         "spec = MapSpec(",
         "    potential,",
-        f"    Plane.{spec.plane.name},",
+        f"    {spec.plane},",
         f"    energy={energy},",
         f"    resolution={spec.resolution!r},",
         f"    window=Window{_numbers(edges)},",
@@ -171,11 +171,10 @@ def file_stem(spec: MapSpec, case: str) -> str:
 
     It has the case, plane, energy, t_max and, unless the map shows the whole plane, the window.
     """
-    energies = spec.energy if isinstance(spec.energy, tuple) else (spec.energy,)
-    energy = "-".join(repr(float(energy)) for energy in energies)
-    stem = f"escapes-{case}-{spec.plane.name.lower()}-h{energy}-t{spec.t_max:g}"
-    window = spec.window
-    if not spec.has_default_window():
+    energy = repr(spec.energy).strip("()").replace(", ", "-")
+    stem = f"escapes-{case}-{spec.plane.key}-h{energy}-t{spec.t_max:g}"
+    window = spec.given_window
+    if window is not None:
         x, ordinate = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
         stem += "".join(f"-{low!r}_{high!r}" for low, high in (x, ordinate))
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)

@@ -98,7 +98,7 @@ def _view_of(spec: MapSpec) -> ViewState:
     """The view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
     known = next((name for name, entry in POTENTIALS.items() if entry.potential == spec.potential), TYPED)
     view = ViewState(case=known, formula=write_formula(spec.potential) if known == TYPED else "")
-    energy = {} if isinstance(spec.energy, tuple) else {"energy": spec.energy}
+    energy = {} if spec.common_energy is None else {"energy": spec.common_energy}
     nearest = {
         "t_max": min(view.param.t_max.objects, key=lambda choice: abs(choice - spec.t_max)),
         "resolution": min(view.param.resolution.objects, key=lambda choice: abs(choice - spec.resolution[0])),

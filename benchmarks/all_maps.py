@@ -42,7 +42,7 @@ def shares(result: EscapeMap) -> str:
 
 
 def title(spec: MapSpec) -> str:
-    return f"{spec.potential.name} | {spec.plane.value} | {spec.energy}"
+    return f"{spec.potential.name} | {spec.plane.title} | {spec.energy}"
 
 
 def time_all() -> None:

@@ -42,7 +42,7 @@ def main() -> None:
         spec = MapSpec(CASES[case], plane, energy, t_max=T_MAX)
         time_map(spec)
         first, whole = (statistics.median(times) for times in zip(*(time_map(spec) for _ in range(REPEATS)), strict=True))
-        print(f"| {case} | {plane.value} | {energy} | {1e3 * first:.0f} | {1e3 * whole:.0f} |")
+        print(f"| {case} | {plane.title} | {energy} | {1e3 * first:.0f} | {1e3 * whole:.0f} |")
 
 
 if __name__ == "__main__":

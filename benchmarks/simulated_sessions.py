@@ -233,7 +233,7 @@ class SimulatedSession:
     async def _act_plane(self) -> None:
         planes = list(Plane)
         self._plane = Plane.X_Y if self._plane is Plane.X_PX else Plane.X_PX
-        self._await_map("plane", plane=self._plane.name.lower())
+        self._await_map("plane", plane=self._plane.key)
         self._open_channel.set(self._models["Plane"], active=planes.index(self._plane))
 
     async def _act_click(self) -> None:

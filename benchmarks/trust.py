@@ -51,7 +51,7 @@ def row(case: str, energy: float, plane: Plane, side: int) -> str:
         cells.append(f"{contradicted(escape_map, pixels, random)} of {pixels.size} ({bounded} bounded)")
     shares = f"{100.0 * trust.tested_share:.1f} | {100.0 * trust.doubtful_share:.1f}"
     counts = f"{np.count_nonzero(uncertified)} | {doubtful} | {' | '.join(cells)}"
-    return f"| {case}, h = {energy:.2f}, {plane.value} | {shares} | {counts} |"
+    return f"| {case}, h = {energy:.2f}, {plane.title} | {shares} | {counts} |"
 
 
 def main() -> None:

@@ -9,7 +9,8 @@ import numpy as np
 
 from cli.options import Edges, PlaneName
 from cli.potential_argument import find_potential
-from engine import MapSpec, Plane, start_states
+from engine import MapSpec, Slice
+from engine.service import checked_slice
 from plots.palette import PALETTES, Palette
 
 
@@ -20,9 +21,9 @@ def find_palette(name: str) -> Palette:
     return PALETTES[name]
 
 
-def find_plane(name: PlaneName) -> Plane:
+def find_plane(name: PlaneName) -> Slice:
     """Return the plane of this name."""
-    return Plane[name.name]
+    return checked_slice(name.value)
 
 
 def read_resolution(text: str) -> tuple[int, int]:
@@ -65,7 +66,7 @@ def build_map_spec(
         find_plane(plane),
         _choose_energy(plane, energy, energies),
         read_resolution(resolution),
-        window,  # type: ignore[arg-type]  # MapSpec takes four edges, or None for the whole interior
+        window,
         t_max,
         certify,
         backward,
@@ -73,9 +74,9 @@ def build_map_spec(
 
 
 def _choose_energy(plane: PlaneName, energy: float | None, energies: tuple[float, float] | None) -> float | tuple[float, float]:
-    if plane is PlaneName.X_H:
+    if find_plane(plane).energy_axis is not None:
         if energies is None or energy is not None:
-            raise ValueError("energies: the plane x_h needs --energies LOW HIGH, not --energy")
+            raise ValueError(f"energies: the plane {plane} needs --energies LOW HIGH, not --energy")
         return energies
     if energy is None or energies is not None:
         raise ValueError(f"energy: the plane {plane} needs --energy H, not --energies")
@@ -97,13 +98,14 @@ def find_start(
             raise ValueError("energy: --state already determines it; leave --energy out")
         return state
     assert start is not None
-    if plane is PlaneName.X_H and energy is not None:
-        raise ValueError("energy: on the plane x_h the ordinate is the energy, so leave --energy out")
-    if plane is not PlaneName.X_H and energy is None:
+    chosen = find_plane(plane)
+    if chosen.energy_axis is not None and energy is not None:
+        raise ValueError(f"energy: on the plane {plane} it is a coordinate, so leave --energy out")
+    if chosen.energy_axis is None and energy is None:
         raise ValueError(f"energy: a start on the plane {plane} needs --energy H")
     x, ordinate = np.array(start)[:, None]
-    found = start_states(find_potential(case), find_plane(plane), 0.0 if energy is None else energy, x, ordinate)[0]
-    if np.isnan(found[3]):
+    found = chosen.states(find_potential(case), energy, x, ordinate)[0]
+    if np.isnan(found).any():
         raise ValueError(f"start={start}: forbidden, an orbit there would have negative kinetic energy")
     first, second, third, fourth = found.tolist()
     return first, second, third, fourth

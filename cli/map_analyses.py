@@ -8,8 +8,12 @@ from math import isnan
 from typing import Any
 
 from cli.run_context import RunContext
-from engine import EscapeMap, MapSpec, Plane, compute_map, compute_regularity, compute_trust, find_stable_manifolds
-from engine.service import MOST_IMAGES, join_origin_fates
+from engine import EscapeMap, MapSpec, compute_map, compute_regularity, compute_trust, find_stable_manifolds
+from engine.service import (
+    MOST_IMAGES,
+    SECTION,
+    join_origin_fates,
+)
 from plots.map_analyses import MapAnalyses
 
 
@@ -31,8 +35,8 @@ class AnalysisOptions:
         """Raise ValueError if an analysis is not defined for the map."""
         if not 0 <= self.images <= MOST_IMAGES:
             raise ValueError(f"manifolds={self.images}: must be from 0 to {MOST_IMAGES} images")
-        if self.images and (spec.plane is not Plane.X_PX or spec.backward):
-            raise ValueError(f"manifolds={self.images}: stable manifolds need --plane x_px, and no --backward")
+        if self.images and (spec.plane != SECTION.plane or spec.backward):
+            raise ValueError(f"manifolds={self.images}: stable manifolds need --plane {SECTION.plane.key}, and no --backward")
         if self.origins and spec.backward:
             raise ValueError("origins: cannot be combined with --backward")
 
@@ -50,10 +54,15 @@ def compute_map_with_analyses(spec: MapSpec, wanted: AnalysisOptions, run: RunCo
         run.start_stage("doubtful pixels")
         found["trust"] = compute_trust(frame, on_frame=None, cancel=run.cancel, executor=run.executor)
     if wanted.images:
-        assert not isinstance(spec.energy, tuple)
+        assert spec.common_energy is not None
         run.start_stage("stable manifolds")
         found["manifolds"] = find_stable_manifolds(
-            spec.potential, spec.energy, images=wanted.images, window=spec.window, executor=run.executor, cancel=run.cancel
+            spec.potential,
+            spec.common_energy,
+            images=wanted.images,
+            window=spec.find_window(),
+            executor=run.executor,
+            cancel=run.cancel,
         )
     run.raise_if_cancelled()
     return frame, MapAnalyses(**found)

@@ -15,6 +15,7 @@ class PlaneName(StrEnum):
     X_PX = "x_px"
     X_Y = "x_y"
     X_H = "x_h"
+    Y_PY = "y_py"
 
 
 Edges = tuple[float, float, float, float]

@@ -62,7 +62,7 @@ def _draw_thumbnail(preset: Preset) -> Image.Image:
     figure = Figure(figsize=(SIDE / _DPI, SIDE / _DPI), dpi=_DPI, facecolor="none")
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    draw_pixels(axes, pixels, frame.spec.window, frame.spec.window)
+    draw_pixels(axes, pixels, frame.spec.find_window(), frame.spec.find_window())
     if analyses.manifolds is not None:
         _draw_manifolds(axes, frame, analyses.manifolds)
     else:
@@ -86,25 +86,25 @@ def _analyse(frame: EscapeMap, preset: Preset) -> MapAnalyses:
 def _draw_manifolds(axes: Axes, frame: EscapeMap, manifolds: StableManifolds) -> None:
     for stroke in manifold_strokes(manifolds):
         points, colour = [np.column_stack([arc.x, arc.px]) for arc in stroke.arcs], PAPER.channels[stroke.channel - 1]
-        draw_curve(axes, points, frame.spec.window, colors=colour, linewidths=0.4 * stroke.width)
+        draw_curve(axes, points, frame.spec.find_window(), colors=colour, linewidths=0.4 * stroke.width)
 
 
 def _draw_curves(axes: Axes, frame: EscapeMap, preset: Preset) -> None:
     """Equipotentials, limiting curve, orbits and exits."""
     spec, escape = frame.spec, frame.spec.potential.escape_energy
     energies = (preset.energy, escape, *(level * escape for level in _LEVELS))
-    limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.window)
+    limit, critical, *levels = trace_equipotentials(spec.potential, spec.plane, energies, spec.find_window())
     for pieces in levels:
-        draw_curve(axes, pieces, spec.window, colors=LIGHT.equipotential, linewidths=0.6)
-    draw_curve(axes, critical, spec.window, colors=LIGHT.critical_equipotential, linewidths=1.0)
-    draw_curve(axes, limit, spec.window, colors=PATCH_EDGE, linewidths=1.6)
+        draw_curve(axes, pieces, spec.find_window(), colors=LIGHT.equipotential, linewidths=0.6)
+    draw_curve(axes, critical, spec.find_window(), colors=LIGHT.critical_equipotential, linewidths=1.0)
+    draw_curve(axes, limit, spec.find_window(), colors=PATCH_EDGE, linewidths=1.6)
     for (x, y), colour in zip(preset.starts, PAPER.orbits, strict=False):
         start = start_states(spec.potential, spec.plane, preset.energy, np.array([x]), np.array([y]))[0]
         orbit = integrate_orbit(spec.potential, start, spec.t_max)
-        draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], spec.window, colors=colour, linewidths=1.0)
+        draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], spec.find_window(), colors=colour, linewidths=1.0)
     for exit_orbit in find_lyapunov_orbits(spec.potential, preset.energy):
         colour = PAPER.channels[exit_orbit.channel - 1]
-        draw_curve(axes, [exit_orbit.half_path], spec.window, colors=colour, linewidths=2.5)
+        draw_curve(axes, [exit_orbit.half_path], spec.find_window(), colors=colour, linewidths=2.5)
 
 
 def _reduce_colours(picture: Image.Image) -> Image.Image:

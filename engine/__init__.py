@@ -4,7 +4,7 @@ These are the public names of the library. All results show themselves in notebo
 `to_holoviews`, see `Result`. `engine.service` has the names for the page and other programs, which may change with any version.
 
 - systems: `Potential`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`, `review_potential`
-- starts: `Plane`, `Window`, `default_window`, `start_states`, `trace_zero_velocity_curve`
+- starts: `Plane`, `Slice`, `Coordinate`, `Window`, `default_window`, `start_states`, `trace_zero_velocity_curve`
 - orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `find_section_crossings`, `compute_birkhoff_digits`,
   `judge_orbit`, `compute_separation`, `find_divergent_start`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`, `compute_origin_fates`,
@@ -23,7 +23,6 @@ from engine.basins.wada import WadaTest, compute_wada_test
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
-from engine.dynamics.planes import Plane, Window, default_window, start_states, trace_zero_velocity_curve
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.maps.compute import compute_map
@@ -37,6 +36,10 @@ from engine.potentials.formula_parser import parse_formula, write_formula
 from engine.potentials.potential import CASES, Potential
 from engine.potentials.validation_report import PotentialReview, review_potential
 from engine.representation import Result
+from engine.slices.default_window import default_window
+from engine.slices.limiting_curves import trace_zero_velocity_curve
+from engine.slices.slice import Coordinate, Plane, Slice, start_states
+from engine.slices.window import Window
 from engine.statistics.decay_law_fits import fit_decay_laws
 from engine.statistics.decay_laws import DecayLaws
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
@@ -61,6 +64,7 @@ __all__ = [
     "BasinEntropy",
     "BirkhoffDigits",
     "Certificate",
+    "Coordinate",
     "DecayLaws",
     "DivergentStart",
     "EnergyCurves",
@@ -82,6 +86,7 @@ __all__ = [
     "Result",
     "Separation",
     "ShareFit",
+    "Slice",
     "StableManifolds",
     "SweepSpec",
     "Trust",

@@ -7,7 +7,6 @@ from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, ex
 from engine.basins.uncertainty_exponent import fit_uncertainty
 from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
-from engine.dynamics.planes import trace_equipotentials
 from engine.execution import count_cores
 from engine.file_lock import hold_lock
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
@@ -46,6 +45,9 @@ from engine.potentials.catalogue import PotentialEntry
 from engine.potentials.formula_parser import LONGEST_TEXT
 from engine.potentials.potential import FREQUENCIES, STRENGTHS
 from engine.potentials.validation_report import CriticalPoint, PointKind
+from engine.slices.limiting_curves import trace_equipotentials
+from engine.slices.section import SECTION
+from engine.slices.slice import checked_slice, common_energy
 from engine.statistics.decay_laws import DecayLaw, LawFit
 from engine.statistics.escape_statistics import compute_survival
 from engine.statistics.published_fits import HyperbolicTangent, PaperFits, Polynomial
@@ -80,6 +82,7 @@ __all__ = [
     "MOST_REQUESTS",
     "PREVIEW_SIDE",
     "PREVIEW_TIME",
+    "SECTION",
     "STRENGTHS",
     "WADA_COUNTS_BOUNDED",
     "Answer",
@@ -123,6 +126,8 @@ __all__ = [
     "UncertaintyExponentRequest",
     "UnresolvedMapSpec",
     "WarmupRequest",
+    "checked_slice",
+    "common_energy",
     "compiled_operations",
     "compute_energy_point",
     "compute_preview",

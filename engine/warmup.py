@@ -14,7 +14,6 @@ from types import ModuleType
 import numpy as np
 
 from engine.compiled import kernels_of
-from engine.dynamics.planes import Plane, start_states
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
@@ -26,6 +25,7 @@ from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
+from engine.slices.section import SECTION
 from engine.taylor.bound_kernels import is_generated
 from engine.taylor.jit.compiled_operations import CompiledCodeLimitError
 from engine.trajectories.trajectory import integrate_orbit
@@ -187,12 +187,12 @@ def prepare_kernels(potential: Potential) -> None:
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
-    return compute_map(MapSpec(potential, Plane.X_PX, energy, (2, 2), t_max=_T_MAX * potential.units.time), executor=_EXECUTOR)
+    return compute_map(MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time), executor=_EXECUTOR)
 
 
 def _bounded_start(potential: Potential) -> np.ndarray:
     """(1, 4) a state of low energy."""
-    return start_states(potential, Plane.X_PX, 0.5 * potential.escape_energy, np.zeros(1), np.zeros(1))
+    return SECTION.plane.states(potential, 0.5 * potential.escape_energy, np.zeros(1), np.zeros(1))
 
 
 def _make_in_turn(*calls: Callable[[], object]) -> None:

@@ -28,13 +28,14 @@ from engine import (
     CASES,
     EscapeMap,
     Fate,
-    Plane,
     Potential,
+    Slice,
     StableManifolds,
     Window,
     find_lyapunov_orbits,
     trace_zero_velocity_curve,
 )
+from engine.service import common_energy
 from plots.figure_axes import (
     LETTER,
     POINTS_PER_INCH,
@@ -130,7 +131,7 @@ def draw_map_figure(
     for picture in pictures:
         axes = figure.add_axes((left, 0.0, side / dpi, side / dpi))
         draw_picture(axes, frame, picture, palette, analyses, longest)
-        mark_starts(axes, starts, palette, frame.spec.window)
+        mark_starts(axes, starts, palette, frame.spec.find_window())
         _explain_picture(axes, frame, picture, palette, analyses, longest)
         width = max(side / dpi, _LEGEND_INCHES) + _width_of_labels(axes) + _PANEL_GAP
         left += round(width * dpi) / dpi
@@ -146,12 +147,12 @@ def draw_picture(
     longest: float | None = None,
 ) -> None:
     """Title, pixels, curves and axes of one of `TITLES`; `longest` as for `picture_pixels`."""
-    spec = frame.spec
-    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, longest), spec.window, spec.window)
-    draw_limits(axes, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
+    spec, window = frame.spec, frame.spec.find_window()
+    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, longest), window, window)
+    draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
     if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
-        draw_manifolds(axes, analyses.manifolds, spec.window, palette)
-    show_window(axes, spec.window, "x", spec.plane.ordinate)
+        draw_manifolds(axes, analyses.manifolds, window, palette)
+    show_window(axes, window, *spec.plane.axis_names)
     name_panel(axes, TITLES[picture])
 
 
@@ -195,19 +196,19 @@ def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown: Window) -
 def draw_limits(
     axes: Axes,
     potential: Potential,
-    plane: Plane,
+    plane: Slice,
     energy: float | tuple[float, float],
     shown: Window,
     channel_colours: Sequence[str] | None = None,
 ) -> None:
-    """Draw the limiting curve of a plane and, on (x, y), the Lyapunov orbits.
+    """Draw the limiting curve of a slice and, on (x, y), the Lyapunov orbits.
 
     The orbits have the colours of their channels; without colours they are black and dashed.
     """
-    h = 0.0 if isinstance(energy, tuple) else energy
     limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
-    draw_curve(axes, trace_zero_velocity_curve(potential, plane, h, shown), shown, "limiting curve", **limit)
-    orbits = find_lyapunov_orbits(potential, h) if plane is Plane.X_Y else ()
+    draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit)
+    h = common_energy(energy)
+    orbits = find_lyapunov_orbits(potential, h) if plane.shows_positions and h is not None else ()
     if channel_colours is None:
         paths = [orbit.half_path for orbit in orbits]
         draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit)
@@ -355,9 +356,10 @@ def provenance_line(frame: EscapeMap) -> str:
     facts, plane = frame.provenance(), frame.spec.plane
     x_low, x_high, low, high = (repr(float(edge)) for edge in facts["window"])
     name, (columns, rows) = facts["potential"], facts["resolution"]
-    energy = "" if plane is Plane.X_H else f"h = {facts['energy']!r}, "
+    energy = "" if frame.spec.common_energy is None else f"h = {facts['energy']!r}, "
+    abscissa, ordinate = plane.axis_names
     return (
-        f"{'Case' if name in CASES else 'Potential'} {name}, {energy}plane {plane.value}, x from {x_low} to {x_high}, "
-        f"{plane.ordinate} from {low} to {high}, {columns} × {rows} starts, t_max = {facts['t_max']:g}, "
+        f"{'Case' if name in CASES else 'Potential'} {name}, {energy}plane {plane.title}, {abscissa} from {x_low} to {x_high}, "
+        f"{ordinate} from {low} to {high}, {columns} × {rows} starts, t_max = {facts['t_max']:g}, "
         f"{'' if frame.complete else 'not finished, '}escape-explorer {facts['version']}"
     )

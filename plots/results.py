@@ -35,7 +35,12 @@ from engine import (
     Window,
     default_window,
 )
-from engine.service import RadiusEnvelope, SuperStickySearch, format_number
+from engine.service import (
+    SECTION,
+    RadiusEnvelope,
+    SuperStickySearch,
+    format_number,
+)
 from plots.curve_figures import draw_decay_laws, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
 from plots.image_columns import passage_column
@@ -83,7 +88,7 @@ def to_holoviews(result: Result) -> Any:
     import holoviews as hv
 
     if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
-        return hv.Dataset(result.to_xarray()).to(hv.Image, ["x", result.spec.plane.ordinate])
+        return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     table = result.to_pandas()
     index, *others = table.columns
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
@@ -125,16 +130,17 @@ def _panel(axes: Axes, window: Window) -> Axes:
 def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
     if picture not in TITLES:
         raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
-    draw_picture(_panel(axes, result.spec.window), result, picture, palette)
+    draw_picture(_panel(axes, result.spec.find_window()), result, picture, palette)
 
 
 def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], palette: Palette) -> Axes:
     """Draw the codes of the pixels of an analysis in their colours."""
     spec = result.spec
-    panel = _panel(axes, spec.window)
-    draw_pixels(panel, rgba(colours)[codes][::-1], spec.window, spec.window)
-    draw_limits(panel, spec.potential, spec.plane, spec.energy, spec.window, palette.channels)
-    show_window(panel, spec.window, "x", spec.plane.ordinate)
+    window = spec.find_window()
+    panel = _panel(axes, window)
+    draw_pixels(panel, rgba(colours)[codes][::-1], window, window)
+    draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
+    show_window(panel, window, *spec.plane.axis_names)
     return panel
 
 
@@ -184,11 +190,11 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_stable_manifolds(result: StableManifolds, axes: Axes, palette: Palette) -> None:
-    window = default_window(result.potential, Plane.X_PX, result.energy)
+    window = default_window(result.potential, SECTION.plane, result.energy)
     panel = _panel(axes, window)
-    draw_limits(panel, result.potential, Plane.X_PX, result.energy, window, palette.channels)
+    draw_limits(panel, result.potential, SECTION.plane, result.energy, window, palette.channels)
     draw_manifolds(panel, result, window, palette)
-    show_window(panel, window, "x", Plane.X_PX.ordinate)
+    show_window(panel, window, *SECTION.plane.axis_names)
     name_panel(panel, f"Stable manifolds at h = {result.energy:.6g}")
 
 
@@ -274,8 +280,8 @@ def _draw_digits(result: BirkhoffDigits, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_sticky(result: SuperStickySearch, axes: Axes, palette: Palette) -> None:
-    window = result.spec.window
+    window = result.spec.find_window()
     panel = _panel(axes, window)
     draw_limits(panel, result.spec.potential, result.spec.plane, result.spec.energy, window, palette.channels)
-    show_window(panel, window, "x", result.spec.plane.ordinate)
+    show_window(panel, window, *result.spec.plane.axis_names)
     axes.scatter(result.x, result.ordinate, s=9.0, color=palette.characters[2])

@@ -15,6 +15,7 @@ from engine import (
     MapSpec,
     Plane,
     RegularityMap,
+    Slice,
     UncertaintyExponent,
     Window,
     compute_map,
@@ -53,12 +54,12 @@ class MapShelf:
         self.cancel = cancel
         self._on_map = on_map
         self._maps: dict[MapSpec, EscapeMap] = {}
-        self._curves: dict[tuple[str, Plane], xr.Dataset] = {}
+        self._curves: dict[tuple[str, Slice], xr.Dataset] = {}
         self._regularities: dict[MapSpec, RegularityMap] = {}
         self._searches: dict[MapSpec, SuperStickySearch] = {}
         self._exponents: dict[MapSpec, UncertaintyExponent] = {}
 
-    def map(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
+    def map(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
         """Map of a case of the paper.
 
         Parameters
@@ -77,7 +78,7 @@ class MapShelf:
         """
         return self._stored(self._spec(case, plane, energy, window))
 
-    def curves(self, case: str, plane: Plane) -> xr.Dataset:
+    def curves(self, case: str, plane: Slice) -> xr.Dataset:
         """Shares at the energies of `curve_energies`, from `engine.tabulate_crossing_statistics` with crossings to n = 0.
 
         New maps are not stored.
@@ -126,7 +127,7 @@ class MapShelf:
         """
         return self._search(case, energy, self.quality.classified_resolution)
 
-    def exponent(self, case: str, plane: Plane, energy: float) -> UncertaintyExponent:
+    def exponent(self, case: str, plane: Slice, energy: float) -> UncertaintyExponent:
         """Uncertainty exponent of the basins of a case.
 
         Raises
@@ -150,11 +151,11 @@ class MapShelf:
             )
         return self._searches[spec]
 
-    def _spec(self, case: str, plane: Plane, energy: float | tuple[float, float], window: Window | None = None) -> MapSpec:
+    def _spec(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> MapSpec:
         side, t_max = self.quality.resolution, self.quality.t_max
-        return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)  # type: ignore[arg-type]  # None is the whole interior
+        return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)
 
-    def _curve_maps(self, case: str, plane: Plane) -> Iterator[EscapeMap]:
+    def _curve_maps(self, case: str, plane: Slice) -> Iterator[EscapeMap]:
         for energy in curve_energies(case, self.quality.curve_points):
             spec = self._spec(case, plane, energy)
             yield self._maps[spec] if spec in self._maps else self._compute(spec)

@@ -1,11 +1,19 @@
-"""Names of planes and axes as in the paper, in Matplotlib's math notation."""
+"""Names of slices and axes as in the paper, in Matplotlib's math notation."""
 
 from __future__ import annotations
 
-from engine import Plane
+from engine import Coordinate, Slice
 
-ORDINATES = {Plane.X_Y: "$y$", Plane.X_PX: r"$\dot{x}$", Plane.X_H: "$h$"}
-"""Name of the upright axis of each plane."""
+_SYMBOLS = {
+    Coordinate.X: "x", Coordinate.Y: "y", Coordinate.PX: r"\dot{x}", Coordinate.PY: r"\dot{y}", Coordinate.H: "h"
+}  # fmt: skip
 
-PLANES = {Plane.X_Y: "$(x, y)$", Plane.X_PX: r"$(x, \dot{x})$", Plane.X_H: "$(x, h)$"}
-"""Name of each plane."""
+
+def axis_label(axis: Coordinate) -> str:
+    """Name of an axis."""
+    return f"${_SYMBOLS[axis]}$"
+
+
+def plane_label(plane: Slice) -> str:
+    """Name of a slice by its axes."""
+    return f"$({_SYMBOLS[plane.abscissa]}, {_SYMBOLS[plane.ordinate]})$"

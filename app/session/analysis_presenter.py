@@ -24,13 +24,13 @@ from engine import (
     EscapeMap,
     MapSpec,
     OriginFateMap,
-    Plane,
     RegularityMap,
     StableManifolds,
     TrustMap,
     UncertaintyExponent,
 )
 from engine.service import (
+    SECTION,
     BasinMeasuresRequest,
     DecayLawsRequest,
     EnergyCurvesRequest,
@@ -172,8 +172,8 @@ class AnalysisPresenter:
         self._on_analyses(self._analyses)
 
     def _explain_manifolds(self) -> None:
-        if self._state.manifolds and self._state.plane is not Plane.X_PX:
-            self._note(manifolds=f"Stable manifolds are curves in the {Plane.X_PX.value} plane and are drawn there only.")
+        if self._state.manifolds and self._state.plane != SECTION.plane:
+            self._note(manifolds=f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn there only.")
 
     def _note(self, **sentences: str) -> None:
         self._notes |= sentences
@@ -230,7 +230,7 @@ class AnalysisPresenter:
             self._stop_sweep()
             return
         state, energies = self._state, self._state.system.energies
-        plane = Plane.X_PX if state.plane is Plane.X_H else state.plane
+        plane = state.plane if state.plane.energy_axis is None else SECTION.plane
         swept = np.round(np.linspace(energies.low, energies.high, SWEPT_ENERGIES), 4).tolist()
         self.curves.show_running(True)
         self._sweeping.submit(EnergyCurvesRequest(EnergyCurvesSpec(state.potential, plane, tuple(swept), t_max=state.t_max)))
@@ -257,11 +257,11 @@ class AnalysisPresenter:
 
 
 def _manifolds_request(frame: EscapeMap) -> StableManifoldsRequest | None:
-    """Request for the stable manifolds in the plane of a map; None on planes other than (x, px)."""
+    """Request for the stable manifolds in the plane of a map; None if it is not the section."""
     spec = frame.spec
-    if isinstance(spec.energy, tuple) or spec.plane is not Plane.X_PX:
+    if spec.common_energy is None or spec.plane != SECTION.plane:
         return None
-    return StableManifoldsRequest(spec.potential, spec.energy, IMAGES, None if spec.has_default_window() else spec.window)
+    return StableManifoldsRequest(spec.potential, spec.common_energy, IMAGES, spec.given_window)
 
 
 def _describe_manifolds(manifolds: StableManifolds, image: int) -> str:

@@ -41,7 +41,7 @@ from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, Plane, Window
+from engine import EscapeMap, Fate, Window
 from engine.service import JobClient, describe_fate, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
 
@@ -217,7 +217,7 @@ class Explorer:
             case Act.ZOOM:
                 window_moves(state)["+"]()
             case Act.ORBIT:
-                window = state.map_spec().window
+                window = state.map_spec().find_window()
                 x = 0.6 * window.x_low + 0.4 * window.x_high
                 ordinate = 0.6 * window.ordinate_low + 0.4 * window.ordinate_high
                 self._add_start(*self.maps.snapped(x, ordinate))
@@ -315,7 +315,7 @@ class Explorer:
     def _play(self) -> None:
         if self.animation.playing:
             self.animation.stop()
-        elif self.state.plane is not Plane.X_H:
+        elif self.state.plane.energy_axis is None:
             energies = self.state.system.energies
             self.animation.start(self.state.energy, energies.low, energies.high)
             self.controls.show_playing(True)
@@ -354,8 +354,8 @@ class Explorer:
         with pn.io.hold():
             self.analyses.begin(frame.spec)
             self.maps.show(frame, columns, preview=True)
-            if not isinstance(frame.spec.energy, tuple):
-                self.controls.show_energy(frame.spec.energy)
+            if frame.spec.common_energy is not None:
+                self.controls.show_energy(frame.spec.common_energy)
             self.progress.show_preview()
 
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
@@ -367,7 +367,7 @@ class Explorer:
             self.analyses.begin(frame.spec)
             self.maps.show(frame, columns)
             if self.state.window is None:
-                self.maps.set_home(frame.spec.window)
+                self.maps.set_home(frame.spec.find_window())
             self.progress.show(frame)
             if frame.stride == 1:
                 self.statistics.show(frame)

@@ -20,8 +20,11 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine import Plane
-from engine.service import IndicatorVerdict, JobSubmitter
+from engine.service import (
+    SECTION,
+    IndicatorVerdict,
+    JobSubmitter,
+)
 from plots.orbit_curves import OrbitCurves, restrict_curves
 from plots.palette import Palette
 
@@ -109,10 +112,11 @@ class OrbitPresenter:
             requests.close()
 
     def _open_plane(self) -> None:
-        """Open the (x, px) plane at the energy of the chosen orbit, with that orbit."""
-        start = self._state.chosen_start
-        if start is not None and self._state.plane is Plane.X_H:
-            self._state.param.update(plane=Plane.X_PX, energy=start[1], window=None, starts=((start[0], 0.0),), chosen=0)
+        """Open the section at the energy of the chosen orbit, with that orbit."""
+        start, axis = self._state.chosen_start, self._state.plane.energy_axis
+        if start is not None and axis is not None:
+            on_section = (start[1 - axis], 0.0)
+            self._state.param.update(plane=SECTION.plane, energy=start[axis], window=None, starts=(on_section,), chosen=0)
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show the orbits that are known."""
@@ -134,7 +138,7 @@ class OrbitPresenter:
     def _mark(self) -> None:
         """Mark starts and sections on the maps."""
         self._marks.show_starts([one.start for one in self._shown])
-        on_section = self._state.plane is Plane.X_PX
+        on_section = self._state.plane == SECTION.plane
         drawings = [one.drawing for one in self._shown]
         self._marks.show_sections([one.section if one is not None and on_section else NO_POINTS for one in drawings])
 

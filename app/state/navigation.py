@@ -39,7 +39,7 @@ def window_moves(state: ViewState) -> dict[str, Callable[[], None]]:
 
     def show(change: Callable[[Window], Window | None]) -> Callable[[], None]:
         def act() -> None:
-            state.window = change(state.map_spec().window)
+            state.window = change(state.map_spec().find_window())
 
         return act
 

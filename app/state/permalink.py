@@ -38,7 +38,7 @@ def write_link(state: ViewState) -> str:
         "case": state.case,
         **({"V": state.formula} if state.case == TYPED else {}),
         **{name: repr(value) for name, value in state.system.changed.items()},
-        "plane": state.plane.name.lower(),
+        "plane": state.plane.key,
         "h": repr(float(state.energy)),
         "t_max": f"{state.t_max:g}",
         "resolution": state.resolution,
@@ -193,7 +193,7 @@ def _listed(choices: Iterable[str]) -> str:
 
 
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
-_PLANES = {plane.name.lower(): plane for plane in Plane}
+_PLANES = {plane.key: plane for plane in Plane}
 _SWITCH = {"yes": True, "no": False}
 _ANALYSES = {analysis.value: analysis for analysis in Analysis}
 _PALETTES = {name: name for name in PALETTES}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from app.state.view_state import DEFAULT_SIDE, Analysis
-from engine import Plane, Window
+from engine import Plane, Slice, Window
 
 GROUPS = ("The paper", "Places", "Explanations")
 """Kinds of figures in the paper, details found by zooming, and analyses that explain both."""
@@ -38,7 +38,7 @@ class Preset:
     group: str
     picture: str
     case: str
-    plane: Plane
+    plane: Slice
     energy: float
     window: Window | None = None
     t_max: float = 1e5
@@ -229,6 +229,13 @@ PRESETS: tuple[Preset, ...] = (
         starts=((0.05, 0.31), (0.11, 0.01), (0.2, 0.46), (0.48, 0.2)),
         caption="In the light region in the middle orbits escape at once. Around it bands of increasing escape time approach "
         "the grey edge of a regular region, where orbits may stay for thousands of time units.",
+    ),
+    Preset(
+        key="section", title="The section of Hénon and Heiles", group=_EXPLANATIONS, picture="basins",
+        case="HH", plane=Plane.Y_PY, energy=0.18, t_max=1e4, starts=((0.04, 0.0), (0.52, 0.0), (0.8, 0.0), (-0.2, 0.0)),
+        caption="Hénon and Heiles drew their orbits in this plane, y and py where an orbit passes x = 0 to the right. At their "
+        "energies all orbits are bounded; slightly above 1/6 only the grey islands are left of them, and all around an orbit "
+        "leaves through one of the three exits.",
     ),
     Preset(
         key="threads", title="Stable manifolds", group=_EXPLANATIONS, picture="curves", manifolds=True,

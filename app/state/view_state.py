@@ -147,7 +147,7 @@ class ViewState(param.Parameterized):
     def unresolved_map_spec_at(self, h: float) -> UnresolvedMapSpec:
         """The same at energy `h`."""
         energy: float | tuple[float, float] = h
-        if self.plane is Plane.X_H:
+        if self.plane.energy_axis is not None:
             energy = (self.potential.escape_energy, self.system.energies.high)
         return UnresolvedMapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 

@@ -16,7 +16,6 @@ from engine.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent,
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import Plane
 from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.maps.spec import MapSpec
@@ -86,7 +85,7 @@ def compute_uncertainty_exponent(
     spec
         Plane, energy, window, direction of time and t_max. The largest ε is the shorter side of a pixel of its resolution. The
         smallest ε is 1e-10 length units of the well or, in a deep zoom, four decades below a pixel, but not below 1e-13 units.
-        On (x, px) ε is measured with momenta in units in which the well's time unit is 1.
+        Momenta are measured in units in which the well's time unit is 1.
     pairs
         Initial number of pairs at each separation, 10 to 100 000.
     separations
@@ -137,11 +136,10 @@ def compute_uncertainty_exponent(
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:
     """(count,) ε in units of the well, decreasing from the side of a pixel."""
-    given_window, spec = spec.window, spec.in_well_units()
-    window, (columns, rows) = spec.window, spec.resolution
-    pixel = (window.x_high - window.x_low) / columns
-    if spec.plane is not Plane.X_H:
-        pixel = min(pixel, (window.ordinate_high - window.ordinate_low) / rows)
+    given_window, spec = spec.find_window(), spec.in_well_units()
+    window, (columns, rows) = spec.find_window(), spec.resolution
+    sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
+    pixel = min(side for side, free in zip(sides, spec.plane.free_axes, strict=True) if free)
     smallest = max(min(MIN_SEPARATION, pixel * 10.0**-_DECADES_BELOW_PIXEL), _MIN_ZOOM_SEPARATION)
     if pixel < 100.0 * smallest:
         raise ValueError(
@@ -169,7 +167,8 @@ class _PairSampler:
         self.random = [np.random.default_rng([seed, index]) for index in range(separations.size)]
         self.pairs, self.uncertain, self.one_inside, self.both_inside = np.zeros((4, separations.size), np.int64)
         self.integrated_time = 0.0
-        self.row_energy = spec.pixel_centres()[1] if isinstance(spec.energy, tuple) else np.array([spec.energy])
+        axis = spec.plane.energy_axis
+        self.row_energy = np.array([spec.common_energy]) if axis is None else spec.pixel_centres()[axis]
         self.is_open = self.row_energy > spec.potential.escape_energy
         self.curves = self._find_exit_curves()
 
@@ -268,19 +267,20 @@ class _PairSampler:
 
     def _draw_points(self, index: int, size: int) -> tuple[np.ndarray, np.ndarray]:
         """(2, 2 size) x and ordinate of all first starts and then all second ones, and (size,) energy rows of the pairs."""
-        window, random = self.spec.window, self.random[index]
-        x = random.uniform(window.x_low, window.x_high, size)
-        if self.spec.plane is Plane.X_H:
-            rows = random.integers(0, self.row_energy.size, size)
-            ordinate, angle = self.row_energy[rows], np.pi * random.integers(0, 2, size)
-        else:
-            rows = np.zeros(size, np.int64)
-            ordinate = random.uniform(window.ordinate_low, window.ordinate_high, size)
+        window, random, axis = self.spec.find_window(), self.random[index], self.spec.plane.energy_axis
+        edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+        rows = np.zeros(size, np.int64)
+        if axis is None:
+            points = np.array([random.uniform(*interval, size) for interval in edges])
             angle = random.uniform(0.0, 2.0 * np.pi, size)
-        shift = self.separations[index] * np.array([np.cos(angle), np.sin(angle)])
-        if self.spec.plane is Plane.X_H:
-            shift[1] = 0.0
-        return np.concatenate([[x, ordinate], [x + shift[0], ordinate + shift[1]]], axis=1), rows
+            shift = self.separations[index] * np.array([np.cos(angle), np.sin(angle)])
+            return np.concatenate([points, points + shift], axis=1), rows
+        points, shift = np.zeros((2, size)), np.zeros((2, size))
+        points[1 - axis] = random.uniform(*edges[1 - axis], size)
+        rows = random.integers(0, self.row_energy.size, size)
+        points[axis] = self.row_energy[rows]
+        shift[1 - axis] = self.separations[index] * np.cos(np.pi * random.integers(0, 2, size))
+        return np.concatenate([points, points + shift], axis=1), rows
 
     def fit(self) -> UncertaintyExponent:
         """Exponent from all pairs so far, with separations and horizon in the units of the given potential."""

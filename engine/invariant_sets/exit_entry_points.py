@@ -7,12 +7,12 @@ import functools
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.planes import Plane, required_energy
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.potentials.potential import Potential
+from engine.slices.section import SECTION
 
 # Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles to the inward direction.
 _POSITIONS = slice(10, -10, 10)
@@ -60,7 +60,7 @@ def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.
     """(n,) bool: points (n, 2) allowed at this energy and inside all exits; NaN points and orbits that left again are neither."""
     x, px = points.T
     with np.errstate(invalid="ignore"):
-        allowed = required_energy(potential, Plane.X_PX, x, px) <= energy
+        allowed = SECTION.plane.required_energy(potential, x, px) <= energy
     outside = find_outside_channels(potential, energy, np.where(allowed, x, 0.0), np.zeros_like(x))
     interior: np.ndarray = allowed & (outside == 0)
     return interior

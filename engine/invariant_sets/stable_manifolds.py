@@ -18,12 +18,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import read_only
-from engine.dynamics.planes import Plane, Window, default_window
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
 from engine.representation import Result
+from engine.slices.default_window import default_window
+from engine.slices.section import SECTION
+from engine.slices.window import Window
 from engine.validation import checked_count
 
 MOST_IMAGES = 6
@@ -163,7 +165,7 @@ def find_stable_manifolds(
     """
     images = checked_count("images", images, 1, MOST_IMAGES)
     given, given_energy, units = potential, float(energy), potential.units
-    whole = default_window(potential, Plane.X_PX, energy)
+    whole = default_window(potential, SECTION.plane, energy)
     potential, energy = potential.in_well_units, energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum
     spacing = _PointSpacing.for_window(whole.scaled(*factors), window.scaled(*factors) if window is not None else None)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.basins.wada import WadaTest, compute_wada_test
-from engine.dynamics.planes import Plane, Window
 from engine.execution import raise_if_cancelled
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.jobs.context import JobContext
@@ -19,6 +18,8 @@ from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import PotentialReview, review_potential
+from engine.slices.slice import Energy, Slice
+from engine.slices.window import Window
 from engine.statistics.decay_law_fits import fit_decay_laws
 from engine.statistics.decay_laws import DecayLaws
 from engine.statistics.escape_statistics import compute_statistics
@@ -98,8 +99,8 @@ class DivergentStartRequest:
     """Request for the nearest start with another fate: the arguments of `find_divergent_start`."""
 
     potential: Potential
-    plane: Plane
-    energy: float | tuple[float, float]
+    plane: Slice
+    energy: Energy
     x: float
     ordinate: float
     t_max: float
@@ -126,8 +127,8 @@ class UnresolvedMapSpec:
     """The arguments of `MapSpec`, not validated yet; a window of None is not replaced by the default window yet."""
 
     potential: Potential
-    plane: Plane
-    energy: float | tuple[float, float]
+    plane: Slice
+    energy: Energy
     resolution: tuple[int, int]
     window: Window | None
     t_max: float
@@ -135,7 +136,7 @@ class UnresolvedMapSpec:
     def spec(self) -> MapSpec:
         """Return the validated spec. The default window needs Lyapunov orbits: milliseconds, and compiled kernels."""
         system = (self.potential, self.plane, self.energy, self.resolution)
-        return MapSpec(*system, self.window, self.t_max)  # type: ignore[arg-type]  # MapSpec replaces None
+        return MapSpec(*system, self.window, self.t_max)
 
 
 @dataclass(frozen=True)

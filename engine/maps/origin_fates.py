@@ -61,13 +61,13 @@ class OriginFateMap(PixelAnalysis):
         # Slow to import, and seldom used.
         import xarray as xr
 
-        plane = self.spec.plane
-        dims = (plane.ordinate, "x")
+        abscissa, ordinate = self.spec.plane.axis_names
+        dims = (ordinate, abscissa)
         variables: dict[str, Any] = {
             name: (dims, codes, {"long_name": f"channel the orbit {verb} by (k >= 1) or outcome code", **describe_codes(Fate)})
             for name, verb, codes in (("origin", "entered", self.origin), ("fate", "leaves", self.fate))
         }
-        coordinates = {plane.ordinate: self.ordinate, "x": self.x}
+        coordinates = {ordinate: self.ordinate, abscissa: self.x}
         return xr.Dataset(variables, coordinates, self.spec.provenance())
 
 

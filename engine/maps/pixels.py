@@ -10,7 +10,6 @@ import numpy as np
 
 from engine.arrays import read_only
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import find_mirror_images
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
 from engine.representation import MapResult
@@ -38,10 +37,11 @@ class PixelAnalysis(MapResult):
         import xarray as xr
 
         x, ordinate = self.spec.pixel_centres()
+        abscissa_name, ordinate_name = self.spec.plane.axis_names
         images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
-        dims = (self.spec.plane.ordinate, "x")
+        dims = (ordinate_name, abscissa_name)
         variables = {name: (dims, image, describe_codes(self.codes)) for name, image in images.items()}
-        return xr.Dataset(variables, {dims[0]: ordinate, "x": x}, self.spec.provenance())
+        return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, self.spec.provenance())
 
     @property
     def nbytes(self) -> int:
@@ -74,7 +74,7 @@ class MirrorPixels:
     """
 
     def __init__(self, spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> None:
-        partner = find_mirror_images(spec.potential, spec.plane, x, ordinate)
+        partner = spec.plane.find_mirror_images(spec.potential, x, ordinate)
         self.symmetric = partner is not None
         self.partner = np.arange(x.size * ordinate.size) if partner is None else partner
 

@@ -11,9 +11,9 @@ import numpy as np
 from engine.dynamics.batch import OrbitBatch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
-from engine.dynamics.planes import Window
 from engine.maps.spec import MapSpec
 from engine.representation import MapResult
+from engine.slices.window import Window
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,7 +92,7 @@ class EscapeMap(MapResult):
     def numbers(self) -> dict[str, Any]:
         """The request, and the share of each outcome among the interior starts."""
         spec = self.spec
-        made_by = {"potential": spec.potential.name, "plane": spec.plane.value, "energy": str(spec.energy), "t_max": spec.t_max}
+        made_by = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
         shares = self.fractions().items()
         names = (f"channel {code}" if code > 0 else Fate(code).name.lower().replace("_", " ") for code, _ in shares)
         return made_by | dict(zip(names, (share for _, share in shares), strict=True)) | {"complete": self.complete}
@@ -128,8 +128,9 @@ class EscapeMap(MapResult):
     def in_well_units(self) -> EscapeMap:
         """The same map with coordinates, energies and times in units of the well, in which its `batch` always is."""
         units, spec = self.spec.potential.units, self.spec.in_well_units()
+        x_unit, ordinate_unit = spec.plane.axis_units(units)
         return replace(
-            self, spec=spec, x=self.x / units.length, ordinate=self.ordinate / spec.plane.ordinate_unit(units),
+            self, spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit,
             escape_time=self.escape_time / units.time, horizon=self.horizon / units.time,
         )  # fmt: skip
 
@@ -164,10 +165,10 @@ class EscapeMap(MapResult):
         """
         names = ("fate", "escape_time", "crossings", "certificate")
         if self.stride == 1:
-            return {name: getattr(self, name) for name in names}, self.spec.window
+            return {name: getattr(self, name) for name in names}, self.spec.find_window()
         pixels = np.ix_(*(np.unique(representative_indices(size, self.stride)) for size in self.fate.shape))
         arrays = {name: getattr(self, name)[pixels] for name in names}
-        (rows, columns), window = arrays["fate"].shape, self.spec.window
+        (rows, columns), window = arrays["fate"].shape, self.spec.find_window()
         x_high = window.x_low + (window.x_high - window.x_low) * columns * self.stride / self.fate.shape[1]
         high = window.ordinate_low + (window.ordinate_high - window.ordinate_low) * rows * self.stride / self.fate.shape[0]
         return arrays, Window(window.x_low, x_high, window.ordinate_low, high)
@@ -177,8 +178,8 @@ class EscapeMap(MapResult):
         # Slow to import, and seldom used.
         import xarray as xr
 
-        plane = self.spec.plane
-        dims = (plane.ordinate, "x")
+        abscissa, ordinate = self.spec.plane.axis_names
+        dims = (ordinate, abscissa)
         variables = {
             "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **describe_codes(Fate)}),
             "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
@@ -190,8 +191,8 @@ class EscapeMap(MapResult):
         if self.trust is not None:
             variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})
         coordinates = {
-            plane.ordinate: (plane.ordinate, self.ordinate, {"units": "1"}),
-            "x": ("x", self.x, {"units": "1"}),
+            ordinate: (ordinate, self.ordinate, {"units": "1"}),
+            abscissa: (abscissa, self.x, {"units": "1"}),
         }
         return xr.Dataset(variables, coordinates, self.provenance())
 

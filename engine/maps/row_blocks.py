@@ -6,19 +6,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from engine.dynamics.planes import Plane
 from engine.maps.spec import MapSpec
 
 
 def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
-    """Divide the rows of a map into blocks; on (x, px) each block contains the mirror images of its rows.
+    """Divide the rows of a map into blocks; each block contains the mirror images of its rows.
 
     Parameters
     ----------
     spec
         The map.
     max_pixels
-        Largest number of pixels in a block, at least 1. A block has at least one row, on (x, px) one row and its mirror image.
+        Largest number of pixels in a block, at least 1. A block has at least one row and its mirror image.
 
     Yields
     ------
@@ -26,7 +25,8 @@ def row_blocks(spec: MapSpec, max_pixels: int) -> Iterator[np.ndarray]:
     """
     columns, rows = spec.resolution
     height = max(max_pixels // columns, 1)
-    if spec.plane is not Plane.X_PX:
+    mirrored = spec.plane.mirrored_axes
+    if mirrored is None or not mirrored[1]:
         yield from (np.arange(low, min(low + height, rows)) for low in range(0, rows, height))
         return
     half = max(height // 2, 1)

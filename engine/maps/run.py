@@ -15,7 +15,6 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled, run_parts
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
@@ -83,14 +82,14 @@ class MapRun:
         self.stride = _coarsest_stride(self.shape) if coarse_first else 1
         self.horizon = min(_FIRST_HORIZON, spec.t_max)
         self._mirror = MirrorPixels(spec, self.x, self.ordinate)
-        row = np.repeat(np.arange(self.shape[0]), self.shape[1])
-        self._energy = self.ordinate[row] if isinstance(spec.energy, tuple) else np.full(row.size, spec.energy)
-        # On (x, h) each row has its own energy and exits.
-        self._curve_row = row if spec.plane is Plane.X_H else np.zeros_like(row)
+        rows_of_pixels, columns_of_pixels = np.divmod(np.arange(self.ordinate.size * self.x.size), self.x.size)
+        self._energy = spec.energies(self.x[columns_of_pixels], self.ordinate[rows_of_pixels])
+        # Along an axis h each row, or column, has its own energy and exits.
+        self._curve_row = spec.plane.energy_groups(*self.shape)
         self._curves = np.repeat(closed_channel_curves(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         if resume is None:
-            self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(row.size, bool)
+            self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
         else:
             assert resume.batch is not None
             self._batch, self._started = resume.batch.copy(), resume.started.ravel().copy()
@@ -146,14 +145,22 @@ class MapRun:
     ) -> None:
         """Compute the exits that the pixels need, and start pixels not started yet."""
         self.stride, self.horizon = stride, horizon
-        for row in self._rows_without_exits.intersection(self._curve_row[pixels].tolist() if self._rows_without_exits else ()):
-            energy = float(self.ordinate[row]) if self.spec.plane is Plane.X_H else float(self._energy[0])
-            potential = self.given_spec.potential
-            self._curves[row] = exit_curves_in_well_units(potential, energy * potential.units.energy)
-            self._rows_without_exits.discard(row)
+        self._find_exits(pixels)
         fresh = pixels[~self._started[pixels]]
         tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, executor=executor, cancel=cancel)
         self._started[tested] = True
+
+    def _find_exits(self, pixels: np.ndarray) -> None:
+        """Find the exits at those energies of the pixels at which they are not known yet."""
+        if not self._rows_without_exits:
+            return
+        potential = self.given_spec.potential
+        rows, firsts = np.unique(self._curve_row[pixels], return_index=True)
+        for row, pixel in zip(rows.tolist(), pixels[firsts], strict=True):
+            if row in self._rows_without_exits:
+                energy = float(self._energy[pixel]) * potential.units.energy
+                self._curves[row] = exit_curves_in_well_units(potential, energy)
+                self._rows_without_exits.discard(row)
 
     def _certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
         """Mark undecided orbits as bounded that have a certificate."""
@@ -162,10 +169,9 @@ class MapRun:
         closed = self._energy[undecided] <= spec.potential.escape_energy
         batch.mark_bounded(undecided[closed], Certificate.CLOSED)
         undecided = undecided[~closed]
-        energy = None if isinstance(spec.energy, tuple) else spec.energy
         grid_indices = np.column_stack(np.divmod(undecided, self.shape[1]))
         certifier = BoundednessCertifier(
-            spec.potential, energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, executor, cancel
+            spec.potential, spec.common_energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, executor, cancel
         )
 
         def mark_certified() -> None:
@@ -186,10 +192,11 @@ class MapRun:
         arrays |= {"certificate": self._batch.certificates()}
         arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
         spec, units = self.given_spec, self.given_spec.potential.units
+        x_unit, ordinate_unit = spec.plane.axis_units(units)
         arrays["escape_time"] = units.time * arrays["escape_time"]
         pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
         return EscapeMap(
-            spec=spec, x=read_only(units.length * self.x), ordinate=read_only(spec.plane.ordinate_unit(units) * self.ordinate),
+            spec=spec, x=read_only(x_unit * self.x), ordinate=read_only(ordinate_unit * self.ordinate),
             stride=self.stride, horizon=units.time * self.horizon, progress=self.progress(), complete=complete, **pixel_arrays,
         )  # fmt: skip
 

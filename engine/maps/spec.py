@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.planes import Plane, Window, default_window, start_states
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
+from engine.slices.default_window import default_window
+from engine.slices.slice import Energy, Slice, checked_slice, common_energy, scaled_energy
+from engine.slices.window import Window, checked_window
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
-from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max, short_repr
+from engine.validation import checked_t_max, short_repr
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -30,20 +32,22 @@ FINEST_PIXEL = 1e-15
 class MapSpec:
     """An escape map: the orbits, the resolution and the integration time.
 
+    Making a request computes nothing: the default window, which depends on the exits, is found by `find_window`.
+
     Parameters
     ----------
     potential
         The `Potential`.
     plane
-        Plane of initial conditions.
+        The slice of starts: a `Plane` or another `Slice`.
     energy
-        h, finite, dimensionless; on (x, h) a pair (low, high). At or below the escape energy no orbit escapes.
+        h, finite, dimensionless; on a slice with an axis h a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
         (columns, rows), each 1 to 4096. In the default window an odd number of columns puts one on x = 0, where an orbit of a
         potential even in x can stay for ever by symmetry alone; such a line has measure zero, but its pixels count in shares.
     window
-        `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior. On (x, h) the ordinate
-        is the energy.
+        `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior, also after
+        ``dataclasses.replace(spec, energy=…)``.
     t_max
         Integration time, 0 < t_max ≤ 1e8, dimensionless.
     certify
@@ -62,7 +66,7 @@ class MapSpec:
     --------
     >>> from engine import CASES, MapSpec, Plane
     >>> spec = MapSpec(CASES["III"], Plane.X_PX, 0.45)
-    >>> spec.resolution, spec.t_max, round(spec.window.x_high, 4)
+    >>> spec.resolution, spec.t_max, round(spec.find_window().x_high, 4)
     ((224, 224), 100000.0, 1.0056)
     >>> MapSpec(CASES["III"], Plane.X_PX, 0.45, resolution=(0, 50))
     Traceback (most recent call last):
@@ -71,43 +75,65 @@ class MapSpec:
     """
 
     potential: Potential
-    plane: Plane
-    energy: float | tuple[float, float]
+    plane: Slice
+    energy: Energy
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
-    window: Window = None  # type: ignore[assignment]  # None is replaced in __post_init__
+    window: Window | tuple[float, float, float, float] | None = None
     t_max: float = 1e5
     certify: bool = True
     backward: bool = False
 
     def __post_init__(self) -> None:
-        plane = Plane(self.plane)
-        energy = _checked_energy(plane, self.energy)
-        for name, value in (("plane", plane), ("energy", energy), ("resolution", _checked_resolution(self.resolution))):
+        if not isinstance(self.potential, Potential):
+            raise ValueError(f"potential={short_repr(self.potential)}: must be a Potential")
+        plane = checked_slice(self.plane)
+        checked = {
+            "plane": plane,
+            "energy": plane.checked_energy(self.energy),
+            "resolution": _checked_resolution(self.resolution),
+            "window": None if self.window is None else checked_window(self.window),
+            "t_max": checked_t_max(self.t_max),
+            "certify": bool(self.certify),
+            "backward": bool(self.backward),
+        }
+        for name, value in checked.items():
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "t_max", checked_t_max(self.t_max))
-        for name in ("certify", "backward"):
-            object.__setattr__(self, name, bool(getattr(self, name)))
-        window: Any = self.window
-        if window is None:
-            window = default_window(self.potential, plane, energy)
-        object.__setattr__(self, "window", _checked_window(window))
-        _check_pixels(self)
+
+    @property
+    def common_energy(self) -> float | None:
+        """h of all starts; None on a slice with an axis h."""
+        return common_energy(self.energy)
+
+    @property
+    def given_window(self) -> Window | None:
+        """The window as it was given; None for the default window."""
+        return None if self.window is None else checked_window(self.window)
+
+    def find_window(self) -> Window:
+        """The window of the map: the given one, or the default window.
+
+        Raises
+        ------
+        ValueError
+            If no default window or no exit is defined at an energy, or the pixels are too close for double precision.
+        """
+        window = self.given_window or default_window(self.potential, self.plane, self.energy)
+        _check_pixels(self, window)
+        return window
 
     def in_well_units(self) -> MapSpec:
-        """The same map in units of the well; the request itself if these are 1.
-
-        The legal range of t_max and of energies does not apply to it.
-        """
-        units = self.potential.units
-        if units == WellUnits():
-            return self
-        low, high = self.energy if isinstance(self.energy, tuple) else (self.energy, self.energy)
-        energies = low / units.energy, high / units.energy
+        """The same map in units of the well, with its window; the legal range of t_max and of energies does not apply to it."""
+        units, window = self.potential.units, self.find_window()
         scaled = copy.copy(self)
+        object.__setattr__(scaled, "window", window)
+        if units == WellUnits():
+            return scaled
         for name, value in (
             ("potential", self.potential.in_well_units),
-            ("energy", energies if isinstance(self.energy, tuple) else energies[0]),
-            ("window", self.window.scaled(1.0 / units.length, 1.0 / self.plane.ordinate_unit(units))),
+            ("plane", self.plane.in_well_units(units)),
+            # Units are powers of 2, so that factors are exact.
+            ("energy", scaled_energy(self.energy, 1.0 / units.energy)),
+            ("window", window.scaled(*(1.0 / unit for unit in self.plane.axis_units(units)))),
             ("t_max", self.t_max / units.time),
         ):
             object.__setattr__(scaled, name, value)
@@ -115,31 +141,27 @@ class MapSpec:
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres."""
-        return self.window.pixel_centres(*self.resolution)
+        return self.find_window().pixel_centres(*self.resolution)
+
+    def energies(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
+        """(n,) h of points (n,), (n,) of the slice."""
+        return np.broadcast_to(self.plane.energies(self.common_energy, x, ordinate), np.shape(x))
 
     def start_states(self, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """(n, 4) initial states x, y, px, py of the points (n,), (n,) of the plane; py is NaN where forbidden."""
-        energy = 0.0 if isinstance(self.energy, tuple) else self.energy
-        states = start_states(self.potential, self.plane, energy, x, ordinate)
+        """(n, 4) initial states x, y, px, py of points (n,), (n,) of the slice; NaN where forbidden."""
+        states = self.plane.states(self.potential, self.common_energy, x, ordinate)
         if self.backward:
             states[:, 2:] *= -1.0
         return states
 
-    def has_default_window(self) -> bool:
-        """Whether the window shows the whole interior; False at energies that are too high for a default window."""
-        try:
-            return self.window == default_window(self.potential, self.plane, self.energy)
-        except ValueError:
-            return False
-
     def provenance(self) -> dict[str, Any]:
         """The request in plain values, with the integrator and the package version."""
-        window = self.window
+        window = self.find_window()
         return {
             "potential": self.potential.name,
             "terms": "; ".join(f"{c!r} x^{i} y^{j}" for i, j, c in self.potential.terms),
             "energy": self.energy,
-            "plane": self.plane.value,
+            "plane": self.plane.title,
             "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
             "resolution": self.resolution,
             "t_max": self.t_max,
@@ -151,42 +173,19 @@ class MapSpec:
 
     def pixel_at(self, x: float, ordinate: float) -> tuple[int, int] | None:
         """(row, column) of the pixel that contains a point of the plane; None outside the window."""
-        window, (columns, rows) = self.window, self.resolution
+        window, (columns, rows) = self.find_window(), self.resolution
         column = int(np.floor((x - window.x_low) / (window.x_high - window.x_low) * columns))
         row = int(np.floor((ordinate - window.ordinate_low) / (window.ordinate_high - window.ordinate_low) * rows))
         return (row, column) if 0 <= row < rows and 0 <= column < columns else None
 
 
-def _checked_energy(plane: Plane, energy: Any) -> float | tuple[float, float]:
-    if plane is not Plane.X_H:
-        return checked_number("energy", energy, f"one finite number on {plane.value}")
-    values = checked_array("energy", energy).ravel()
-    if values.size != 2 or not (np.all(np.abs(values) <= LARGEST_NUMBER) and values[0] < values[1]):
-        raise ValueError(
-            f"energy={short_repr(energy)}: on {plane.value} must be a pair (low, high) of finite numbers with low < high"
-        )
-    return float(values[0]), float(values[1])
-
-
-def _checked_window(window: Any) -> Window:
-    return window if isinstance(window, Window) else _window_from_edges(window)
-
-
-def _check_pixels(spec: MapSpec) -> None:
+def _check_pixels(spec: MapSpec, window: Window) -> None:
     """Raise ValueError if neighbouring pixels are too close for double precision."""
-    units = spec.potential.units
-    for centres, unit in zip(spec.pixel_centres(), (units.length, spec.plane.ordinate_unit(units)), strict=True):
+    units = spec.plane.axis_units(spec.potential.units)
+    for centres, unit in zip(window.pixel_centres(*spec.resolution), units, strict=True):
         finest = FINEST_PIXEL * max(unit, float(np.max(np.abs(centres))))
         if centres.size > 1 and np.min(np.diff(centres)) < finest:
-            raise ValueError(f"window={spec.window}: double precision ends here; pixels must be at least {finest:.2g} apart")
-
-
-def _window_from_edges(edges: Any) -> Window:
-    try:
-        x_low, x_high, ordinate_low, ordinate_high = map(float, edges)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"window={short_repr(edges)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
-    return Window(x_low, x_high, ordinate_low, ordinate_high)
+            raise ValueError(f"window={window}: double precision ends here; pixels must be at least {finest:.2g} apart")
 
 
 def _checked_resolution(resolution: Any) -> tuple[int, int]:

@@ -17,7 +17,6 @@ from engine.arrays import read_only
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.classification import collect_outcomes
 from engine.dynamics.fates import Fate, Regularity
-from engine.dynamics.planes import Plane
 from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.maps.pixels import MirrorPixels
@@ -113,7 +112,7 @@ def find_super_sticky_orbits(
     Parameters
     ----------
     escape_map
-        A complete map on (x, y) or (x, px).
+        A complete map on a slice of one energy.
     regularity
         The complete result of `compute_regularity` for the same map.
     t_max
@@ -136,7 +135,7 @@ def find_super_sticky_orbits(
     concurrent.futures.CancelledError
         When cancelled.
     ValueError
-        When the map or the regularity is not complete, they belong to different maps, the map is on (x, h), or `t_max` is out of
+        When the map or the regularity is not complete, they belong to different maps, the map has an axis h, or `t_max` is out of
         range.
     """
     _check(escape_map, regularity, t_max)
@@ -153,12 +152,13 @@ def find_super_sticky_orbits(
     if mirror.symmetric:
         firsts = np.flatnonzero(pixels < partner)
         batch.copy_to_images(firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_channels)
-    outcomes = collect_outcomes(spec.potential, np.full(pixels.size, spec.energy), batch)
+    outcomes = collect_outcomes(spec.potential, spec.energies(x, ordinate), batch)
+    x_unit, ordinate_unit = spec.plane.axis_units(units)
     return SuperStickySearch(
         given_spec,
         int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)),
-        read_only(x * units.length),
-        read_only(ordinate * spec.plane.ordinate_unit(units)),
+        read_only(x * x_unit),
+        read_only(ordinate * ordinate_unit),
         read_only(states * units.state),
         read_only(outcomes.fate),
         read_only(outcomes.escape_time * units.time),
@@ -178,22 +178,22 @@ def _propagate(
     on_progress: Callable[[float], None] | None,
 ) -> None:
     """Integrate the orbits `which` of a batch to t_max; raises CancelledError when cancelled."""
-    assert not isinstance(spec.energy, tuple)
 
     def report() -> None:
         if on_progress is not None:
             covered = np.where(batch.fate[which] == Fate.NOT_COMPUTED, np.minimum(batch.t[which] / t_max, 1.0), 1.0)
             on_progress(float(covered.mean()))
 
-    curves = exit_curves(spec.potential, spec.energy)[None]
+    assert spec.common_energy is not None
+    curves = exit_curves(spec.potential, spec.common_energy)[None]
     propagate_batch(spec.potential, curves, batch, which, t_max, final=True, executor=executor, cancel=cancel, on_progress=report)
     raise_if_cancelled(cancel)
 
 
 def _check(escape_map: EscapeMap, regularity: RegularityMap, t_max: float) -> None:
     escape_map.check_complete("escape_map")
-    if escape_map.spec.plane is Plane.X_H:
-        raise ValueError(f"escape_map: is on {Plane.X_H.value}; must be on a plane of one energy, (x, y) or (x, px)")
+    if escape_map.spec.common_energy is None:
+        raise ValueError(f"escape_map: is on {escape_map.spec.plane.title}; must be on a slice without an axis h")
     if regularity.spec != escape_map.spec or not regularity.complete:
         raise ValueError("regularity: must be complete and of the same map")
     if checked_t_max(t_max) < escape_map.spec.t_max:

@@ -15,7 +15,6 @@ from engine.compiled import kernels_of
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
-from engine.dynamics.planes import Plane
 from engine.execution import is_cancelled
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
@@ -189,8 +188,8 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
     The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
-    first direction is towards 0 in both coordinates, so that the points stay inside, and the second in x alone. On (x, h) only x
-    is shifted, towards 0 and away from it, so that the energy and its exits do not change.
+    first direction is towards 0 in both coordinates, so that the points stay inside, and the second in the abscissa alone. An
+    axis h is not shifted, so that the energy and its exits do not change: the other one is shifted towards 0, then away from it.
 
     Parameters
     ----------
@@ -203,12 +202,17 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     -------
     For each direction (n,) x and (n,) ordinate of the shifted points.
     """
-    window, (columns, rows) = spec.window, spec.resolution
-    shifted_x = _shifted_towards_zero(x, (window.x_high - window.x_low) / columns)
-    if spec.plane is Plane.X_H:
-        return (shifted_x, ordinate), (x + (x - shifted_x), ordinate)
-    shifted_ordinate = _shifted_towards_zero(ordinate, (window.ordinate_high - window.ordinate_low) / rows)
-    return (shifted_x, shifted_ordinate), (shifted_x, ordinate)
+    window, (columns, rows) = spec.find_window(), spec.resolution
+    sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
+    is_free = spec.plane.free_axes
+    points = x, ordinate
+    nearer = tuple(
+        _shifted_towards_zero(along, side) if free else along for along, side, free in zip(points, sides, is_free, strict=True)
+    )
+    if all(is_free):
+        return (nearer[0], nearer[1]), (nearer[0], ordinate)
+    away = tuple(along + (along - shifted) for along, shifted in zip(points, nearer, strict=True))
+    return (nearer[0], nearer[1]), (away[0], away[1])
 
 
 def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
@@ -246,7 +250,7 @@ class _Rerun:
 def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
     """(rows, columns) bool: bounded pixels above the escape energy that have no certificate."""
     spec = escape_map.spec
-    energy = escape_map.ordinate[:, None] if isinstance(spec.energy, tuple) else np.float64(spec.energy)
+    energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
     uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & (energy > spec.potential.escape_energy)
     return uncertified
 
@@ -285,9 +289,7 @@ class _TrustTest:
         fate, crossings, escape_time = (
             getattr(escape_map, name).ravel()[pixels] for name in ("fate", "crossings", "escape_time")
         )
-        energies, curve_row = np.unique(
-            ordinate if spec.plane is Plane.X_H else np.full(x.size, spec.energy), return_inverse=True
-        )
+        energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
         curves = np.repeat(closed_channel_curves(potential)[None], energies.size, axis=0)
         for k, energy in enumerate(energies):
             curves[k] = exit_curves(potential, float(energy))
@@ -339,11 +341,11 @@ class _TrustTest:
         tested = undecided[(first.fate[undecided] == Fate.BOUNDED) & ~first.is_decided()[undecided]]
         if not tested.size:
             return
-        energy = None if isinstance(self._spec.energy, tuple) else self._spec.energy
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
         certifier = BoundednessCertifier(
-            self._spec.potential, energy, first.batch.state[tested], grid_indices, self._spec.t_max - reached, **self._execution
-        )
+            self._spec.potential, self._spec.common_energy, first.batch.state[tested], grid_indices, self._spec.t_max - reached,
+            **self._execution,
+        )  # fmt: skip
 
         def mark_certified() -> None:
             for rerun in self._reruns:

@@ -9,10 +9,10 @@ import numpy as np
 
 from engine.arrays import read_only
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import Window
 from engine.maps.result import EscapeMap
 from engine.proportions import wilson_interval
 from engine.representation import Result
+from engine.slices.window import Window
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""

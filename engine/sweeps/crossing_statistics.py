@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import Plane, Window
 from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.potentials.potential import Potential
 from engine.progress import shows_progress
+from engine.slices.slice import Slice
+from engine.slices.window import Window
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_curves import EnergyCurvesSpec
@@ -30,7 +31,7 @@ _WINDOW = tuple(Window.__dataclass_fields__)
 @shows_progress("crossing statistics")
 def compute_crossing_statistics(
     potential: Potential,
-    plane: Plane,
+    plane: Slice,
     energies: Sequence[float],
     resolution: tuple[int, int] = DEFAULT_RESOLUTION,
     t_max: float = 1e5,
@@ -176,16 +177,15 @@ def _check_most_crossings(most_crossings: int | None) -> None:
 
 def _check_next(frame: EscapeMap, last: MapSpec | None) -> None:
     spec = frame.spec
-    if isinstance(spec.energy, tuple):
-        raise ValueError(f"maps: one is on {spec.plane.value}; must be on (x, y) or (x, px)")
+    if spec.common_energy is None:
+        raise ValueError(f"maps: one is on {spec.plane.title}; must be on a slice without an axis h")
     if not frame.complete:
         raise ValueError(f"maps: the map at h={spec.energy} is not complete, {frame.undecided:.2%} of its starts are undecided")
     if last is None:
         return
-    assert not isinstance(last.energy, tuple)
     if replace(spec, energy=last.energy, window=last.window) != last:
         raise ValueError(f"maps: {spec} differs from {last}; all but energy and window must be equal")
-    if spec.energy <= last.energy:
+    if last.common_energy is not None and spec.common_energy <= last.common_energy:
         raise ValueError(f"maps: h={spec.energy} follows h={last.energy}; energies must ascend")
 
 
@@ -219,7 +219,7 @@ def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
         "mean_escape_time": np.array([counts.mean_escape_time for counts in statistics]),
         "median_escape_time": np.array([counts.median_escape_time for counts in statistics]),
         "worst_energy_error": np.array([row.worst_energy_error for row in rows]),
-        "window": np.array([[getattr(row.spec.window, edge) for edge in _WINDOW] for row in rows]),
+        "window": np.array([[getattr(row.spec.find_window(), edge) for edge in _WINDOW] for row in rows]),
     }  # fmt: skip
     coordinates = {
         "h": ("h", np.array([row.spec.energy for row in rows], float), {"long_name": "energy h", "units": "1"}),

@@ -14,13 +14,13 @@ import numpy as np
 from engine.basins.basin_entropy import compute_basin_entropy
 from engine.basins.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import Plane
 from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.progress import shows_progress
 from engine.representation import Result
+from engine.slices.slice import Slice
 from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_grid import checked_sweep
@@ -60,7 +60,7 @@ class EnergyCurvesSpec:
     potential
         The `Potential`.
     plane
-        (x, y) or (x, px).
+        A slice without an axis h, such as (x, y) or (x, px).
     energies
         h, finite, dimensionless, 1 to 1000 of them; sorted and made unique.
     resolution
@@ -77,7 +77,7 @@ class EnergyCurvesSpec:
     """
 
     potential: Potential
-    plane: Plane
+    plane: Slice
     energies: tuple[float, ...]
     resolution: tuple[int, int] = (112, 112)
     t_max: float = 1e5
@@ -274,12 +274,12 @@ def compute_energy_point(
 
 
 def _evaluate_map(frame: EscapeMap) -> EnergyPoint:
-    assert not isinstance(frame.spec.energy, tuple)
+    assert frame.spec.common_energy is not None
     statistics = compute_statistics(frame)
     shares = statistics.shares
     entropy = compute_basin_entropy(frame)
     return EnergyPoint(
-        energy=frame.spec.energy,
+        energy=frame.spec.common_energy,
         shares=tuple(shares[code] for code in (Fate.BOUNDED, *range(1, frame.spec.potential.channels + 1))),
         direct_share=statistics.direct_share,
         mean_escape_time=statistics.mean_escape_time,

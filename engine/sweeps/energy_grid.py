@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.planes import Plane
+from engine.slices.slice import Slice, checked_slice
 from engine.validation import LARGEST_NUMBER, short_repr
 
 
-def checked_sweep(plane: Any, energies: Any, most: int) -> tuple[Plane, tuple[float, ...]]:
+def checked_sweep(plane: Any, energies: Any, most: int) -> tuple[Slice, tuple[float, ...]]:
     """The plane, and the energies sorted and made unique.
 
     Parameters
     ----------
     plane
-        (x, y) or (x, px).
+        A slice without an axis h, such as (x, y) or (x, px).
     energies
         Finite numbers, 1 to `most` different ones.
     most
@@ -27,9 +27,9 @@ def checked_sweep(plane: Any, energies: Any, most: int) -> tuple[Plane, tuple[fl
     ValueError
         Naming the parameter, its value and what is legal.
     """
-    checked_plane = Plane(plane)
-    if checked_plane is Plane.X_H:
-        raise ValueError(f"plane={checked_plane.value}: must be (x, y) or (x, px); (x, h) already contains all energies")
+    checked_plane = checked_slice(plane)
+    if checked_plane.energy_axis is not None:
+        raise ValueError(f"plane={checked_plane.title}: must have no axis h, which already contains all energies")
     try:
         checked = tuple(sorted({float(h) for h in energies}))
     except (TypeError, ValueError, OverflowError):

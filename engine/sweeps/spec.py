@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.planes import Plane, Window
 from engine.maps.compute import LARGEST_RUN
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.potentials.potential import Potential
+from engine.slices.default_window import default_window
+from engine.slices.slice import Slice
+from engine.slices.window import Window
 from engine.sweeps.energy_grid import checked_sweep
 
 MOST_SWEPT_ENERGIES = 10_000
@@ -27,7 +29,7 @@ class SweepSpec:
     potential
         The `Potential`.
     plane
-        (x, y) or (x, px).
+        A slice without an axis h, such as (x, y) or (x, px).
     energies
         h, finite, dimensionless, 1 to 10 000 of them; sorted and made unique.
     resolution
@@ -53,7 +55,7 @@ class SweepSpec:
     """
 
     potential: Potential
-    plane: Plane
+    plane: Slice
     energies: tuple[float, ...]
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: Window | None = None
@@ -64,9 +66,7 @@ class SweepSpec:
     def __post_init__(self) -> None:
         plane, energies = checked_sweep(self.plane, self.energies, MOST_SWEPT_ENERGIES)
         piece = _checked_piece(self.piece)
-        highest = MapSpec(
-            self.potential, plane, energies[-1], self.resolution, self.window, self.t_max, self.certify  # type: ignore[arg-type]
-        )  # fmt: skip
+        highest = MapSpec(self.potential, plane, energies[-1], self.resolution, self.window, self.t_max, self.certify)
         object.__setattr__(self, "energies", energies)
         object.__setattr__(self, "piece", piece)
         for name in ("plane", "resolution", "window", "t_max", "certify"):
@@ -74,8 +74,8 @@ class SweepSpec:
 
     def map_spec(self, energy: float) -> MapSpec:
         """The spec of the map at one energy."""
-        assert self.window is not None
-        return MapSpec(self.potential, self.plane, energy, self.resolution, self.window, self.t_max, self.certify)
+        window = self.window or default_window(self.potential, self.plane, self.energies[-1])
+        return MapSpec(self.potential, self.plane, energy, self.resolution, window, self.t_max, self.certify)
 
     def provenance(self) -> dict[str, Any]:
         """The request as plain values, without the energies; see `MapSpec.provenance`."""
@@ -83,9 +83,10 @@ class SweepSpec:
         return {**{name: value for name, value in common.items() if name != "energy"}, "piece": self.piece or LARGEST_RUN}
 
     def coordinates(self) -> dict[str, np.ndarray]:
-        """h (energies,), y or px (rows,), x (columns,): the coordinates of the arrays, in order."""
+        """h (energies,), ordinate (rows,), abscissa (columns,): the coordinates of the arrays, in order."""
         x, ordinate = self.map_spec(self.energies[-1]).pixel_centres()
-        return {"h": np.array(self.energies), self.plane.ordinate: ordinate, "x": x}
+        abscissa_name, ordinate_name = self.plane.axis_names
+        return {"h": np.array(self.energies), ordinate_name: ordinate, abscissa_name: x}
 
     @property
     def orbits(self) -> int:

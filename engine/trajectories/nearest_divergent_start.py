@@ -11,11 +11,11 @@ import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
-from engine.dynamics.planes import Plane, start_states
 from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.representation import Result
+from engine.slices.slice import Energy, Slice, checked_slice
 from engine.validation import checked_number, checked_t_max
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
@@ -58,8 +58,8 @@ class DivergentStart(Result):
 
 def find_divergent_start(
     potential: Potential,
-    plane: Plane,
-    energy: float | tuple[float, float],
+    plane: Slice,
+    energy: Energy,
     x: float,
     ordinate: float,
     t_max: float = 1e5,
@@ -70,7 +70,7 @@ def find_divergent_start(
 ) -> DivergentStart | None:
     """Find the nearest neighbour of a start that escapes through another channel, or at all if the start is bounded.
 
-    Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, on (x, h), the two
+    Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, with an axis h, the two
     directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and the
     previous ring the distance is refined to 1 % along the directions found. Basins narrower than the gaps between rings or
     directions can be missed.
@@ -80,9 +80,9 @@ def find_divergent_start(
     potential
         The `Potential`.
     plane
-        Plane of initial conditions.
+        The slice of starts, such as a `Plane`.
     energy
-        h, finite, dimensionless; ignored on (x, h), where the ordinate is the energy.
+        h, finite, dimensionless; ignored on a slice with an axis h.
     x, ordinate
         The start, dimensionless; neither forbidden nor outside.
     t_max
@@ -120,18 +120,18 @@ def find_divergent_start(
     furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
     if not furthest > nearest:
         raise ValueError(f"furthest={furthest}: must be a finite number above {nearest:g}")
-    plane = Plane(plane)
+    plane = checked_slice(plane)
     h = _checked_energy(plane, energy, x, ordinate)
     # An error about the exits is to name the energy as it is given.
     find_lyapunov_orbits(potential, h)
-    scale = np.array([units.length, plane.ordinate_unit(units)])
-    search = _Search(potential.in_well_units, plane, h / units.energy, np.array([x, ordinate]) / scale, executor, cancel)
+    scale = np.array(plane.axis_units(units))
+    centre = np.array([x, ordinate]) / scale
+    search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, executor, cancel)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
-        raise ValueError(
-            f"x={x}, {plane.ordinate}={ordinate}: {Fate(search.centre_fate).name.lower()} on {plane.value} at h={h}; "
-            f"must have V + px²/2 ≤ h and lie inside every Lyapunov orbit"
-        )
+        fate, inside = Fate(search.centre_fate).name.lower(), plane.limiting_curve.replace("=", "≤")
+        start = ", ".join(f"{name}={value}" for name, value in zip(plane.axis_names, (x, ordinate), strict=True))
+        raise ValueError(f"{start}: {fate} on {plane.title} at h={h}; must have {inside} and lie inside all exits")
     found = search.find_nearest(furthest / units.length)
     if found is None:
         return None
@@ -139,13 +139,13 @@ def find_divergent_start(
     return replace(found, x=x, ordinate=ordinate, distance=units.length * found.distance)
 
 
-def _checked_energy(plane: Plane, energy: float | tuple[float, float], x: float, ordinate: float) -> float:
+def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:
     """Energy h of the start; ValueError unless it and the coordinates are finite numbers."""
-    for name, value in (("x", x), (plane.ordinate, ordinate)):
+    for name, value in zip(plane.axis_names, (x, ordinate), strict=True):
         checked_number(name, value)
-    if plane is Plane.X_H:
-        return float(ordinate)
-    return checked_number("energy", energy, f"one finite number on {plane.value}")
+    if plane.energy_axis is not None:
+        return float((x, ordinate)[plane.energy_axis])
+    return checked_number("energy", plane.checked_energy(energy))
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +167,7 @@ class _Search:
     def __init__(
         self,
         potential: Potential,
-        plane: Plane,
+        plane: Slice,
         h: float,
         centre: np.ndarray,
         executor: Executor | None,
@@ -210,7 +210,7 @@ class _Search:
     def classify(self, points: np.ndarray, t_max: float) -> tuple[np.ndarray, np.ndarray]:
         """Fates and escape times (…) of points (…, 2)."""
         x, ordinate = points.reshape(-1, 2).T
-        states = start_states(self.potential, self.plane, self.h, x, ordinate)
+        states = self.plane.states(self.potential, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
         outcomes = classify_orbits(self.potential, self.h, states[exists], t_max, executor=self.executor, cancel=self.cancel)
         raise_if_cancelled(self.cancel)
@@ -219,10 +219,11 @@ class _Search:
         return fate.reshape(points.shape[:-1]), escape_time.reshape(points.shape[:-1])
 
 
-def _directions(plane: Plane) -> np.ndarray:
-    """(m, 2) unit vectors; on (x, h) the two directions of constant energy."""
-    if plane is Plane.X_H:
-        return np.array([[1.0, 0.0], [-1.0, 0.0]])
+def _directions(plane: Slice) -> np.ndarray:
+    """(m, 2) unit vectors; with an axis h the two directions of constant energy."""
+    if not all(plane.free_axes):
+        along = np.array(plane.free_axes, float)
+        return np.array([along, -along])
     angle = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     # Rounded, so that the neighbours of mirror images are exact mirror images.
     return np.round(np.column_stack([np.cos(angle), np.sin(angle)]), 12)

@@ -17,7 +17,7 @@ from plots.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
 from plots.map_images import picture_pixels
 from plots.palette import PAPER
 from reproduction.map_shelf import MapShelf
-from reproduction.notation import ORDINATES, PLANES
+from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies
 
 TITLES = {"basins": "basins of escape", "times": "escape times", "crossings": "upward crossings of $y = 0$ before the escape"}
@@ -30,7 +30,7 @@ def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) ->
     """One picture of `TITLES` at the paper's nine energies, all in one window."""
     frames = [shelf.map(case, plane, energy) for energy in nine_energies(case)]
     shown, longest = _common_window(frames), max(map(longest_typical_time, frames))
-    title = f"Case {case}, {PLANES[plane]} plane: {TITLES[picture]}"
+    title = f"Case {case}, {plane_label(plane)} plane: {TITLES[picture]}"
     figure = new_figure(10.6 if picture == "times" else 9.6, 10.4, title, equal=True)
     panels = figure.subplots(_SIDE, _SIDE, sharex=True, sharey=True)
     for axes, frame in zip(panels.flat, frames, strict=True):
@@ -48,9 +48,9 @@ def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) ->
 def draw_energy_plane(case: str, shelf: MapShelf) -> Figure:
     """Basins on (x, h)."""
     frame = shelf.map(case, Plane.X_H, plane_energies(case))
-    figure = new_figure(7.6, 6.6, f"Case {case}, {PLANES[Plane.X_H]} plane: basins of escape")
+    figure = new_figure(7.6, 6.6, f"Case {case}, {plane_label(Plane.X_H)} plane: basins of escape")
     axes = figure.subplots()
-    draw_map_panel(axes, frame, "basins", frame.spec.window, equal=False)
+    draw_map_panel(axes, frame, "basins", frame.spec.find_window(), equal=False)
     add_figure_legend(figure, [*_colour_handles(case, "basins"), *axes.collections])
     return figure
 
@@ -93,14 +93,16 @@ def draw_map_panel(
     if picture == "characters":
         white |= frame.fate > Fate.BOUNDED
     pixels[::-1][white] = 0
-    draw_pixels(axes, pixels, spec.window, shown)
+    draw_pixels(axes, pixels, spec.find_window(), shown)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, shown)
-    show_window(axes, shown, "$x$", ORDINATES[spec.plane], equal=equal)
+    show_window(axes, shown, *map(axis_label, spec.plane.axes), equal=equal)
 
 
 def _common_window(frames: Sequence[EscapeMap]) -> Window:
     """Smallest window that contains those of several maps."""
-    edges = np.array([[w.x_low, w.x_high, w.ordinate_low, w.ordinate_high] for w in (frame.spec.window for frame in frames)])
+    edges = np.array(
+        [[w.x_low, w.x_high, w.ordinate_low, w.ordinate_high] for w in (frame.spec.find_window() for frame in frames)]
+    )
     return Window(edges[:, 0].min(), edges[:, 1].max(), edges[:, 2].min(), edges[:, 3].max())
 
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from engine import (
     CASES,
+    Coordinate,
     LyapunovOrbit,
     Plane,
     Potential,
@@ -21,7 +22,7 @@ from plots.figure_axes import label_axes, name_panels, new_figure, style_axes
 from plots.palette import LIGHT, PAPER
 from plots.potential_figure import draw_equipotentials, draw_pieces, enlarge
 from reproduction.map_shelf import MapShelf
-from reproduction.notation import ORDINATES
+from reproduction.notation import axis_label
 from reproduction.paper_ranges import CHANNEL_ENERGIES
 from reproduction.sample_orbits import find_sample_starts
 
@@ -45,7 +46,7 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
         axes.set_ylim(window.ordinate_low, window.ordinate_high)
         axes.set_aspect("equal")
         style_axes(axes)
-        label_axes(axes, "$x$", ORDINATES[Plane.X_Y] if axes is panels[0] else "")
+        label_axes(axes, axis_label(Coordinate.X), axis_label(Coordinate.Y) if axes is panels[0] else "")
     escape = f"equipotentials, the escape energy ${potential.escape_energy:.4g}$ in red"
     name_panels(
         panels, [escape, f"channels and Lyapunov orbits, $h = {energy}$", f"one orbit through each channel, $h = {energy}$"]

@@ -16,7 +16,7 @@ from plots.curve_figures import draw_decay_laws, draw_shares
 from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from reproduction.map_shelf import MapShelf
-from reproduction.notation import PLANES
+from reproduction.notation import plane_label
 from reproduction.paper_ranges import nine_energies, three_energies
 
 Curve = Callable[[Any], Any]
@@ -35,7 +35,7 @@ _SAMPLES = 400
 
 def draw_statistics(case: str, shelf: MapShelf) -> Figure:
     """Ne/N0 and Nde/N0 against h with the paper's fits and new ones; dN_n/N0 and p_n against n."""
-    figure = new_figure(11.4, 8.6, f"Case {case}, {PLANES[Plane.X_PX]} plane: statistics of the escapes")
+    figure = new_figure(11.4, 8.6, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = shelf.curves(case, Plane.X_PX)
     h, starts, paper = table["h"].values, table["starts"].values, PAPER_FITS[case]
@@ -94,7 +94,7 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
         shares = table["share"].sel(fate=range(CASES[case].channels + 1)).transpose("h", "fate")
         draw_shares(axes, table["h"].values, shares.values, CASES[case])
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
-    name_panels(panels, [f"the {PLANES[plane]} plane" for plane in planes])
+    name_panels(panels, [f"the {plane_label(plane)} plane" for plane in planes])
     add_panel_legend(panels[1], "center right")
     return figure
 
@@ -102,7 +102,7 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
 def draw_survival(case: str, shelf: MapShelf) -> Figure:
     """One panel per energy, on (x, px)."""
     energies = three_energies(case)
-    figure = new_figure(12.6, 4.6, f"Case {case}, {PLANES[Plane.X_PX]} plane: share of the starts not yet escaped")
+    figure = new_figure(12.6, 4.6, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped")
     panels = list(figure.subplots(1, len(energies), sharex=True))
     for axes, energy in zip(panels, energies, strict=True):
         statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))

@@ -23,7 +23,7 @@ from plots.map_analyses import MapAnalyses
 from plots.palette import MEASURED, PAPER, THRESHOLD
 from reproduction.figures.map_figures import draw_map_panel
 from reproduction.map_shelf import MapShelf
-from reproduction.notation import PLANES
+from reproduction.notation import plane_label
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 
 LONGEST_DRAWN = 4e6
@@ -43,10 +43,10 @@ def draw_characters(shelf: MapShelf) -> Figure:
     """Bounded orbits on (x, px): regular cyan, chaotic magenta, escaping white."""
     frame = shelf.map(STICKY_CASE, Plane.X_PX, STICKY_ENERGY)
     regularity = shelf.regularity(frame)
-    title = f"Case {STICKY_CASE}, {PLANES[Plane.X_PX]} plane, $h = {STICKY_ENERGY}$: bounded orbits"
+    title = f"Case {STICKY_CASE}, {plane_label(Plane.X_PX)} plane, $h = {STICKY_ENERGY}$: bounded orbits"
     figure = new_figure(6.8, 7.2, title, equal=True)
     axes = figure.subplots()
-    draw_map_panel(axes, frame, "characters", frame.spec.window, analyses=MapAnalyses(regularity=regularity))
+    draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses(regularity=regularity))
     add_figure_legend(figure, [*patches(PAPER.character_entries[1:3]), *axes.collections])
     return figure
 
@@ -117,8 +117,8 @@ def _draw_band(axes: Axes, ends: np.ndarray, low: np.ndarray, high: np.ndarray) 
 
 def _draw_exits(axes: Axes, search: SuperStickySearch) -> None:
     """Range of R² on the Lyapunov orbits."""
-    assert not isinstance(search.spec.energy, tuple)
-    orbits = find_lyapunov_orbits(search.spec.potential, search.spec.energy)
+    assert search.spec.common_energy is not None
+    orbits = find_lyapunov_orbits(search.spec.potential, search.spec.common_energy)
     distances = np.concatenate([orbit.x**2 + orbit.y**2 for orbit in orbits])
     low, high = float(distances.min()), float(distances.max())
     label = f"Lyapunov orbits, $R^2 = {low:.3f}$ to ${high:.3f}$"

@@ -76,13 +76,13 @@ def fit_window(
     enough
         Largest acceptable difference, in percentage points.
     """
-    outside, spec = _Outside.of(interior.spec), interior.spec
-    sides = _edges(max(-spec.window.x_low, spec.window.x_high, -spec.window.ordinate_low, spec.window.ordinate_high))
+    outside, spec, whole = _Outside.of(interior.spec), interior.spec, interior.spec.find_window()
+    sides = _edges(max(-whole.x_low, whole.x_high, -whole.ordinate_low, whole.ordinate_high))
     squares = [Window(-side, side, -side, side) for side in sides]
     best, difference = _best(squares, outside, interior.fractions(), stated)
     if difference > enough:
-        least = max(-spec.window.x_low, -spec.window.ordinate_low, spec.window.ordinate_high)
-        moved = [Window(-side, right, -side, side) for side in _edges(least) for right in _edges(spec.window.x_high)]
+        least = max(-whole.x_low, -whole.ordinate_low, whole.ordinate_high)
+        moved = [Window(-side, right, -side, side) for side in _edges(least) for right in _edges(whole.x_high)]
         other, smaller = _best(moved, outside, interior.fractions(), stated)
         best = other if smaller <= enough else best
     counted = shelf.map(case, spec.plane, spec.energy, best)

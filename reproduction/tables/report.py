@@ -96,7 +96,7 @@ def _table_row(row: Comparison, place: int, value: float) -> tuple[object, ...]:
     stated, window = row.stated, row.windows[place] if row.windows else None
     by_energy = len(row.computed) == len(stated.energies)
     return (
-        stated.case, stated.plane.value if stated.plane else "", stated.energies[place] if by_energy else stated.at,
+        stated.case, stated.plane.title if stated.plane else "", stated.energies[place] if by_energy else stated.at,
         _describe_quantity(stated), stated.relation.value, f"{stated.value:.6g}", _unit(stated), _cell(value),
         _cell(row.difference), int(stated.needs_window), int(row.agrees),
         *(("",) * 6 if window is None else (
@@ -129,7 +129,7 @@ def _introduce(shelf: MapShelf, search: SuperStickySearch) -> str:
 
 def _page_row(row: Comparison) -> tuple[str, ...]:
     stated = row.stated
-    plane = f" on {stated.plane.value}" if stated.plane else ""
+    plane = f" on {stated.plane.title}" if stated.plane else ""
     difference = _signed(row.difference, stated)
     window, counted = "not needed" if stated.is_share else "", ""
     if stated.counting is Counting.INTERIOR:
@@ -164,7 +164,7 @@ def _explain(row: Comparison) -> str:
 
 
 def _describe_place(stated: StatedNumber) -> str:
-    plane = f", {stated.plane.value}" if stated.plane else ""
+    plane = f", {stated.plane.title}" if stated.plane else ""
     at = f", h {stated.at}" if stated.at else ""
     return f"{stated.case}{plane}{at}: {_describe_quantity(stated)}"
 

@@ -25,7 +25,7 @@ def window() -> Window:
 @pytest.fixture(scope="module")
 def opened(open_for_all: Callable[..., ExplorerPage], window: Window) -> ExplorerPage:
     edges = ",".join(map(repr, (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)))
-    plane = DEEP.plane.name.lower()
+    plane = DEEP.plane.key
     return open_for_all(link=f"?case={DEEP.case}&plane={plane}&h={DEEP.energy!r}&t_max=1000&resolution=112&window={edges}")
 
 

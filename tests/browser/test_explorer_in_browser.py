@@ -53,12 +53,12 @@ def test_the_case_can_be_changed(explorer: ExplorerPage, case: str, channels: in
 
 @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_H])
 def test_the_plane_can_be_changed(explorer: ExplorerPage, plane: Plane) -> None:
-    explorer.pick(plane.value)
-    explorer.wait_for_view(f"plane={plane.name.lower()}")
+    explorer.pick(plane.title)
+    explorer.wait_for_view(f"plane={plane.key}")
     labels = explorer.page.evaluate(
         "names => names.map(name => Bokeh.documents[0].get_model_by_name(name).left[0].axis_label)", list(PICTURES)
     )
-    assert set(labels) == {plane.ordinate}
+    assert set(labels) == set(plane.axis_names)
     state = ViewState(case="I", energy=0.19, plane=plane, resolution=112, t_max=100.0)
     assert_same_crossings(explorer, compute_map(state.map_spec()))
 

@@ -119,7 +119,7 @@ def expected_page(address: str) -> dict[str, Any]:
     layers = {label: bool(getattr(state, name)) for name, label in LAYER_LABELS.items()}
     analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}
     cases = {case: state.case == case for case in CASES}
-    planes = {plane.value: state.plane is plane for plane in Plane}
+    planes = {plane.title: state.plane is plane for plane in Plane}
     energy = {} if state.plane is Plane.X_H else {"Exact h": state.energy}
     orbits = [state.orbit_spec(start) for start in state.starts]
     return {
@@ -206,7 +206,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
         return lambda: page.get_by_label(label, exact=True).click()
 
     plain = {f"case {case}": lambda case=case: explorer.pick(case) for case in CASES}
-    plain |= {f"plane {plane.value}": lambda plane=plane: explorer.pick(plane.value) for plane in Plane}
+    plain |= {f"plane {plane.title}": lambda plane=plane: explorer.pick(plane.title) for plane in Plane}
     plain |= {f"layer {label}": switch(label) for label in LAYER_LABELS.values()}
     plain |= {f"analysis {label}": lambda label=label: explorer.pick(label) for label in ANALYSIS_LABELS.values()}
     plain |= {f"key {name}": key(name) for name in ("+", "-", "h", "ArrowLeft")}

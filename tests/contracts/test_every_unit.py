@@ -43,6 +43,7 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.well_units import WellUnits
 from engine.service import (
     compute_energy_point,
     compute_preview,
@@ -74,8 +75,7 @@ class Scaling:
         return Potential(potential.name, terms)
 
     def window(self, window: Window, plane: Plane) -> Window:
-        ordinate = {Plane.X_Y: self.length, Plane.X_PX: self.momentum, Plane.X_H: self.energy}[plane]
-        return window.scaled(self.length, ordinate)
+        return window.scaled(*plane.axis_units(WellUnits(self.length, self.time)))
 
     def states(self, states: np.ndarray) -> np.ndarray:
         return states * [self.length, self.length, self.momentum, self.momentum]
@@ -114,7 +114,7 @@ def times(name: str) -> float:
 @cache
 def escape_map(name: str, plane: Plane, scaling: Scaling | None = None, t_max: float = 2e4, side: int = 15) -> EscapeMap:
     potential, energy = system(name, scaling)
-    energies = (0.9 * energy, 1.1 * energy) if plane is Plane.X_H else energy
+    energies = (0.9 * energy, 1.1 * energy) if plane.energy_axis is not None else energy
     factor = 1.0 if scaling is None else scaling.time
     return compute_map(MapSpec(potential, plane, energies, (side, side), t_max=factor * times(name) * t_max))
 
@@ -123,8 +123,7 @@ def equal_maps(scaled: EscapeMap, usual: EscapeMap, scaling: Scaling) -> None:
     for field in ("fate", "crossings", "certificate", "outside", "energy_error"):
         np.testing.assert_array_equal(getattr(scaled, field), getattr(usual, field), field)
     np.testing.assert_array_equal(scaled.escape_time, scaling.time * usual.escape_time)
-    np.testing.assert_array_equal(scaled.x, scaling.length * usual.x)
-    assert scaled.spec.window == scaling.window(usual.spec.window, usual.spec.plane)
+    assert scaled.spec.find_window() == scaling.window(usual.spec.find_window(), usual.spec.plane)
     assert scaled.horizon == scaling.time * usual.horizon
 
 
@@ -134,8 +133,7 @@ def equal_maps(scaled: EscapeMap, usual: EscapeMap, scaling: Scaling) -> None:
 def test_maps_windows_and_certificates(name: str, plane: Plane, scaling: Scaling) -> None:
     usual = escape_map(name, plane)
     equal_maps(escape_map(name, plane, scaling), usual, scaling)
-    assert np.any(usual.fate == Fate.BOUNDED)
-    assert np.any(usual.fate >= 1)
+    assert np.unique(usual.fate[usual.interior]).size > 1
 
 
 @each_system

@@ -84,7 +84,7 @@ def test_map(plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any) 
         return
     assert hash(spec) == hash(spec)
     assert spec.provenance()
-    result_or_error(lambda: spec.pixel_at(spec.window.x_low, spec.window.ordinate_high), names)
+    result_or_error(lambda: spec.pixel_at(spec.find_window().x_low, spec.find_window().ordinate_high), names)
     assert preview_spec(spec).t_max <= LONGEST_TIME
     if spec.t_max <= 100.0 and np.prod(spec.resolution) <= 144:
         frame = result_or_error(lambda: compute_map(spec), names)
@@ -161,7 +161,7 @@ def test_start_states(plane: Plane, energy: float, x: list[float]) -> None:
 @given(planes, energies, st.tuples(floats, floats, floats, floats))
 def test_equipotentials(plane: Any, energy: Any, corners: Any) -> None:
     names = ["window", "energy", "energies", "plane"]
-    window = result_or_error(lambda: Window(*corners), names) or small_map().spec.window
+    window = result_or_error(lambda: Window(*corners), names) or small_map().spec.find_window()
     result_or_error(lambda: trace_zero_velocity_curve(CASE, plane, energy, window), names)
     result_or_error(lambda: trace_equipotentials(CASE, plane, (energy, energy), window), names)
 

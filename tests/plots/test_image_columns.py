@@ -105,7 +105,7 @@ def test_a_coarse_frame_fills_the_window() -> None:
     compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (120, 120), t_max=50.0), on_frame=frames.append)
     coarse = frames[0]
     assert coarse.stride > 1
-    columns, window = map_columns(coarse), coarse.spec.window
+    columns, window = map_columns(coarse), coarse.spec.find_window()
     shown = columns["fate"][0]
     assert shown.size < coarse.fate.size / 4
     assert not np.any(shown == list(palette.OUTCOMES).index(Fate.NOT_COMPUTED))

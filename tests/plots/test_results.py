@@ -114,8 +114,8 @@ def test_result_without_a_picture_shows_its_sentence_and_its_numbers(name: str) 
 
 def test_plot_returns_axes_in_the_coordinates_of_the_map() -> None:
     axes = compute_map(SPEC).plot(Figure().subplots(), picture="times", palette="safe")
-    assert axes.get_xlim() == (SPEC.window.x_low, SPEC.window.x_high)
-    assert axes.get_ylim() == (SPEC.window.ordinate_low, SPEC.window.ordinate_high)
+    assert axes.get_xlim() == (SPEC.find_window().x_low, SPEC.find_window().x_high)
+    assert axes.get_ylim() == (SPEC.find_window().ordinate_low, SPEC.find_window().ordinate_high)
 
 
 @pytest.mark.parametrize("show", ["path", "sali", "r2"])

@@ -207,7 +207,7 @@ def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
 
 def _progress(curves: EnergyCurves) -> str:
     done, total = len(curves.points), len(curves.spec.energies)
-    plane = curves.spec.plane.value
+    plane = curves.spec.plane.title
     if curves.complete:
         return f"{total} energies on {plane}. Click a curve to open the map of that energy."
     return f"{done} of {total} energies on {plane} …"

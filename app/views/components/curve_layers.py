@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, MultiLine, Text
 from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
-from engine import LyapunovOrbit, MapSpec, Plane, find_lyapunov_orbits
+from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits, trace_zero_velocity_curve
 from engine.service import trace_equipotentials
 from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 
@@ -71,13 +71,15 @@ class CurveLayers:
 
     def show(self, spec: MapSpec, *, preview: bool = False) -> None:
         """Draw the curves of a map's plane, window and energy; a preview leaves the equipotentials unchanged."""
-        limit, critical, *others = _trace(spec, () if preview or spec.plane is Plane.X_H else (1.0, *_LEVELS))
-        self._limit.data = _lines(limit)
-        orbits = find_lyapunov_orbits(spec.potential, _energy(spec)) if spec.plane is Plane.X_Y else ()
+        window, h = spec.find_window(), spec.common_energy
+        self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window))
+        orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
         # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
         if not preview:
+            energies = [level * spec.potential.escape_energy for level in (1.0, *_LEVELS)] if h is not None else []
+            critical, *others = trace_equipotentials(spec.potential, spec.plane, energies, window) if energies else [[]]
             self._critical.data = _lines(critical)
             self._levels.data = _lines([line for lines in others for line in lines])
 
@@ -98,28 +100,17 @@ class CurveLayers:
 
     def entries(self, spec: MapSpec) -> list[Entry]:
         """Legend entries of the curves shown on this plane."""
-        limiting = {Plane.X_Y: "V = h", Plane.X_PX: "½px² + V(x, 0) = h", Plane.X_H: "V(x, 0) = h"}[spec.plane]
-        entries = [Entry(f"limiting curve {limiting}", self._inks.limiting_curve)]
-        if spec.plane is not Plane.X_H:
+        entries = [Entry(f"limiting curve {spec.plane.limiting_curve}", self._inks.limiting_curve)]
+        if spec.common_energy is not None:
             entries += [Entry("the same at the escape energy", self._inks.critical_equipotential)]
             entries += [Entry("at other energies", self._inks.equipotential)]
-        if spec.plane is Plane.X_Y:
+        if spec.plane.shows_positions:
             entries += [Entry(f"Lyapunov orbit {k}", self._palette.channels[k - 1]) for k in _open_channels(spec)]
         return entries
 
 
-def _energy(spec: MapSpec) -> float:
-    return 0.0 if isinstance(spec.energy, tuple) else spec.energy
-
-
-def _trace(spec: MapSpec, levels: tuple[float, ...]) -> list[list[np.ndarray]]:
-    """The limiting curve, then the equipotentials at `levels` in units of the escape energy; one empty curve without levels."""
-    energies = (_energy(spec), *(level * spec.potential.escape_energy for level in levels))
-    return [*trace_equipotentials(spec.potential, spec.plane, energies, spec.window), *([] if levels else [[]])]
-
-
 def _open_channels(spec: MapSpec) -> tuple[int, ...]:
-    return () if isinstance(spec.energy, tuple) else spec.potential.open_channels(spec.energy)
+    return () if spec.common_energy is None else spec.potential.open_channels(spec.common_energy)
 
 
 def _lines(pieces: list[np.ndarray]) -> dict[str, list[np.ndarray]]:

@@ -223,7 +223,7 @@ class MapsView:
     def _follow(self, spec: MapSpec) -> None:
         """Go to the window of a new map, unless the ranges are being moved."""
         if self._rest_timer is None:
-            self._go_to(spec.window)
+            self._go_to(spec.find_window())
 
     def _moved(self, _name: str, _old: float, _new: float) -> None:
         """The ranges change: wait until they stop."""
@@ -253,7 +253,7 @@ class MapsView:
         if not (x.start < x.end and y.start < y.end):
             return
         window = Window(x.start, x.end, y.start, y.end)
-        if self._spec is None or _is_near(window, self._spec.window):
+        if self._spec is None or _is_near(window, self._spec.find_window()):
             return
         self._on_zoom(None if self._home is not None and _is_near(window, self._home) else window)
 
@@ -289,7 +289,7 @@ class MapsView:
         if spec is None:
             return
         for plot in self.figures.values():
-            plot.left[0].axis_label = spec.plane.ordinate
+            plot.below[0].axis_label, plot.left[0].axis_label = spec.plane.axis_names
         self.outlines.show(spec)
         self._show_legend()
 

@@ -65,7 +65,7 @@ class Overlays:
         """Mark the doubtful pixels; None removes the marks."""
         if trust is not None:
             self._draw_doubts()
-            window = trust.spec.window
+            window = trust.spec.find_window()
             self.doubts.data = {
                 "doubt": [doubt_tones(trust)], "trust": [trust.trust.astype(np.uint8)],
                 "x": [window.x_low], "y": [window.ordinate_low],

@@ -80,7 +80,7 @@ class OrbitControls:
     def follow_plane(self, plane: Plane) -> None:
         """Label the second box with the ordinate of the plane."""
         self.ordinate.label = plane.ordinate
-        self.open_plane.visible = plane is Plane.X_H
+        self.open_plane.visible = plane.energy_axis is not None
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""

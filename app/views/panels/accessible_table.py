@@ -50,7 +50,7 @@ class AccessibleTable:
     def _view(self) -> list[tuple[str, str]]:
         state, system = self._state, self._state.system
         rows = [("system", system.title), ("potential V(x, y)", system.formula_shown)]
-        rows += [("plane", state.plane.value), ("t_max", grouped(state.t_max))]
+        rows += [("plane", state.plane.title), ("t_max", grouped(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:
             w = state.window

@@ -77,7 +77,7 @@ class Controls:
         )
         self.other = button("Other …", actions.choose_potential, kind="light", css_classes=["half"], margin=(0, 10, 0, 4))
         self.plane = SegmentedControl(
-            label="Plane", options={plane.value: plane for plane in Plane}, value=state.plane, margin=(8, 10)
+            label="Plane", options={plane.title: plane for plane in Plane}, value=state.plane, margin=(8, 10)
         )
         self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.play = button(PLAY, actions.play, width=84, css_classes=["half"], margin=(0, 10), align="end")
@@ -238,7 +238,7 @@ class Controls:
 
     def _follow_energy(self) -> None:
         state = self.state
-        on_h = state.plane is Plane.X_H
+        on_h = state.plane.energy_axis is not None
         energies, shown = state.system.energies, self._slider_energy()
         label = "Energy h" if shown == state.energy else f"h = {state.energy:.12g}, beyond the end of the slider"
         # The browser uses a new format when the value changes.

@@ -142,6 +142,6 @@ def _card(preset: Preset) -> dict[str, str]:
         "group": preset.group,
         "title": preset.title,
         "caption": preset.caption,
-        "alt": f"{TITLES[preset.picture]}, case {preset.case}, {preset.plane.value}",
+        "alt": f"{TITLES[preset.picture]}, case {preset.case}, {preset.plane.title}",
         "thumbnail": f"{_THUMBNAILS}/{preset.key}.png",
     }

@@ -34,7 +34,7 @@ def test_a_zoom_beyond_double_precision_is_rejected() -> None:
 
 def test_the_first_zoom_starts_from_the_whole_interior() -> None:
     state = ViewState(case="I", energy=0.2)
-    whole = state.map_spec().window
+    whole = state.map_spec().find_window()
     window_moves(state)["+"]()
     assert state.window == zoom(whole, 2.0)
 

@@ -16,7 +16,7 @@ from app.state.permalink import LINKED, read_link, write_link
 from app.state.presets import GROUPS, PRESETS, Preset
 from app.state.view_state import ViewState
 from app.views.panels.gallery import Gallery
-from engine import CASES, Fate, Orbit, Plane, classify_orbits, compute_map, integrate_orbit, start_states
+from engine import CASES, POTENTIALS, Fate, Orbit, Plane, classify_orbits, compute_map, integrate_orbit, start_states
 from plots.map_images import TITLES
 from plots.palette import MOST_ORBITS
 
@@ -31,16 +31,16 @@ def named(key: str) -> Preset:
 
 
 def start_of(preset: Preset, x: float, ordinate: float) -> np.ndarray:
-    return start_states(CASES[preset.case], preset.plane, preset.energy, np.array([x]), np.array([ordinate]))[0]
+    return start_states(POTENTIALS[preset.case].potential, preset.plane, preset.energy, np.array([x]), np.array([ordinate]))[0]
 
 
 def fates(preset: Preset) -> list[int]:
     states = np.array([start_of(preset, *start) for start in preset.starts])
-    return [int(fate) for fate in classify_orbits(CASES[preset.case], preset.energy, states, preset.t_max).fate]
+    return [int(fate) for fate in classify_orbits(POTENTIALS[preset.case].potential, preset.energy, states, preset.t_max).fate]
 
 
 def integrate(preset: Preset) -> Orbit:
-    return integrate_orbit(CASES[preset.case], start_of(preset, *preset.starts[0]), preset.t_max)
+    return integrate_orbit(POTENTIALS[preset.case].potential, start_of(preset, *preset.starts[0]), preset.t_max)
 
 
 def test_keys_and_titles_are_unique() -> None:
@@ -51,7 +51,7 @@ def test_all_groups_cases_planes_and_pictures_occur() -> None:
     places = [preset for preset in PRESETS if preset.group == "Places"]
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
-    assert {preset.case for preset in places} == {preset.case for preset in PRESETS if preset not in places} == set(CASES)
+    assert {preset.case for preset in places} == set(CASES)
     assert {preset.plane for preset in PRESETS} == set(Plane)
     assert {preset.picture for preset in PRESETS} == set(TITLES)
 
@@ -90,7 +90,7 @@ def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
     spec = ViewState(**preset.values()).map_spec()
     assert 1 <= len(set(preset.starts)) == len(preset.starts) <= MOST_ORBITS
     for x, ordinate in preset.starts:
-        energy = ordinate if preset.plane is Plane.X_H else preset.energy
+        energy = preset.plane.energies(preset.energy, x, ordinate)
         assert spec.pixel_at(x, ordinate) is not None
         assert classify_orbits(spec.potential, energy, start_of(preset, x, ordinate)[None], 10.0).fate[0] >= Fate.BOUNDED
 
@@ -106,6 +106,7 @@ def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
         ("shares", [1, 2, 0]),
         ("owl", [0, 0, 0, 0]),
         ("ajar", [1, 2, 3, 0]),
+        ("section", [0, 0, 1, 2]),
     ],
 )
 def test_fates_agree_with_the_caption(key: str, expected: list[int]) -> None:

@@ -9,10 +9,11 @@ import pytest
 
 from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.planes import Plane, Window
 from engine.execution import SerialExecutor
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import CASES, Potential
+from engine.slices.slice import Plane
+from engine.slices.window import Window
 
 # x and y are uncoupled and y alone decides about an escape (upward if its energy exceeds 1/4), so all boundaries are smooth.
 SEPARABLE = Potential("separable", ((2, 0, 0.5), (0, 2, 0.5), (0, 4, -0.25)))
@@ -79,7 +80,7 @@ def test_near_the_escape_energy_the_boundary_nearly_fills_the_plane(henon_heiles
 
 
 def test_separations_range_from_a_pixel_to_1e_10(henon_heiles: UncertaintyExponent) -> None:
-    window = HENON_HEILES.window
+    window = HENON_HEILES.find_window()
     assert henon_heiles.separations[0] == pytest.approx((window.x_high - window.x_low) / 224, rel=1e-12)
     assert henon_heiles.separations[-1] == pytest.approx(1e-10, rel=1e-12)
 

@@ -249,7 +249,7 @@ def test_warmup_resolves_the_spec() -> None:
 
 def test_warmup_of_an_invalid_spec_fails() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(WarmupRequest(UnresolvedMapSpec(CASES["I"], Plane.X_Y, -1.0, (40, 40), None, 1e3)), inbox.result, inbox.error)
+    jobs.request(WarmupRequest(UnresolvedMapSpec(CASES["I"], Plane.X_Y, -1.0, (0, 40), None, 1e3)), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert isinstance(inbox.errors[0], ValueError)
 

@@ -22,7 +22,7 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("engine.maps.compute.LARGEST_RUN", 150)
 
 
-@pytest.fixture(params=SPECS, ids=lambda spec: f"{spec.potential.name}-{spec.plane.value}")
+@pytest.fixture(params=SPECS, ids=lambda spec: f"{spec.potential.name}-{spec.plane.title}")
 def whole(request: pytest.FixtureRequest) -> EscapeMap:
     return compute_map(request.param)
 

@@ -1,11 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from engine import CASES, MapSpec, Plane, Window
+from engine import CASES, MapSpec, Plane, Potential, Window, default_window
 from engine.service import LARGEST_SIDE, LONGEST_TIME
 
 I = CASES["I"]  # noqa: E741  # named like the case
@@ -77,24 +78,30 @@ def test_window_edges_must_be_finite_and_increasing(edges: tuple[float, ...], na
 
 
 @pytest.mark.parametrize("plane", ["(x, z)", 3, None])
-def test_plane_must_be_one_of_the_three(plane: Any) -> None:
-    with pytest.raises(ValueError, match=r"plane=.*: must be one of \(x, y\), "):
+def test_plane_must_be_a_slice_or_the_name_of_one(plane: Any) -> None:
+    with pytest.raises(ValueError, match=r"plane=.*: must be a Slice or one of \(x, y\), "):
         spec_with(plane=plane)
 
 
-def test_only_the_window_of_a_map_without_one_is_the_default_window() -> None:
-    assert MapSpec(CASES["I"], Plane.X_H, (0.2, 0.3)).has_default_window()
-    assert not MapSpec(CASES["I"], Plane.X_H, (0.2, 0.3), window=Window(-0.5, 0.5, 0.2, 0.3)).has_default_window()
+@pytest.mark.parametrize("name", ["x_px", "(x, px)"])
+def test_plane_can_be_given_by_name(name: Any) -> None:
+    assert spec_with(plane=name) == spec_with(plane=Plane.X_PX)
 
 
-def test_a_window_of_a_plane_up_to_too_high_an_energy_is_not_the_default_window() -> None:
-    potential = CASES["III"].with_parameters(omega_1=0.798719)
-    assert not MapSpec(potential, Plane.X_H, (0.1, 0.638), window=Window(-0.5, 0.5, 0.2, 0.3)).has_default_window()
+def test_a_default_window_follows_the_energy() -> None:
+    spec = spec_with(energy=0.2, window=None)
+    assert replace(spec, energy=0.4).find_window() == default_window(CASES["I"], spec.plane, 0.4) != spec.find_window()
+
+
+def test_a_request_computes_nothing() -> None:
+    potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.2345)))
+    MapSpec(potential, Plane.X_PX, 0.15)
+    assert set(vars(potential)) == {"name", "terms"}
 
 
 def test_energy_without_exits_raises_for_the_default_window() -> None:
     with pytest.raises(ValueError, match=r"energy=50\.0"):
-        spec_with(energy=50.0, window=None)
+        spec_with(energy=50.0, window=None).find_window()
 
 
 @pytest.mark.parametrize("energy", [0.125, 0.1, 0.0, -1.0])
@@ -121,9 +128,10 @@ def test_window_must_be_four_numbers(window: Any) -> None:
 
 @pytest.mark.parametrize("width", [1e-12, 1e-10])
 def test_window_as_small_as_double_precision_allows_is_accepted(width: float) -> None:
-    assert spec_with(window=(0.3, 0.3 + width, 0.2, 0.2 + width), resolution=(225, 225)).resolution == (225, 225)
+    window = Window(0.3, 0.3 + width, 0.2, 0.2 + width)
+    assert spec_with(window=window, resolution=(225, 225)).find_window() == window
 
 
 def test_window_beyond_double_precision_raises() -> None:
     with pytest.raises(ValueError, match="double precision ends here"):
-        spec_with(window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14))
+        spec_with(window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14)).find_window()

@@ -10,7 +10,6 @@ import pytest
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
 from engine.compiled import kernels_of
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.planes import find_mirror_images
 from engine.execution import SerialExecutor
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.maps.spec import FINEST_PIXEL
@@ -70,7 +69,7 @@ def test_doubtful_pixels_are_those_that_change_or_end_apart_in_direct_reruns(
     whole, trust = map_and_trust(name, energy, plane, side=41, t_max=500.0)
     rows, columns = np.nonzero(np.isin(trust.trust, (Trust.CONFIRMED, Trust.DOUBTFUL)))
     # Only the first of two mirror images is tested.
-    images = find_mirror_images(whole.spec.potential, plane, whole.x, whole.ordinate)
+    images = plane.find_mirror_images(whole.spec.potential, whole.x, whole.ordinate)
     pixels = rows * whole.x.size + columns
     first = np.ones(pixels.size, bool) if images is None else pixels <= images[pixels]
     rows, columns = rows[first], columns[first]
@@ -200,7 +199,7 @@ def test_fate_and_crossings_are_compared_separately() -> None:
 @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
 def test_mirror_images_have_the_same_trust(plane: Plane) -> None:
     whole, trust = map_and_trust(plane=plane)
-    images = find_mirror_images(whole.spec.potential, plane, whole.x, whole.ordinate)
+    images = plane.find_mirror_images(whole.spec.potential, whole.x, whole.ordinate)
     assert images is not None
     np.testing.assert_array_equal(trust.trust.ravel(), trust.trust.ravel()[images])
 

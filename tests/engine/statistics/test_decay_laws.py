@@ -401,7 +401,7 @@ def test_the_initial_decay_is_the_flux_through_the_exits() -> None:
 
 def test_rates_of_shifted_grids_scatter_like_independent_samples() -> None:
     """Rates from sixteen grids, shifted by fractions of a pixel, scatter as much as the bootstrap interval of one of them."""
-    whole, side, rng = MapSpec(CASES["II"], Plane.X_PX, 0.3).window, 80, np.random.default_rng(7)
+    whole, side, rng = MapSpec(CASES["II"], Plane.X_PX, 0.3).find_window(), 80, np.random.default_rng(7)
     pixel = (whole.x_high - whole.x_low) / side
     fits = []
     for shift_x, shift_px in rng.uniform(0.0, pixel, (16, 2)):

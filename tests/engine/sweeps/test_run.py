@@ -23,9 +23,9 @@ import xarray as xr
 
 import engine.sweeps.run
 from engine import CASES, EscapeMap, MapSpec, Plane, SweepSpec, Window, compute_map, run_sweep
-from engine.dynamics.planes import default_window
 from engine.execution import SerialExecutor, count_workers
 from engine.service import SweepPlan, plan_sweep
+from engine.slices.default_window import default_window
 from tests.forked import Finished, run
 
 ARRAYS = ("fate", "escape_time", "crossings", "certificate", "outside", "energy_error")
@@ -141,7 +141,7 @@ class TestRequest:
             ({"plane": Plane.X_H}, r"plane=\(x, h\)"),
             ({"t_max": 0.0}, "t_max=0"),
             ({"resolution": (0, 5)}, "resolution"),
-            ({"window": Window(0.0, 1e-14, 0.0, 1.0)}, "window"),
+            ({"window": (1.0, 0.0, 0.0, 1.0)}, "window"),
             ({"piece": 0}, "piece=0"),
             ({"piece": 2**20 + 1}, "piece=1048577"),
             ({"piece": 80.5}, "piece=80.5"),
@@ -156,8 +156,7 @@ class TestRequest:
     def test_window_of_the_highest_energy_contains_all_others(self, case: str, highest: float, plane: Plane) -> None:
         potential = CASES[case]
         energies = tuple(np.linspace(0.4 * potential.escape_energy, highest, 15))
-        window = SweepSpec(potential, plane, energies).window
-        assert window is not None
+        window = SweepSpec(potential, plane, energies).map_spec(highest).find_window()
         for h in energies:
             inner = default_window(potential, plane, h)
             assert window.x_low <= inner.x_low < inner.x_high <= window.x_high
@@ -176,7 +175,7 @@ class TestStore:
         run_sweep(spec, tmp_path / "store").to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
         expected = stacked_maps(spec)
         with xr.open_dataset(tmp_path / "sweep.nc", engine="h5netcdf") as found:
-            assert found["fate"].dims == ("h", spec.plane.ordinate, "x")
+            assert found["fate"].dims == ("h", *spec.plane.axis_names[::-1])
             assert set(found.data_vars) == set(ARRAYS)
             for name in (*ARRAYS, *expected.coords):
                 np.testing.assert_array_equal(found[name], expected[name])

@@ -90,10 +90,10 @@ def test_the_pixels_of_a_basin_panel_have_the_colours_of_their_channels(place: i
 
 def test_a_map_is_drawn_at_its_window(shelf: MapShelf) -> None:
     axes = panels(FIGURES["II-basins-xpx"].draw(shelf))[0]
-    window = shelf.map("II", Plane.X_PX, nine_energies("II")[0]).spec.window
+    window = shelf.map("II", Plane.X_PX, nine_energies("II")[0]).spec.find_window()
     left, right, low, high = axes.images[0].get_extent()
     frames = [shelf.map("II", Plane.X_PX, energy) for energy in nine_energies("II")]
-    shown_low, shown_high = min(f.spec.window.x_low for f in frames), max(f.spec.window.x_high for f in frames)
+    shown_low, shown_high = min(f.spec.find_window().x_low for f in frames), max(f.spec.find_window().x_high for f in frames)
     # Axes are in shares of the window that all panels show.
     assert shown_low + np.array([left, right]) * (shown_high - shown_low) == pytest.approx([window.x_low, window.x_high])
     assert low + high == pytest.approx(1.0)

@@ -12,8 +12,8 @@ import sympy
 from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
-from engine.dynamics.planes import Plane
 from engine.potentials.catalogue import channel_family
+from engine.slices.slice import Plane
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.source.recurrence import LANES, ORDER, TOLERANCE, crossings_can_hide, generate_code

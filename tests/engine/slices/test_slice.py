@@ -1,53 +1,31 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy import ndimage
 
-from engine import CASES, Fate, MapSpec, Plane, Window, compute_map, default_window, start_states, trace_zero_velocity_curve
+from engine import (
+    CASES,
+    Coordinate,
+    Fate,
+    MapSpec,
+    Plane,
+    Potential,
+    Slice,
+    Window,
+    compute_map,
+    default_window,
+    trace_zero_velocity_curve,
+)
+from engine.slices.slice import checked_slice
 from tests.peers.exit_lines import exit_lines
 
 PLANES_OF_ONE_ENERGY = [Plane.X_Y, Plane.X_PX]
 each_case = pytest.mark.parametrize("name", CASES)
-
-
-def box(plane: Plane, energy: float, count: int = 500) -> tuple[np.ndarray, np.ndarray]:
-    x, ordinate = np.random.default_rng(3).uniform(-1.2, 1.2, (2, count))
-    return x, 0.5 * energy * (1 + ordinate) if plane is Plane.X_H else ordinate
-
-
-@each_case
-@pytest.mark.parametrize("plane", list(Plane))
-def test_starts_have_the_right_energy(name: str, plane: Plane) -> None:
-    x, ordinate = box(plane, 0.4)
-    states = start_states(CASES[name], plane, 0.4, x, ordinate)
-    exists = np.isfinite(states).all(axis=1)
-    expected = ordinate if plane is Plane.X_H else np.full(x.size, 0.4)
-    assert exists.sum() > 50
-    np.testing.assert_allclose(CASES[name].energy(states[exists]), expected[exists], atol=1e-14)
-
-
-@each_case
-@pytest.mark.parametrize("plane", list(Plane))
-def test_start_is_forbidden_exactly_if_its_kinetic_energy_is_negative(name: str, plane: Plane) -> None:
-    x, ordinate = box(plane, 0.4)
-    states = start_states(CASES[name], plane, 0.4, x, ordinate)
-    energy = ordinate if plane is Plane.X_H else 0.4
-    left = energy - CASES[name].value(states[:, 0], states[:, 1]) - 0.5 * states[:, 2] ** 2
-    np.testing.assert_array_equal(np.isnan(states[:, 3]), left < 0)
-
-
-@pytest.mark.parametrize(("plane", "held"), [(Plane.X_Y, [2]), (Plane.X_PX, [1]), (Plane.X_H, [1, 2])])
-def test_coordinates_off_the_plane_are_zero(plane: Plane, held: list[int]) -> None:
-    states = start_states(CASES["II"], plane, 0.3, *box(plane, 0.3))
-    assert not states[:, held].any()
-
-
-@each_case
-@pytest.mark.parametrize("plane", list(Plane))
-def test_py_of_starts_is_not_negative(name: str, plane: Plane) -> None:
-    py = start_states(CASES[name], plane, 0.3, *box(plane, 0.3))[:, 3]
-    assert np.all(py[np.isfinite(py)] >= 0)
 
 
 @each_case
@@ -170,3 +148,111 @@ def test_outside_has_the_channel_number(geometry: dict[str, np.ndarray]) -> None
         here = labels == piece
         touched = [k + 1 for k, b in enumerate(geometry["beyond"]) if np.any(here & (np.abs(b) < 1.5 * 4.0 / SIDE))]
         assert sorted(np.unique(geometry["outside"][here])) == touched
+
+
+@st.composite
+def slices(draw: st.DrawFn) -> Slice:
+    """Any slice: two axes, values of the others, and the momentum that the energy decides."""
+    solved, other = draw(st.permutations((Coordinate.PX, Coordinate.PY)))
+    axes = draw(st.permutations((Coordinate.X, Coordinate.Y, other, Coordinate.H)))
+    held = [c for c in (Coordinate.X, Coordinate.Y, other) if c not in axes[:2]]
+    fixed = tuple((coordinate, draw(st.sampled_from((0.0, 0.25, -0.1)))) for coordinate in held)
+    return Slice(axes[0], axes[1], solved, draw(st.sampled_from((1, -1))), fixed)
+
+
+def states_and_energies(plane: Slice, potential: Potential) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    x, ordinate = np.random.default_rng(5).uniform(-0.6, 0.6, (2, 200))
+    states = plane.states(potential, 0.4, x, ordinate)
+    return states, np.broadcast_to(plane.energies(0.4, x, ordinate), x.shape), x, ordinate
+
+
+@given(slices(), st.sampled_from(["I", "II", "III"]))
+def test_starts_of_any_slice_have_its_coordinates_energy_and_sign(plane: Slice, name: str) -> None:
+    states, energy, x, ordinate = states_and_energies(plane, CASES[name])
+    exists = np.isfinite(states).all(axis=1)
+    np.testing.assert_allclose(CASES[name].energy(states[exists]), energy[exists], atol=1e-14)
+    column = {Coordinate.X: 0, Coordinate.Y: 1, Coordinate.PX: 2, Coordinate.PY: 3}
+    given = dict(plane.fixed) | dict(zip(plane.axes, (x, ordinate), strict=True))
+    for coordinate, values in given.items():
+        if coordinate in column:
+            np.testing.assert_array_equal(states[:, column[coordinate]], values)
+    assert np.all(plane.sign * states[exists, column[plane.solved]] >= 0.0)
+
+
+@given(slices())
+def test_a_start_of_any_slice_is_forbidden_exactly_where_energy_is_missing(plane: Slice) -> None:
+    states, _, x, ordinate = states_and_energies(plane, CASES["II"])
+    missing = plane.required_energy(CASES["II"], x, ordinate) - (0.4 if plane.energy_axis is None else 0.0)
+    clear = np.abs(missing) > 1e-12
+    np.testing.assert_array_equal(np.isnan(states).any(axis=1)[clear], missing[clear] > 0.0)
+
+
+@given(slices())
+def test_mirror_images_of_any_slice_are_reflected_states(plane: Slice) -> None:
+    x, ordinate = Window(-0.6, 0.6, -0.3, 0.3).pixel_centres(6, 4)
+    images = plane.find_mirror_images(CASES["III"], x, ordinate)
+    states = plane.states(CASES["III"], 0.4, *(axis.ravel() for axis in np.meshgrid(x, ordinate)))
+    reflected = states * [-1.0, 1.0, -1.0, 1.0]
+    if images is not None:
+        np.testing.assert_array_equal(states[images], reflected)
+    else:
+        # No reflection of a start is another start of the slice, but for starts that are their own images.
+        exists = np.isfinite(states).all(axis=1)
+        others = exists & np.any(states != reflected, axis=1)
+        assert not np.any(np.all(states[exists][:, None] == reflected[others], axis=2))
+
+
+def test_no_slice_is_symmetric_in_a_potential_that_is_not() -> None:
+    assert Plane.X_PX.find_mirror_images(CASES["I"], *Window(-1.0, 1.0, -1.0, 1.0).pixel_centres(4, 4)) is None
+
+
+@pytest.mark.parametrize(
+    ("plane", "curve"),
+    [
+        (Plane.X_Y, "V = h"),
+        (Plane.X_PX, "½px² + V(x, 0) = h"),
+        (Plane.X_H, "V(x, 0) = h"),
+        (Plane.Y_PY, "½py² + V(0, y) = h"),
+        (Slice(Coordinate.X, Coordinate.Y, Coordinate.PX, 1, ((Coordinate.PY, 0.5),)), "½(0.5)² + V = h"),
+    ],
+)
+def test_the_limiting_curve_is_named_by_its_equation(plane: Slice, curve: str) -> None:
+    assert plane.limiting_curve == curve
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"ordinate": Coordinate.X}, "at most once"),
+        ({"ordinate": Coordinate.PY}, "at most once"),
+        ({"fixed": ((Coordinate.X, 0.1),)}, "at most once"),
+        ({"fixed": ((Coordinate.H, 0.1),)}, "at most once"),
+        ({"solved": Coordinate.Y}, "must be px or py"),
+        ({"sign": 2}, "must be 1 or -1"),
+        ({"fixed": ((Coordinate.PX, np.inf),)}, "must be a finite number"),
+    ],
+)
+def test_a_slice_that_is_none_is_refused(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Slice(**{"abscissa": Coordinate.X, "ordinate": Coordinate.Y} | change)
+
+
+@given(slices())
+def test_the_text_of_a_slice_makes_it_again(plane: Slice) -> None:
+    assert eval(repr(plane), {"Slice": Slice, "Coordinate": Coordinate}) == plane
+
+
+def test_a_slice_equal_to_a_named_one_is_that_one() -> None:
+    assert checked_slice(Slice(Coordinate.X, Coordinate.PX, fixed=((Coordinate.Y, 0.0),))) is Plane.X_PX
+
+
+@given(slices())
+def test_the_default_window_of_any_slice_contains_its_interior(plane: Slice) -> None:
+    potential, energy = CASES["III"], (0.3, 0.45) if plane.energy_axis is not None else 0.45
+    edges = [(0.3, 0.45) if axis is Coordinate.H else (-1.5, 1.5) for axis in plane.axes]
+    # The time is so short that every orbit stays at its start.
+    wide = compute_map(MapSpec(potential, plane, energy, (41, 41), (*edges[0], *edges[1]), t_max=1e-9))
+    x, ordinate = wide.coordinates(np.flatnonzero(wide.interior))
+    window = default_window(potential, plane, energy)
+    assert np.all((window.x_low <= x) & (x <= window.x_high))
+    assert np.all((window.ordinate_low <= ordinate) & (ordinate <= window.ordinate_high))

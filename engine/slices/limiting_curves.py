@@ -1,0 +1,58 @@
+"""The curves V = h on a slice: the boundary of its forbidden region, and equipotentials."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from engine.potentials.potential import Potential
+from engine.slices.slice import Energy, Slice, checked_slice, common_energy
+from engine.slices.window import Window
+from engine.validation import checked_number
+
+_CONTOUR_SAMPLES = 201
+
+
+def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy, window: Window) -> list[np.ndarray]:
+    """The boundary of the forbidden region of a slice: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    plane
+        The slice, such as a `Plane`.
+    energy
+        h, dimensionless; ignored on a slice with an axis h.
+    window
+        The part of the slice to trace.
+
+    Returns
+    -------
+    The pieces of the curve, each (n, 2).
+
+    Examples
+    --------
+    >>> from engine import CASES, Plane, default_window, trace_zero_velocity_curve
+    >>> window = default_window(CASES["I"], Plane.X_PX, 0.19)
+    >>> len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, window))
+    1
+    """
+    # Along an axis h the required energy is the one that is missing.
+    level = None if checked_slice(plane).energy_axis is not None else common_energy(energy)
+    return trace_equipotentials(potential, plane, (level or 0.0,), window)[0]
+
+
+def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:
+    """The zero-velocity curves of several energies on a slice of one energy: a list of (n, 2) pieces for each energy."""
+    import contourpy
+
+    levels = [checked_number("energies", energy) for energy in energies]
+    x, ordinate = (
+        np.linspace(low, high, _CONTOUR_SAMPLES)
+        for low, high in ((window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high))
+    )
+    required = checked_slice(plane).required_energy(potential, *np.meshgrid(x, ordinate))
+    contours = contourpy.contour_generator(x, ordinate, required)
+    return [[np.asarray(line) for line in contours.lines(level)] for level in levels]

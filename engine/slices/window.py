@@ -1,0 +1,57 @@
+"""A rectangle of a slice, and the centres of its pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.validation import checked_number, short_repr
+
+
+@dataclass(frozen=True)
+class Window:
+    """A rectangle of a slice, including its edges, dimensionless.
+
+    Raises ValueError if an edge is not finite or beyond ±1e9, or a lower edge is not below the upper edge.
+    """
+
+    x_low: float
+    x_high: float
+    ordinate_low: float
+    ordinate_high: float
+
+    def __post_init__(self) -> None:
+        for name, low, high in (
+            ("x", self.x_low, self.x_high),
+            ("ordinate", self.ordinate_low, self.ordinate_high),
+        ):
+            edges = [checked_number(f"window {name} edge", edge) for edge in (low, high)]
+            if not edges[0] < edges[1]:
+                raise ValueError(f"window {name} range {low} … {high}: the lower edge must be below the upper edge")
+
+    def scaled(self, x_factor: float, ordinate_factor: float) -> Window:
+        """The window with its edges multiplied by two factors."""
+        x, ordinate = (self.x_low, self.x_high), (self.ordinate_low, self.ordinate_high)
+        return Window(*(x_factor * edge for edge in x), *(ordinate_factor * edge for edge in ordinate))
+
+    def pixel_centres(self, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
+        """x (columns,) and ordinate (rows,) of the pixel centres; they are exactly symmetric if the window is."""
+        return _interval_centres(self.x_low, self.x_high, columns), _interval_centres(self.ordinate_low, self.ordinate_high, rows)
+
+
+def checked_window(window: Any) -> Window:
+    """A `Window`, given as one or as (x_low, x_high, ordinate_low, ordinate_high)."""
+    if isinstance(window, Window):
+        return window
+    try:
+        x_low, x_high, ordinate_low, ordinate_high = map(float, window)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"window={short_repr(window)}: must be (x_low, x_high, ordinate_low, ordinate_high)") from None
+    return Window(x_low, x_high, ordinate_low, ordinate_high)
+
+
+def _interval_centres(low: float, high: float, count: int) -> np.ndarray:
+    offsets = (2 * np.arange(count) + 1 - count) / (2 * count)
+    return 0.5 * (low + high) + (high - low) * offsets
