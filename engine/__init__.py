@@ -36,7 +36,7 @@ from engine.potentials.catalogue import POTENTIALS, channel_family
 from engine.potentials.formula_parser import parse_formula, write_formula
 from engine.potentials.potential import CASES, Potential
 from engine.potentials.validation_report import PotentialReview, review_potential
-from engine.representation import Result
+from engine.results.result import Result
 from engine.statistics.decay_law_fits import fit_decay_laws
 from engine.statistics.decay_laws import DecayLaws
 from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics

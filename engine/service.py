@@ -9,7 +9,6 @@ from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
 from engine.dynamics.planes import trace_equipotentials
 from engine.execution import count_cores
-from engine.file_lock import hold_lock
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
 from engine.jobs.context import JobRequest
@@ -46,10 +45,12 @@ from engine.potentials.catalogue import PotentialEntry
 from engine.potentials.formula_parser import LONGEST_TEXT
 from engine.potentials.potential import FREQUENCIES, STRENGTHS
 from engine.potentials.validation_report import CriticalPoint, PointKind
+from engine.results.wording import format_number, format_time, format_whole
 from engine.statistics.decay_laws import DecayLaw, LawFit
 from engine.statistics.escape_statistics import compute_survival
 from engine.statistics.published_fits import HyperbolicTangent, PaperFits, Polynomial
 from engine.statistics.share_fits import Deviation
+from engine.storage.output_lock import hold_lock
 from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
 from engine.sweeps.run import SweepPlan, plan_sweep
@@ -65,7 +66,6 @@ from engine.warmup import (
     prepare_kernels,
     seconds_until_ready_for_maps,
 )
-from engine.wording import format_number, format_time, format_whole
 
 __all__ = [
     "DEFAULT_RESOLUTION",

@@ -6,13 +6,13 @@ import functools
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.planes import Plane, required_energy
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
 
 # Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles to the inward direction.
 _POSITIONS = slice(10, -10, 10)

@@ -13,7 +13,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.dynamics.planes import Window
 from engine.maps.spec import MapSpec
-from engine.representation import MapResult
+from engine.results.result import MapResult
 
 if TYPE_CHECKING:
     import xarray as xr

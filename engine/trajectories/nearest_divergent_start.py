@@ -15,7 +15,7 @@ from engine.dynamics.planes import Plane, start_states
 from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
-from engine.representation import Result
+from engine.results.result import Result
 from engine.validation import checked_number, checked_t_max
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
