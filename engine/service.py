@@ -42,8 +42,10 @@ from engine.maps.result import describe_codes
 from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from engine.potentials.catalogue import PotentialEntry
+from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange
 from engine.potentials.formula_parser import LONGEST_TEXT
 from engine.potentials.potential import FREQUENCIES, STRENGTHS
+from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED, System
 from engine.potentials.validation_report import CriticalPoint, PointKind
 from engine.results.wording import format_number, format_time, format_whole
 from engine.statistics.decay_laws import DecayLaw, LawFit
@@ -71,6 +73,7 @@ __all__ = [
     "DEFAULT_RESOLUTION",
     "ENTROPY_COUNTS_BOUNDED",
     "FREQUENCIES",
+    "HIGHEST_SHOWN",
     "LARGEST_NUMBER",
     "LARGEST_SIDE",
     "LONGEST_SEPARATION",
@@ -78,9 +81,13 @@ __all__ = [
     "LONGEST_TIME",
     "MOST_IMAGES",
     "MOST_REQUESTS",
+    "PAPER_ENERGIES",
+    "PARAMETERS",
     "PREVIEW_SIDE",
     "PREVIEW_TIME",
+    "SHOWN_DIGITS",
     "STRENGTHS",
+    "TYPED",
     "WADA_COUNTS_BOUNDED",
     "Answer",
     "BasinMeasures",
@@ -95,6 +102,7 @@ __all__ = [
     "EnergyPoint",
     "EnergyPointRequest",
     "EnergyPointSpec",
+    "EnergyRange",
     "HyperbolicTangent",
     "IndicatorVerdict",
     "JobClient",
@@ -119,6 +127,7 @@ __all__ = [
     "Subscription",
     "SuperStickySearch",
     "SweepPlan",
+    "System",
     "TrustRequest",
     "UncertaintyExponentRequest",
     "UnresolvedMapSpec",
