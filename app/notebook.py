@@ -15,9 +15,9 @@ from panel.io.state import set_curdoc
 from app.session import explorer as session
 from app.session.page import TITLE, explorer_page
 from app.state.permalink import write_link
-from app.state.system import TYPED
 from app.state.view_state import ViewState
 from engine import POTENTIALS, EscapeMap, MapSpec, Orbit, write_formula
+from engine.service import TYPED
 
 _STARTS_WITHIN = 60.0
 

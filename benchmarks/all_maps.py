@@ -13,16 +13,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.state.energy_ranges import ENERGIES
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map
 from engine.execution import default_executor
+from engine.service import PAPER_ENERGIES
 
 SLOWEST = 5
 EARLY = [code for code in Certificate if code > Certificate.INTEGRATED]
 
 
 def specs(resolution: int) -> Iterator[MapSpec]:
-    for case, energies in ENERGIES.items():
+    for case, energies in PAPER_ENERGIES.items():
         for plane in (Plane.X_PX, Plane.X_Y):
             for energy in energies.marked:
                 yield MapSpec(CASES[case], plane, energy, (resolution, resolution), t_max=1e5)

@@ -22,7 +22,7 @@ from tornado.httpclient import AsyncHTTPClient
 
 from benchmarks.load import START_SECONDS, Server, started, wait_until_ready
 from benchmarks.simulated_sessions import Channel
-from engine.taylor.jit.kernel_files import CACHE_VARIABLE
+from engine.storage.cache_files import CACHE_VARIABLE
 
 POLL_SECONDS = 0.05
 EVENTS = ("the server answers", "the page is open", "first pixels of the map", "the map is complete", "all kernels are compiled")

@@ -17,8 +17,8 @@ import numpy as np
 
 from engine import CASES, Plane, start_states
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_gates
+from engine.storage.cache_files import CACHE_VARIABLE
 from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.jit.kernel_files import CACHE_VARIABLE
 from engine.taylor.kernels import propagate
 from engine.taylor.kernels.events import NOT_COMPUTED
 from engine.taylor.source import recurrence

@@ -79,7 +79,6 @@ def draw_map(
 
     The NetCDF file contains all results and the request; stable manifolds go to STEM-manifolds.csv.
     """
-    from app.exports import file_stem
     from cli import map_output
     from cli.arguments import build_map_spec
     from cli.clusters import cluster_executor
@@ -87,6 +86,7 @@ def draw_map(
     from cli.map_analyses import AnalysisOptions, compute_map_with_analyses
     from cli.potential_argument import file_name_part
     from cli.run_context import cancellable_run
+    from plots.exports import file_stem
 
     spec = build_map_spec(case, plane, energy, energies, window, resolution, t_max, certify, backward)
     wanted = AnalysisOptions(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.exports import netcdf_bytes, png_bytes
 from cli.arguments import find_palette
 from cli.files import Content, add_ending
 from engine import EscapeMap
+from plots.exports import netcdf_bytes, png_bytes
 from plots.map_analyses import MapAnalyses
 from plots.map_images import LARGEST_PICTURE, SMALLEST_PICTURE, TITLES
 from plots.palette import Palette

@@ -46,7 +46,6 @@ def follow_orbit(
 
     With --output, STEM.csv contains the path, SALI, exponent and R² against time, and STEM.png shows them.
     """
-    from app.exports import orbits_csv
     from cli.arguments import find_palette, find_start
     from cli.files import add_ending, reserve_output, write_files
     from cli.orbit_pictures import orbit_png
@@ -54,6 +53,7 @@ def follow_orbit(
     from cli.run_context import cancellable_run
     from engine import Fate, compute_birkhoff_digits, integrate_orbit, judge_orbit
     from engine.service import evaluate_indicators
+    from plots.exports import orbits_csv
 
     potential, colours = find_potential(case), find_palette(palette)
     whole = find_start(case, plane, energy, start, state)

@@ -6,10 +6,9 @@ import re
 import reprlib
 from typing import Any
 
-from app.state.system import TYPED, System, refusal
 from engine import POTENTIALS, Potential, review_potential
-
-PARAMETERS = ("omega_1", "omega_2", "epsilon")
+from engine.service import PARAMETERS, TYPED, System
+from plots.accepted_potentials import refusal
 
 
 def find_potential(case: str) -> Potential:

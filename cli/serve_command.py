@@ -1,4 +1,4 @@
-"""Command ``serve``: start the server with the installed page."""
+"""Command ``serve``: start the program that serves the installed page."""
 
 from __future__ import annotations
 
@@ -7,12 +7,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-
-if TYPE_CHECKING:
-    from app.runtime.settings import Settings
 
 EXAMPLES = """Examples:
 
@@ -36,11 +33,7 @@ def serve_page(
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
     """Serve the page until Ctrl-C or SIGTERM; environment variables ESCAPE_EXPLORER_… set its limits (docs/operation.md)."""
-    from app.runtime.settings import read_settings
-
-    # Report invalid settings before the server starts, which takes seconds.
-    settings = read_settings(os.environ)
-    command = serve_arguments(port, address, origin or [], show, settings)
+    command = serve_arguments(port, address, origin or [], show)
     environment = server_environment()
     if os.name == "posix":
         # Replace this process, so that signals reach the server.
@@ -48,15 +41,13 @@ def serve_page(
     raise typer.Exit(subprocess.call(command, env=environment))
 
 
-def serve_arguments(port: int, address: str, origins: list[str], show: bool, settings: Settings) -> list[str]:
+def serve_arguments(port: int, address: str, origins: list[str], show: bool) -> list[str]:
     """Return the command that starts the server.
 
     Option -P keeps a folder named app in the working directory from being imported.
     """
-    command = [sys.executable, "-P", "-m", "panel", "serve", str(app_folder()), "--port", str(port), "--address", address]
+    command = [sys.executable, "-P", "-m", app_package(), "--port", str(port), "--address", address]
     command += [f"--allow-websocket-origin={origin}" for origin in origins]
-    command += [f"--unused-session-lifetime={1000 * settings.session_seconds}"]
-    command += [f"--keep-alive={1000 * settings.keep_alive_seconds}"]
     return [*command, "--show"] if show else command
 
 
@@ -67,9 +58,9 @@ def server_environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 
-def app_folder() -> Path:
-    """Return the folder of the installed package `app`."""
+def app_package() -> str:
+    """Return the name of the installed package of the page, which is a program of its own and not imported here."""
     spec = importlib.util.find_spec("app")
-    if spec is None or not spec.submodule_search_locations:
+    if spec is None:
         raise RuntimeError("the package app is not installed beside the command line")
-    return Path(next(iter(spec.submodule_search_locations)))
+    return spec.name

@@ -35,7 +35,7 @@ from engine.potentials.catalogue import POTENTIALS, channel_family
 from engine.potentials.formula_parser import parse_formula, write_formula
 from engine.potentials.potential import CASES, Potential
 from engine.potentials.validation_report import PotentialReview, review_potential
-from engine.representation import Result
+from engine.results.result import Result
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.slice import Coordinate, Plane, Slice, start_states

@@ -53,6 +53,13 @@ def _power(x: np.ndarray, i: int) -> np.ndarray:
     return np.abs(x) ** i if i % 2 == 0 else x * np.abs(x) ** (i - 1)
 
 
+def derivative(terms: Terms, axis: int) -> dict[Powers, float]:
+    """The terms of ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
+    if axis == 0:
+        return {(i - 1, j): i * c for (i, j), c in terms.items() if i}
+    return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
+
+
 def multiply[C: (float, complex, Fraction)](a: Mapping[Powers, C], b: Mapping[Powers, C]) -> dict[Powers, C]:
     """a · b; terms that cancel stay as zeros."""
     total: dict[Powers, C] = {}

@@ -8,7 +8,6 @@ from engine.basins.uncertainty_exponent import fit_uncertainty
 from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
 from engine.execution import count_cores
-from engine.file_lock import hold_lock
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
 from engine.jobs.context import JobRequest
@@ -42,9 +41,12 @@ from engine.maps.result import describe_codes
 from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from engine.potentials.catalogue import PotentialEntry
+from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange
 from engine.potentials.formula_parser import LONGEST_TEXT
 from engine.potentials.potential import FREQUENCIES, STRENGTHS
+from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED, System
 from engine.potentials.validation_report import CriticalPoint, PointKind
+from engine.results.wording import format_number, format_time, format_whole
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.slices.section import SECTION
 from engine.slices.slice import checked_slice, common_energy
@@ -52,6 +54,7 @@ from engine.statistics.decay_laws import DecayLaw, LawFit
 from engine.statistics.escape_statistics import compute_survival
 from engine.statistics.published_fits import HyperbolicTangent, PaperFits, Polynomial
 from engine.statistics.share_fits import Deviation
+from engine.storage.output_lock import hold_lock
 from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
 from engine.sweeps.run import SweepPlan, plan_sweep
@@ -67,12 +70,12 @@ from engine.warmup import (
     prepare_kernels,
     seconds_until_ready_for_maps,
 )
-from engine.wording import format_number, format_time, format_whole
 
 __all__ = [
     "DEFAULT_RESOLUTION",
     "ENTROPY_COUNTS_BOUNDED",
     "FREQUENCIES",
+    "HIGHEST_SHOWN",
     "LARGEST_NUMBER",
     "LARGEST_SIDE",
     "LONGEST_SEPARATION",
@@ -80,10 +83,14 @@ __all__ = [
     "LONGEST_TIME",
     "MOST_IMAGES",
     "MOST_REQUESTS",
+    "PAPER_ENERGIES",
+    "PARAMETERS",
     "PREVIEW_SIDE",
     "PREVIEW_TIME",
     "SECTION",
+    "SHOWN_DIGITS",
     "STRENGTHS",
+    "TYPED",
     "WADA_COUNTS_BOUNDED",
     "Answer",
     "BasinMeasures",
@@ -98,6 +105,7 @@ __all__ = [
     "EnergyPoint",
     "EnergyPointRequest",
     "EnergyPointSpec",
+    "EnergyRange",
     "HyperbolicTangent",
     "IndicatorVerdict",
     "JobClient",
@@ -122,6 +130,7 @@ __all__ = [
     "Subscription",
     "SuperStickySearch",
     "SweepPlan",
+    "System",
     "TrustRequest",
     "UncertaintyExponentRequest",
     "UnresolvedMapSpec",

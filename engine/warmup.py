@@ -13,7 +13,6 @@ from types import ModuleType
 
 import numpy as np
 
-from engine.compiled import kernels_of
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
@@ -24,6 +23,7 @@ from engine.maps.compute import compute_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.slices.section import SECTION
 from engine.taylor.bound_kernels import is_generated

@@ -1,6 +1,7 @@
 """Escapes in open Hamiltonian systems: the public names of `engine`, and `Explorer`, the page in a notebook.
 
-In the repository this package has these two files only; the wheel contains the other packages of the repository below it.
+In the repository this package has three files only, two of them entry points; the wheel contains the other packages of the
+repository below it.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ _MOST_DECADES = 16
 
 
 def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper", **options: Any) -> Axes:
-    """Draw a result, as `engine.representation.Result.plot` describes."""
+    """Draw a result, as `engine.results.result.Result.plot` describes."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
     if ax is None:
@@ -84,7 +84,7 @@ def to_html(result: Result) -> str:
 
 
 def to_holoviews(result: Result) -> Any:
-    """The HoloViews element of `engine.representation.Result.to_holoviews`."""
+    """The HoloViews element of `engine.results.result.Result.to_holoviews`."""
     import holoviews as hv
 
     if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):

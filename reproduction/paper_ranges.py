@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.state.energy_ranges import ENERGIES
 from engine import CASES, PAPER_FITS
+from engine.service import PAPER_ENERGIES
 
 CHANNEL_ENERGIES = {"I": 0.15, "II": 0.2, "III": 0.3}
 """Energies of the figures with an orbit through each channel."""
@@ -19,7 +19,7 @@ _DECIMALS = 6
 
 def nine_energies(case: str) -> tuple[float, ...]:
     """Energies of the paper's maps."""
-    return ENERGIES[case].marked
+    return PAPER_ENERGIES[case].marked
 
 
 def three_energies(case: str) -> tuple[float, ...]:
@@ -35,4 +35,4 @@ def curve_energies(case: str, count: int) -> tuple[float, ...]:
 
 def plane_energies(case: str) -> tuple[float, float]:
     """Lowest and highest h of the (x, h) plane."""
-    return CASES[case].escape_energy, ENERGIES[case].high
+    return CASES[case].escape_energy, PAPER_ENERGIES[case].high

@@ -10,8 +10,7 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.locking import Locked
 from app.job_clients.preview_requests import NO_OVERLOAD, LoadPolicy, PreviewRequests
-from app.state.system import SYSTEM
-from app.state.view_state import ViewState
+from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
 from engine.service import JobSubmitter, Subscription, WarmupRequest, is_ready_for_maps
 from plots.image_columns import map_columns

@@ -9,8 +9,7 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
-from app.state.system import SYSTEM
-from app.state.view_state import Start, ViewState
+from app.state.view_state import SYSTEM, Start, ViewState
 from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
 from engine.service import JobSubmitter, OrbitRequest, Subscription, describe_fate
 from plots.orbit_curves import OrbitCurves, compute_orbit_curves

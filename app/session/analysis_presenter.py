@@ -13,8 +13,7 @@ import panel as pn
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.state.system import SYSTEM
-from app.state.view_state import IMAGES, Analysis, ViewState
+from app.state.view_state import IMAGES, SYSTEM, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.maps.map_plots import MapsView

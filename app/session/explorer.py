@@ -24,8 +24,7 @@ from app.state.history import History
 from app.state.navigation import window_moves
 from app.state.permalink import LINKED, read_link, write_link
 from app.state.presets import Preset
-from app.state.system import SYSTEM, System
-from app.state.view_state import Analysis, ViewState
+from app.state.view_state import SYSTEM, Analysis, ViewState
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.analysis_choice import AnalysisTabs
 from app.views.components.collapsible_section import Drawers, Stack
@@ -42,7 +41,7 @@ from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
 from engine import EscapeMap, Fate, Window
-from engine.service import JobClient, describe_fate, seconds_until_ready_for_maps
+from engine.service import JobClient, System, describe_fate, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
 
 # Time until a preview that was postponed under load is tried again.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.state.system import SYSTEM, System, refusal
-from app.state.view_state import ViewState
+from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import PotentialPanel
 from engine import CASES, Potential, PotentialReview
-from engine.service import Answer, JobSubmitter, PotentialReviewRequest
+from engine.service import Answer, JobSubmitter, PotentialReviewRequest, System
+from plots.accepted_potentials import refusal
 
 
 class PotentialPresenter:

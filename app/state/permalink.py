@@ -9,11 +9,11 @@ from urllib.parse import urlencode
 
 import numpy as np
 
-from app.state.system import SYSTEM, TYPED, System, refusal
 from app.state.view_state import (
     IMAGE_CHOICES,
     LAYERS,
     LOCKED_TIMES,
+    SYSTEM,
     Analysis,
     Start,
     ViewState,
@@ -21,7 +21,8 @@ from app.state.view_state import (
     allowed_t_max,
 )
 from engine import CASES, POTENTIALS, Plane, Window, review_potential
-from engine.service import FREQUENCIES, LARGEST_NUMBER, LONGEST_TEXT, STRENGTHS
+from engine.service import FREQUENCIES, LARGEST_NUMBER, LONGEST_TEXT, STRENGTHS, TYPED, System
+from plots.accepted_potentials import refusal
 from plots.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from dataclasses import fields
 from enum import StrEnum
 from typing import Any
 
@@ -10,10 +11,8 @@ import numpy as np
 import param
 
 from app.runtime.process_state import process_state
-from app.state.energy_ranges import ENERGIES
-from app.state.system import SYSTEM, TYPED, System
 from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
-from engine.service import FREQUENCIES, LARGEST_NUMBER, STRENGTHS, OrbitRequest, UnresolvedMapSpec
+from engine.service import FREQUENCIES, LARGEST_NUMBER, PAPER_ENERGIES, STRENGTHS, TYPED, OrbitRequest, System, UnresolvedMapSpec
 from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
@@ -22,6 +21,9 @@ def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> di
     least = min(choices.values())
     return {name: value for name, value in choices.items() if value <= max(limit, least)}
 
+
+SYSTEM = tuple(field.name for field in fields(System))
+"""Attributes of a view state that define its system."""
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
 LOCKED_TIMES = (10.0, 1e6)
@@ -88,7 +90,9 @@ class ViewState(param.Parameterized):
     omega_2 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along y")
     epsilon = param.Number(default=1.0, bounds=STRENGTHS, doc="strength of the perturbation")
     plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
-    energy = param.Number(default=ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER), doc="h; not used on (x, h)")
+    energy = param.Number(
+        default=PAPER_ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER), doc="h; not used on (x, h)"
+    )
     t_max = param.Selector(default=1e5, objects=list(T_MAX_CHOICES.values()))
     resolution = param.Selector(default=DEFAULT_SIDE, objects=list(RESOLUTION_CHOICES.values()))
     window = param.ClassSelector(

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
-from engine.representation import Result
+from engine.results.result import Result
+from engine.results.wording import format_count
 from engine.validation import checked_count
-from engine.wording import format_count
 
 BOX = 5
 """Default side of a box in pixels, that is 25 starts per box, as in Daza et al. (2016)."""

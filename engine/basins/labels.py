@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
+from engine.results.arrays import read_only
 from engine.validation import checked_array
 
 ENTROPY_COUNTS_BOUNDED = True

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.proportions import wilson_interval
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.results.wording import format_count, format_decimals
+from engine.statistics.proportions import wilson_interval
 from engine.validation import checked_array, checked_integers, short_repr
-from engine.wording import format_count, format_decimals
 
 MIN_EXPECTED_PAIRS = 5.0
 """Expected number of uncertain pairs, and of certain ones, for a separation to count; χ² requires it (Cochran 1954).

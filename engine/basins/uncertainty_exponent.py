@@ -11,7 +11,6 @@ from functools import partial
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
@@ -20,6 +19,7 @@ from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.maps.spec import MapSpec
 from engine.progress import shows_progress
+from engine.results.arrays import read_only
 from engine.validation import checked_count, short_repr
 
 __all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]

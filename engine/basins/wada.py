@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.basins.labels import WADA_COUNTS_BOUNDED, checked_labels
-from engine.representation import Result
-from engine.wording import format_count
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.results.wording import format_count
 
 MIN_BASINS = 3
 """Fewest basins for the Wada property; two basins always share their boundary."""

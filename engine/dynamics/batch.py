@@ -9,12 +9,12 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from engine.compiled import kernels_of
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
 from engine.execution import collect_result, count_workers, default_executor, is_cancelled, run_parts
 from engine.exits.interior import find_outside_starts
 from engine.exits.lyapunov_orbits import exit_gates
+from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import LANES, TOLERANCE

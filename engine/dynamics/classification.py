@@ -13,7 +13,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
 from engine.exits.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.potential import Potential
-from engine.representation import Result
+from engine.results.result import Result
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
 
 ENERGY_TOLERANCE = 1e-9

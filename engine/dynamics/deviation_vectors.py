@@ -7,10 +7,10 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.compiled import fixed_step_size, kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.potentials.compiled import fixed_step_size, kernels_of
 from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
 
 # Fixed, so that an orbit always has the same SALI; orthonormal, and generic, so that no symmetry keeps a vector in a subspace.
 DEVIATION_VECTORS = read_only(np.array([[1.0, 2.0, 3.0, 4.0], [4.0, -3.0, 2.0, -1.0]]) / np.sqrt(30.0))

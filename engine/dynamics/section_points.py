@@ -7,8 +7,8 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from engine.compiled import fixed_step_size, kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.potentials.compiled import fixed_step_size, kernels_of
 from engine.potentials.potential import Potential
 
 

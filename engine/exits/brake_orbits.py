@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.compiled import kernels_of
+from engine.exits.root_finding import find_root
+from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
-from engine.root_finding import find_root
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 
 # Lengths along the channel, in units of the distance of the saddle from the origin: where a trial orbit has left the saddle for

@@ -7,9 +7,9 @@ from math import comb
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
 from engine.taylor.kernels import interior
 
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from engine.arrays import read_only
 from engine.exits.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
 from engine.taylor.kernels import events
 from engine.validation import checked_number
 

@@ -20,10 +20,10 @@ from concurrent.futures import Executor
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.compiled import fixed_step_size, kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.potentials.compiled import fixed_step_size, kernels_of
 from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
 
 WINDOWS = (1000.0, 4000.0, 16000.0, 64000.0)
 """Window lengths T to try in turn, dimensionless; the first one is enough for most tori."""

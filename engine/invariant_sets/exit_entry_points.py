@@ -6,12 +6,12 @@ import functools
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.section_points import find_section_points
 from engine.execution import SerialExecutor
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
 from engine.slices.section import SECTION
 
 # Starts on each exit: every tenth sample of the Lyapunov orbit except near its ends, and angles to the inward direction.

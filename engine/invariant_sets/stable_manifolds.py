@@ -17,12 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
 from engine.slices.default_window import default_window
 from engine.slices.section import SECTION
 from engine.slices.window import Window

@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.compiled import kernels_of
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
+from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
 from engine.taylor.source.recurrence import TOLERANCE
 

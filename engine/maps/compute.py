@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.execution import is_cancelled
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
@@ -20,6 +19,7 @@ from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.trust import compute_trust
 from engine.progress import shows_progress
+from engine.results.arrays import read_only
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""

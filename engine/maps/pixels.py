@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
-from engine.representation import MapResult
+from engine.results.arrays import read_only
+from engine.results.result import MapResult
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.maps.compute import compute_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.results.arrays import read_only
 
 PREVIEW_SIDE = 76
 """Largest number of columns or rows of a preview."""

@@ -12,7 +12,7 @@ from engine.dynamics.batch import OrbitBatch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.maps.spec import MapSpec
-from engine.representation import MapResult
+from engine.results.result import MapResult
 from engine.slices.window import Window
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
@@ -21,6 +20,7 @@ from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, Boundedn
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices
 from engine.maps.spec import MapSpec
+from engine.results.arrays import read_only
 
 COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.classification import collect_outcomes
 from engine.dynamics.fates import Fate, Regularity
@@ -24,7 +23,8 @@ from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.progress import shows_progress
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
 from engine.validation import checked_t_max
 
 

@@ -11,7 +11,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from engine.compiled import kernels_of
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
@@ -22,6 +21,7 @@ from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
+from engine.potentials.compiled import kernels_of
 from engine.progress import shows_progress
 from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE

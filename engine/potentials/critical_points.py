@@ -12,8 +12,7 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from engine.polynomials import Powers, Terms, degree, evaluate, largest_coefficients, substitute
-from engine.taylor.source.cauchy_products import derivative
+from engine.polynomials import Powers, Terms, degree, derivative, evaluate, largest_coefficients, substitute
 
 # Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x.
 _ROTATION_ANGLES = (0.7390851332151607, 2.1)

@@ -13,14 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, evaluate
+from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, derivative, evaluate
 from engine.potentials.critical_points import characteristic_length, find_critical_points
 from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.stored_points import stored_points
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
-from engine.representation import Result
-from engine.taylor.source.cauchy_products import derivative
+from engine.results.arrays import read_only
+from engine.results.result import Result
 from engine.validation import checked_count, checked_number, short_repr
 
 EQUAL_ENERGY_TOLERANCE = 1e-12

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from engine.polynomials import Terms
-from engine.taylor.jit.kernel_files import SUFFIX, cache_folder, read_kernel, write_kernel
+from engine.storage.cache_files import SUFFIX, cache_folder, read_cached, write_cached
 
 log = logging.getLogger(__name__)
 
@@ -33,7 +33,7 @@ def stored_points(kind: str, terms: Terms, find: Callable[[], np.ndarray]) -> np
     key = repr((tuple(terms.items()), _versions()))
     path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
     try:
-        content = read_kernel(path)
+        content = read_cached(path)
         if content is not None:
             stored: np.ndarray = np.load(io.BytesIO(content), allow_pickle=False)
             return stored
@@ -42,7 +42,7 @@ def stored_points(kind: str, terms: Terms, find: Callable[[], np.ndarray]) -> np
     found = find()
     buffer = io.BytesIO()
     np.save(buffer, found, allow_pickle=False)
-    write_kernel(path, buffer.getvalue())
+    write_cached(path, buffer.getvalue())
     return found
 
 

@@ -17,7 +17,7 @@ from engine.potentials.formula_parser import COEFFICIENT_RANGE, LONGEST_TEXT, MO
 from engine.potentials.hill_region import is_open_below
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
 from engine.potentials.symmetry import count_rotations
-from engine.representation import Result
+from engine.results.result import Result
 
 MOST_CHANNELS = 16
 """Largest number of exit channels that the kernels of the Lyapunov orbit search support."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
-from engine.proportions import wilson_interval
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
 from engine.slices.window import Window
+from engine.statistics.proportions import wilson_interval
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.results.wording import format_number
 from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
 from engine.validation import checked_array, checked_count, checked_integers, short_repr
-from engine.wording import format_number
 
 MAX_DEGREE = 6
 """Highest degree of a polynomial fit; higher degrees fit the scatter."""

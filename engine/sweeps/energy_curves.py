@@ -19,7 +19,7 @@ from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.potentials.potential import Potential
 from engine.progress import shows_progress
-from engine.representation import Result
+from engine.results.result import Result
 from engine.slices.slice import Slice
 from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.complete_map import require_complete

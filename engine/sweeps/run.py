@@ -15,19 +15,19 @@ import numpy as np
 
 from engine.execution import SerialExecutor, count_workers, default_executor
 from engine.exits.lyapunov_orbits import exit_curves
-from engine.file_lock import hold_lock
 from engine.maps.compute import LARGEST_RUN, compute_map
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.progress import shows_progress
+from engine.results.wording import format_count
+from engine.storage.output_lock import hold_lock
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.zarr_store import SweepStore, create_store
 from engine.validation import checked_count
 from engine.warmup import prepare_kernels
-from engine.wording import format_count
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,16 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regularity, describe_fate, judge_regularity
 from engine.execution import SerialExecutor, raise_if_cancelled
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.results.wording import format_time
 from engine.trajectories.trajectory import Orbit
 from engine.validation import checked_state, checked_t_max
-from engine.wording import format_time
 
 MIN_GROWTH_TIME = 100.0
 """Shortest orbit judged by the growth of a deviation vector, in units of the well.

@@ -14,7 +14,7 @@ from engine.dynamics.fates import Fate
 from engine.execution import raise_if_cancelled
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
-from engine.representation import Result
+from engine.results.result import Result
 from engine.slices.slice import Energy, Slice, checked_slice
 from engine.validation import checked_number, checked_t_max
 

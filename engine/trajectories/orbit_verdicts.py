@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from engine.dynamics.certificates import Certificate, describe_certificate
 from engine.dynamics.fates import Fate, describe_fate
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS
-from engine.representation import Result
+from engine.results.result import Result
+from engine.results.wording import format_count, format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
-from engine.wording import format_count, format_time
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from engine.arrays import read_only
-from engine.compiled import kernels_of
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
 from engine.execution import SerialExecutor, raise_if_cancelled
+from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
-from engine.representation import Result
+from engine.results.arrays import read_only
+from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_deviations, sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max
 

@@ -13,7 +13,6 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from app.exports import png_bytes
 from engine import (
     CASES,
     MapSpec,
@@ -24,6 +23,7 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
+from plots.exports import png_bytes
 from plots.map_analyses import MapAnalyses
 from plots.palette import COLOUR_BLIND_SAFE, PAPER
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.exports import orbits_csv
 from engine import CASES, Plane, compute_birkhoff_digits, integrate_orbit, judge_orbit, start_states
 from engine.service import evaluate_indicators
+from plots.exports import orbits_csv
 from plots.palette import COLOUR_BLIND_SAFE
 
 Run = Callable[..., tuple[int, str, str]]

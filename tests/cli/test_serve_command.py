@@ -11,20 +11,14 @@ from typing import Any
 
 import pytest
 
-from app.runtime.settings import Settings
-from cli.serve_command import app_folder, serve_arguments, server_environment
+import app
+from cli.serve_command import serve_arguments, server_environment
 
 Run = Callable[..., tuple[int, str, str]]
 
 
-def test_app_folder_does_not_depend_on_the_working_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert (app_folder() / "main.py").is_file()
-    assert app_folder().is_absolute()
-
-
 def test_default_address_is_local_only() -> None:
-    command = serve_arguments(5006, "127.0.0.1", [], show=False, settings=Settings())
+    command = serve_arguments(5006, "127.0.0.1", [], show=False)
     assert command[command.index("--address") + 1] == "127.0.0.1"
     assert not any("origin" in argument or argument == "--show" for argument in command)
 
@@ -48,9 +42,9 @@ def test_options_are_passed_to_the_server(run: Run, monkeypatch: pytest.MonkeyPa
     )
     program, command, environment = calls[0]
     assert program == command[0] == sys.executable
-    assert command[-9:] == [
-        "--port", "8080", "--address", "0.0.0.0", "--allow-websocket-origin=a", "--allow-websocket-origin=b:1",
-        "--unused-session-lifetime=60000", "--keep-alive=20000", "--show",
+    assert command[1:] == [
+        "-P", "-m", "app", "--port", "8080", "--address", "0.0.0.0", "--allow-websocket-origin=a", "--allow-websocket-origin=b:1",
+        "--show",
     ]  # fmt: skip
     assert environment == server_environment()
 
@@ -58,13 +52,13 @@ def test_options_are_passed_to_the_server(run: Run, monkeypatch: pytest.MonkeyPa
 def test_folder_named_app_in_the_working_directory_is_not_imported(tmp_path: Path) -> None:
     (tmp_path / "app").mkdir()
     (tmp_path / "app" / "__init__.py").write_text("")
-    command = serve_arguments(5006, "127.0.0.1", [], show=False, settings=Settings())
+    command = serve_arguments(5006, "127.0.0.1", [], show=False)
     python = command[: command.index("-m")]
     script = "import importlib.util as u; print(u.find_spec('app').origin)"
     process = subprocess.run(
         [*python, "-c", script], cwd=tmp_path, env=server_environment(), capture_output=True, text=True, check=True
     )
-    assert process.stdout.strip() == str(app_folder() / "__init__.py")
+    assert process.stdout.strip() == app.__file__
 
 
 @pytest.mark.parametrize("port", [0, 70000])
@@ -72,8 +66,9 @@ def test_invalid_port_is_rejected(port: int, run: Run) -> None:
     assert run("serve", "--port", port)[0] == 2
 
 
-def test_invalid_setting_is_rejected_before_the_server_starts(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ESCAPE_EXPLORER_MOST_SESSIONS", "many")
-    code, _, err = run("serve")
-    assert code == 2
-    assert "ESCAPE_EXPLORER_MOST_SESSIONS='many': must be a whole number from 1 to 100000" in err
+def test_invalid_setting_ends_the_server_with_one_sentence(tmp_path: Path) -> None:
+    command = serve_arguments(5006, "127.0.0.1", [], show=False)
+    environment = {**server_environment(), "ESCAPE_EXPLORER_MOST_SESSIONS": "many"}
+    ended = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    sentence = "ESCAPE_EXPLORER_MOST_SESSIONS='many': must be a whole number from 1 to 100000\n"
+    assert (ended.returncode, ended.stdout, ended.stderr) == (2, "", sentence)

@@ -16,9 +16,10 @@ import pytest
 from numba.core.codegen import JITCPUCodegen
 
 import engine.taylor
-from engine.taylor.jit import disk_cache, kernel_files
+from engine.storage import cache_files
+from engine.storage.cache_files import CACHE_VARIABLE, SUFFIX
+from engine.taylor.jit import disk_cache
 from engine.taylor.jit.decorator import kernel
-from engine.taylor.jit.kernel_files import CACHE_VARIABLE, SUFFIX
 from tests.forked import Finished, fork_context, run
 
 
@@ -36,7 +37,7 @@ def fresh_kernel() -> Callable[[float], float]:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
-    kernel_files._warn_once.cache_clear()
+    cache_files._warn_once.cache_clear()
     return tmp_path / "cache" / "kernels"
 
 
@@ -112,7 +113,7 @@ def test_kernels_work_without_a_cache_folder(
     obstacle = tmp_path / "file"
     obstacle.write_text("")
     monkeypatch.setenv(CACHE_VARIABLE, str(obstacle))
-    kernel_files._warn_once.cache_clear()
+    cache_files._warn_once.cache_clear()
     assert [fresh_kernel()(2.0), fresh_kernel()(2.0)] == [6.0, 6.0]
     assert len([message for message in warnings(caplog) if "cannot be stored" in message]) == 1
     assert obstacle.read_text() == ""
@@ -125,7 +126,7 @@ def test_kernels_work_when_files_cannot_be_written(
     def refuse(*arguments: Any) -> None:
         raise OSError(reason, os.strerror(reason))
 
-    monkeypatch.setattr(kernel_files.os, "replace", refuse)
+    monkeypatch.setattr(cache_files.os, "replace", refuse)
     assert fresh_kernel()(2.0) == 6.0
     (message,) = warnings(caplog)
     assert os.strerror(reason) in message
@@ -134,7 +135,7 @@ def test_kernels_work_when_files_cannot_be_written(
 
 def test_a_read_only_cache_is_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fresh_kernel()(2.0)
-    monkeypatch.setattr(kernel_files.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
+    monkeypatch.setattr(cache_files.tempfile, "mkstemp", lambda **_: pytest.fail("written to"))
     again = fresh_kernel()
     assert again(2.0) == 6.0
     assert hits(again) == 1
@@ -176,8 +177,8 @@ def refuse_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def change_user(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     other = os.geteuid() + 1
-    monkeypatch.setattr(kernel_files.os, "geteuid", lambda: other)
-    monkeypatch.setattr(kernel_files, "_SUPERUSER", None)
+    monkeypatch.setattr(cache_files.os, "geteuid", lambda: other)
+    monkeypatch.setattr(cache_files, "_SUPERUSER", None)
 
 
 @pytest.mark.parametrize(
@@ -228,12 +229,12 @@ def test_a_new_folder_is_private_with_any_umask(folder: Path) -> None:
 def test_the_least_recently_used_files_are_deleted(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept, removed, new = (folder / f"{name}{SUFFIX}" for name in ("kept", "removed", "new"))
     for path in (kept, removed):
-        kernel_files.write_kernel(path, bytes(1000))
+        cache_files.write_cached(path, bytes(1000))
     for n, path in enumerate((kept, removed)):
         os.utime(path, ns=(n, n))
-    assert kernel_files.read_kernel(kept) == bytes(1000)
-    monkeypatch.setattr(kernel_files, "LARGEST_SIZE", 2500)
-    kernel_files.write_kernel(new, bytes(1000))
+    assert cache_files.read_cached(kept) == bytes(1000)
+    monkeypatch.setattr(cache_files, "LARGEST_SIZE", 2500)
+    cache_files.write_cached(new, bytes(1000))
     assert {*folder.iterdir()} == {kept, new}
 
 
@@ -241,15 +242,15 @@ def test_incomplete_files_of_killed_processes_count_towards_the_limit(folder: Pa
     folder.mkdir(parents=True)
     (folder / "killed.part").write_bytes(bytes(1000))
     os.utime(folder / "killed.part", ns=(0, 0))
-    monkeypatch.setattr(kernel_files, "LARGEST_SIZE", 1500)
-    kernel_files.write_kernel(folder / f"new{SUFFIX}", bytes(1000))
+    monkeypatch.setattr(cache_files, "LARGEST_SIZE", 1500)
+    cache_files.write_cached(folder / f"new{SUFFIX}", bytes(1000))
     assert [path.name for path in folder.iterdir()] == [f"new{SUFFIX}"]
 
 
 def test_the_number_of_files_is_limited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kernel_files, "MOST_FILES", 2)
+    monkeypatch.setattr(cache_files, "MOST_FILES", 2)
     for n, name in enumerate("abc"):
-        kernel_files.write_kernel(folder / f"{name}{SUFFIX}", b"")
+        cache_files.write_cached(folder / f"{name}{SUFFIX}", b"")
         os.utime(folder / f"{name}{SUFFIX}", ns=(n, n))
     assert {path.stem for path in folder.iterdir()} == {"b", "c"}
 

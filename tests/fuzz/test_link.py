@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.state.permalink import LINKED, read_link, write_link
-from app.state.system import SYSTEM, TYPED
-from app.state.view_state import ViewState
+from app.state.view_state import SYSTEM, ViewState
 from engine import CASES
+from engine.service import TYPED
 from tests.fuzz.hostile import LONGEST_MESSAGE, STRINGS, floats, formulas, result_or_error, texts
 
 NAMES = (

@@ -10,10 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.state.permalink import read_link, write_link
-from app.state.system import TYPED, System, refusal
 from app.state.view_state import ViewState
-from cli.potential_argument import PARAMETERS, file_name_part, find_potential
+from cli.potential_argument import file_name_part, find_potential
 from engine import POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
+from engine.service import PARAMETERS, TYPED, System
+from plots.accepted_potentials import refusal
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
 
 LONGEST_REVIEW = 3.0

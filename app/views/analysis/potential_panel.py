@@ -9,11 +9,10 @@ from typing import Any
 
 import panel as pn
 
-from app.state.system import PARAMETERS, SHOWN_DIGITS, TYPED, System
 from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.widgets import Slider, button
 from engine import POTENTIALS, PotentialReview, write_formula
-from engine.service import FREQUENCIES, LONGEST_TEXT
+from engine.service import FREQUENCIES, LONGEST_TEXT, PARAMETERS, SHOWN_DIGITS, TYPED, System
 from plots.mathml import potential_formula
 
 # Ends of the sliders; links and the command line allow wider ranges.

@@ -10,14 +10,13 @@ from typing import Any
 import panel as pn
 
 from app.runtime.process_state import process_state
-from app.state.energy_ranges import EnergyRange
-from app.state.system import SYSTEM, System
-from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
+from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.number_box import NumberBox
 from app.views.components.widgets import SegmentedControl, Slider, Switches, bind, button
 from engine import CASES, Plane
+from engine.service import EnergyRange, System
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"

@@ -8,12 +8,12 @@ from functools import partial
 
 import panel as pn
 
-from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.components.file_saver import FileSaver
 from app.views.components.widgets import button
 from engine import EnergyCurves, EscapeMap
+from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from plots.map_analyses import MapAnalyses
 from plots.map_images import ON_DEMAND, TITLES
 

@@ -6,8 +6,7 @@ from html import escape
 
 import panel as pn
 
-from app.state.system import SYSTEM
-from app.state.view_state import ViewState
+from app.state.view_state import SYSTEM, ViewState
 from plots.mathml import equations
 
 

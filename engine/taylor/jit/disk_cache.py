@@ -1,4 +1,4 @@
-"""Compiled kernels on disk, each in a file (`engine.taylor.jit.kernel_files`).
+"""Compiled kernels on disk, each in a file (`engine.storage.cache_files`).
 
 Numba's own cache loads whatever it finds: a truncated file ends the program, an altered one may compute anything, and two
 processes that compile at once can load each other's code. Here the name of a file contains a hash of everything its code depends
@@ -32,7 +32,7 @@ from numba.core.compiler import CompileResult
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
-from engine.taylor.jit.kernel_files import SUFFIX, cache_folder, delete_kernels, read_kernel, write_kernel
+from engine.storage.cache_files import SUFFIX, cache_folder, delete_cached, read_cached, write_cached
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -60,7 +60,7 @@ class KernelCache(_Cache):
         rtsys.initialize(target_context)
         path = self._path(sig, target_context.codegen())
         try:
-            payload = read_kernel(path)
+            payload = read_cached(path)
             if payload is None:
                 return None
             return CompileResult._rebuild(target_context, *pickle.loads(payload))  # type: ignore[no-untyped-call]
@@ -73,7 +73,7 @@ class KernelCache(_Cache):
         if data.library.has_dynamic_globals:
             return
         payload: bytes = dumps(data._reduce())  # type: ignore[no-untyped-call]
-        write_kernel(self._path(sig, data.codegen), payload)
+        write_cached(self._path(sig, data.codegen), payload)
 
     def enable(self) -> None:
         """Does nothing: the cache is always enabled."""
@@ -83,7 +83,7 @@ class KernelCache(_Cache):
 
     def flush(self) -> None:
         """Delete the function's files."""
-        delete_kernels(self._name)
+        delete_cached(self._name)
 
     def _path(self, signature: Any, codegen: Any) -> Path:
         """Named after argument types, processor, source and versions, so that the content of a file never changes."""

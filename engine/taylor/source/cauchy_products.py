@@ -33,13 +33,6 @@ class Product:
     right: Monomial
 
 
-def derivative(terms: Polynomial, axis: int) -> dict[Monomial, float]:
-    """The terms of ∂/∂x (axis 0) or ∂/∂y (axis 1)."""
-    if axis == 0:
-        return {(i - 1, j): i * c for (i, j), c in terms.items() if i}
-    return {(i, j - 1): j * c for (i, j), c in terms.items() if j}
-
-
 def plan_products(needed: AbstractSet[Monomial]) -> list[Product]:
     """A short list of Cauchy products that yields every needed monomial.
 

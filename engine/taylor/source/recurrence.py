@@ -31,14 +31,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import read_only
+from engine.polynomials import derivative
+from engine.results.arrays import read_only
 from engine.taylor.source.cauchy_products import (
     Monomial,
     Polynomial,
     Product,
     X,
     Y,
-    derivative,
     find_difference,
     find_scales,
     plan_products,

@@ -10,11 +10,10 @@ import param
 import pytest
 
 from app.session.potential_presenter import PotentialPresenter
-from app.state.system import TYPED, System
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import PotentialPanel
 from engine import CASES
-from engine.service import Jobs
+from engine.service import TYPED, Jobs, System
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 VALLEY = "x²y²"

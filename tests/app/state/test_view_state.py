@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.state.energy_ranges import ENERGIES
 from app.state.view_state import ViewState
 from engine import CASES, Plane
+from engine.service import PAPER_ENERGIES
 from plots.palette import MOST_ORBITS
 
 
@@ -25,7 +25,7 @@ def test_the_map_has_the_chosen_parameters() -> None:
 @pytest.mark.parametrize("case", list(CASES))
 def test_the_energy_plane_spans_from_the_escape_energy_to_the_end_of_the_slider(case: str) -> None:
     spec = ViewState(case=case, plane=Plane.X_H).map_spec()
-    assert spec.energy == (CASES[case].escape_energy, ENERGIES[case].high)
+    assert spec.energy == (CASES[case].escape_energy, PAPER_ENERGIES[case].high)
 
 
 def test_a_start_gets_its_py_from_the_energy() -> None:
@@ -88,7 +88,7 @@ def test_without_starts_none_is_chosen() -> None:
 
 @pytest.mark.parametrize("case", list(CASES))
 def test_the_slider_contains_the_escape_energy_and_all_energies_of_the_paper(case: str) -> None:
-    energies = ENERGIES[case]
+    energies = PAPER_ENERGIES[case]
     assert energies.low < CASES[case].escape_energy < min(energies.marked)
     assert len(energies.marked) == 9
     assert max(energies.marked) <= energies.high

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from engine import CASES, Plane, integrate_orbit, start_states
-from engine.compiled import fixed_step_size
 from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
 from engine.dynamics.fates import is_chaotic
+from engine.potentials.compiled import fixed_step_size
 
 STATES = start_states(CASES["II"], Plane.X_PX, 0.16, np.array([0.0, 0.1, -0.3]), np.array([0.0, 0.05, 0.1]))
 

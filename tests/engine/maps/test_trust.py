@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
-from engine.compiled import kernels_of
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.execution import SerialExecutor
 from engine.exits.lyapunov_orbits import exit_curves
@@ -24,6 +23,7 @@ from engine.maps.trust import (
     find_unlike_neighbours,
     shifted_starts,
 )
+from engine.potentials.compiled import kernels_of
 from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE
 

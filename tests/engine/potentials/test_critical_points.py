@@ -8,10 +8,10 @@ import sympy
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
+from engine.polynomials import derivative
 from engine.potentials.catalogue import channel_family
 from engine.potentials.critical_points import NotIsolatedError, find_critical_points, winding_number
 from engine.potentials.potential import Potential
-from engine.taylor.source.cauchy_products import derivative
 
 X, Y = sympy.symbols("x y")
 lines = st.tuples(*[st.integers(-5, 5)] * 3).filter(lambda line: line[0] or line[1])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine.potentials.stored_points import stored_points
-from engine.taylor.jit.kernel_files import CACHE_VARIABLE
+from engine.storage.cache_files import CACHE_VARIABLE
 
 TERMS = {(2, 0): 0.5, (0, 2): 0.5}
 POINTS = np.array([[0.0, 0.1 + 0.2]])

@@ -11,8 +11,8 @@ import pytest
 
 from engine import CASES, Fate, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.results.wording import format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
-from engine.wording import format_time
 
 # Hénon & Heiles at or below E = 1/8, with their y as x: an orbit in an island and one in the chaotic sea.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import panel as pn
 import pytest
 
-from app.state.system import TYPED, System
 from app.state.view_state import ViewState
 from app.views.panels.controls import ControlActions, Controls
 from engine import Plane
+from engine.service import TYPED, System
 
 
 class Page:

@@ -9,8 +9,8 @@ import pytest
 from numba import njit
 
 from engine import CASES, find_lyapunov_orbits
+from engine.storage.cache_files import CACHE_VARIABLE
 from engine.taylor.jit.decorator import kernel, subroutine
-from engine.taylor.jit.kernel_files import CACHE_VARIABLE
 from engine.taylor.kernels.periodic_shooting import shoot
 
 

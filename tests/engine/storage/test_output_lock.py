@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
+import re
 import signal
 import sys
 from multiprocessing.synchronize import Event
@@ -10,7 +13,6 @@ from pathlib import Path
 
 import pytest
 
-from engine.file_lock import _lock
 from engine.service import hold_lock
 from tests.forked import fork_context, start
 
@@ -63,17 +65,47 @@ def test_different_outputs_of_a_folder_have_different_locks(tmp_path: Path) -> N
         assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_a_lock_file_deleted_by_its_last_holder_is_created_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = tmp_path / ".out.lock"
-    tries = []
+def append_alone(path: Path, turns: int) -> None:
+    """Hold the lock for a number of turns; in each, create a file that must not exist."""
+    marker = path.with_name("marker")
+    while turns:
+        with contextlib.suppress(BlockingIOError), hold_lock(path):
+            marker.touch(exist_ok=False)
+            marker.unlink()
+            turns -= 1
 
-    def lock(descriptor: int, path: Path) -> None:
-        _lock(descriptor, path)
-        tries.append(descriptor)
-        if len(tries) == 1:
-            file.unlink()
 
-    monkeypatch.setattr("engine.file_lock._lock", lock)
-    with hold_lock(tmp_path / "out"):
-        assert file.exists()
-    assert len(tries) == 2
+def test_processes_that_take_turns_never_hold_the_lock_together(tmp_path: Path) -> None:
+    """Each holder deletes the file of the lock, which others may have opened."""
+    processes = [start(append_alone, tmp_path / "out", 200) for _ in range(3)]
+    for process in processes:
+        process.join(60)
+    assert [process.exitcode for process in processes] == [0, 0, 0]
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("reason", [errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP])
+def test_a_file_system_without_locks_reserves_nothing(reason: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*arguments: object) -> None:
+        raise OSError(reason, os.strerror(reason))
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with hold_lock(tmp_path / "out"), hold_lock(tmp_path / "out"):
+        pass
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("reason", [errno.EIO, errno.EROFS])
+def test_other_errors_of_the_disk_are_raised(reason: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*arguments: object) -> None:
+        raise OSError(reason, os.strerror(reason))
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with pytest.raises(OSError, match=re.escape(os.strerror(reason))), hold_lock(tmp_path / "out"):
+        pass
+
+
+def test_a_folder_that_nobody_may_write_to_is_an_error(tmp_path: Path) -> None:
+    """Even of the superuser, who may write to any folder of a disk."""
+    with pytest.raises(OSError, match="out"), hold_lock(Path("/proc/self/out")):
+        pass

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from scipy import optimize
 
-from engine.root_finding import find_root
+from engine.exits.root_finding import find_root
 
 FUNCTIONS: dict[str, tuple[Callable[[float], float], float, float]] = {
     "line": (lambda x: 2.0 * x - 0.3, -1.0, 5.0),

@@ -13,8 +13,6 @@ import xarray as xr
 from matplotlib import pyplot
 from PIL import Image
 
-from app.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
-from app.state.system import TYPED, System
 from engine import (
     CASES,
     EnergyCurvesSpec,
@@ -29,6 +27,8 @@ from engine import (
     integrate_orbit,
     judge_orbit,
 )
+from engine.service import TYPED, System
+from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
 from plots.map_analyses import MapAnalyses
 from plots.map_images import TITLES
 from plots.palette import COLOUR_BLIND_SAFE, PAPER

@@ -1,7 +1,8 @@
-"""Files of compiled kernels in a private folder of limited size: verified when they are read, written atomically.
+"""The cache on disk, files in a private folder of limited size: verified when they are read, written atomically.
 
-The content of a file is a pickle with machine code. The hash at its start detects accidents, such as an incomplete copy, and no
-attack: whoever can write a file can also write its hash. A file is therefore read only if no other user can have written it.
+It has compiled kernels, and points of potentials. The content of a kernel's file is a pickle with machine code. The hash at the
+start of each file detects accidents, such as an incomplete copy, and no attack: whoever can write a file can also write its hash.
+A file is therefore read only if no other user can have written it.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def cache_folder() -> Path:
     return Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("escape-explorer")) / "kernels"
 
 
-def read_kernel(path: Path) -> bytes | None:
+def read_cached(path: Path) -> bytes | None:
     """The content of a file, without its hash, which makes it the most recently used.
 
     Returns
@@ -73,7 +74,7 @@ def read_kernel(path: Path) -> bytes | None:
     return payload
 
 
-def write_kernel(path: Path, payload: bytes) -> None:
+def write_cached(path: Path, payload: bytes) -> None:
     """Write a file if possible, and delete the least recently used ones beyond the size limit; otherwise log a warning."""
     folder = path.parent
     try:
@@ -87,7 +88,7 @@ def write_kernel(path: Path, payload: bytes) -> None:
         _warn_once(f"compiled kernels cannot be stored in {folder} and are compiled at every start: {error.strerror}")
 
 
-def delete_kernels(name: str) -> None:
+def delete_cached(name: str) -> None:
     """Delete the files whose names start with `name` and a dot."""
     for path in cache_folder().glob(f"{name}.*{SUFFIX}"):
         path.unlink(missing_ok=True)

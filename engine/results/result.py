@@ -1,7 +1,6 @@
 """Results show themselves: pictures on Matplotlib axes and in notebooks, tables for pandas and xarray.
 
-The pictures are drawn by the package `plots`, which also draws downloads and the figures of the paper. It is imported at the
-first picture.
+The pictures are drawn by another package, which is imported at the first of them; see `engine.results.pictures`.
 """
 
 from __future__ import annotations
@@ -11,6 +10,8 @@ from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from engine.results.pictures import load_pictures
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,20 +44,14 @@ class Result:
         ValueError
             If an option has no such value.
         """
-        from plots.results import plot_result
-
-        return plot_result(self, ax, **options)
+        return load_pictures().plot_result(self, ax, **options)
 
     def to_holoviews(self) -> Any:
         """The result as an interactive HoloViews element, for the extension that is loaded: an image of a map, else curves."""
-        from plots.results import to_holoviews
-
-        return to_holoviews(self)
+        return load_pictures().to_holoviews(self)
 
     def _repr_html_(self) -> str:
-        from plots.results import to_html
-
-        return to_html(self)
+        return load_pictures().to_html(self)
 
     def numbers(self) -> dict[str, Any]:
         """The scalar attributes by name."""

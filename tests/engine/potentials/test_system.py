@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from app.state.energy_ranges import ENERGIES
-from app.state.system import TYPED, System, refusal
-from engine import CASES, POTENTIALS, channel_family, parse_formula, review_potential
-from plots.palette import MOST_CHANNELS
+from engine import CASES, POTENTIALS, parse_formula, review_potential
+from engine.service import PAPER_ENERGIES, TYPED, System
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 
 
 def test_a_case_has_the_potential_and_the_energies_of_the_paper() -> None:
     assert System("II").potential == CASES["II"]
-    assert System("II").energies == ENERGIES["II"]
+    assert System("II").energies == PAPER_ENERGIES["II"]
 
 
 def test_parameters_change_the_potential_and_its_energies() -> None:
@@ -56,19 +54,3 @@ def test_the_title_names_the_parameters() -> None:
     assert System("I").title == "Case I"
     assert System("I", omega_1=1.46, epsilon=0.5).title == "Case I with ω1 = 1.46, ε = 0.5"
     assert System(TYPED, "½r² − xy²", omega_2=2.0).title == "Typed potential with ω2 = 2"
-
-
-def test_more_exits_than_colours_are_rejected() -> None:
-    assert "colours" in str(refusal(review_potential(channel_family(MOST_CHANNELS + 1))))
-
-
-def test_a_negative_escape_energy_is_rejected() -> None:
-    assert "constant term" in str(refusal(review_potential(parse_formula(f"{HENON_HEILES} − 1"))))
-
-
-def test_an_escape_energy_beyond_the_largest_number_is_refused() -> None:
-    assert "energies up to 1e+09" in str(refusal(review_potential(parse_formula("(x² + y²)/2 + 1e-7y³"))))
-
-
-def test_known_potentials_are_accepted() -> None:
-    assert [name for name in POTENTIALS if refusal(review_potential(POTENTIALS[name].potential))] == []

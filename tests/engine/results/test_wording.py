@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.wording import format_count, format_decimals, format_number, format_time, format_whole
+from engine.results.wording import format_count, format_decimals, format_number, format_time, format_whole
 
 
 @pytest.mark.parametrize(("count", "text"), [(0, "0 boxes"), (1, "1 box"), (2, "2 boxes")])

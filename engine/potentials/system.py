@@ -1,34 +1,23 @@
-"""The selected potential with its parameters, and its energy range."""
+"""A potential as users choose it: a name of the catalogue or a formula, with the parameters of Zotos (2014)."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from app.state.energy_ranges import ENERGIES, EnergyRange
-from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
-from engine.service import LARGEST_NUMBER
-from plots.palette import MOST_CHANNELS
+from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange, energy_range
+from engine.potentials.formula_parser import parse_formula, write_formula
+from engine.potentials.potential import CASES, Potential
 
 TYPED = "typed"
-"""Case of a potential that the user typed."""
+"""Case of a potential that is given by a formula."""
 
 PARAMETERS = {"omega_1": "ω1", "omega_2": "ω2", "epsilon": "ε"}
 """Symbols of the parameters."""
 
-SYSTEM = ("case", "formula", *PARAMETERS)
-"""Attributes of a view state that define its system."""
-
 SHOWN_DIGITS = 12
 """Significant digits of the coefficients in formulas, where 1.46²/2 is 1.0658 without the rounding error of the product."""
-
-# In units of the escape energy: lower end of the slider, initial energy, upper end of the slider.
-_LOW, _FIRST, _HIGH = 0.8, 1.5, 4.0
-# Upper limit of the slider, as a share of the way from the escape energy to the highest energy with separate exits.
-_BELOW_HIGHEST = 0.99
-# Smallest span of the slider in units of the escape energy: narrower spans are dominated by rounding.
-_NARROWEST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -79,33 +68,11 @@ class System:
     def energies(self) -> EnergyRange:
         """Energy range of the paper for its cases, else multiples of the escape energy."""
         if self.case in CASES and not self.changed:
-            return ENERGIES[self.case]
-        return _energies(self.potential)
+            return PAPER_ENERGIES[self.case]
+        return energy_range(self.potential)
 
 
 @lru_cache(maxsize=64)
 def _potential(system: System) -> Potential:
     plain = parse_formula(system.formula) if system.case == TYPED else POTENTIALS[system.case].potential
     return plain.with_parameters(system.omega_1, system.omega_2, system.epsilon)
-
-
-@lru_cache(maxsize=64)
-def _energies(potential: Potential) -> EnergyRange:
-    escape = potential.escape_energy
-    span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * escape)
-    first, high = min(_FIRST * escape, escape + 0.5 * span), min(_HIGH * escape, escape + span)
-    # Enough decimals to keep all of these distinct.
-    decimals = max(2 - math.floor(math.log10(escape)), 1 - math.floor(math.log10(high - escape)))
-    low, first, high = (round(energy, decimals) for energy in (_LOW * escape, first, high))
-    return EnergyRange(low, high, (), first, decimals)
-
-
-def refusal(found: PotentialReview) -> str | None:
-    """Reason why the page cannot show a potential; None if it can."""
-    if found.refusal is None and found.channels > MOST_CHANNELS:
-        return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
-    if found.refusal is None and found.escape_energy <= 0.0:
-        return f"Its escape energy is {found.escape_energy:.6g}; leave out the constant term, so that it is above 0."
-    if found.refusal is None and _HIGH * found.escape_energy > LARGEST_NUMBER:
-        return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
-    return found.refusal

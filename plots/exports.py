@@ -7,8 +7,8 @@ import re
 from collections.abc import Iterator, Sequence
 from importlib import metadata
 
-from app.state.system import TYPED, System
 from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, judge_orbit
+from engine.service import TYPED, System
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.palette import Palette
 

@@ -1,0 +1,79 @@
+"""A lock for output that takes long to write: one process holds it, and another learns which one."""
+
+from __future__ import annotations
+
+import errno
+import os
+import platform
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from filelock import FileLock
+
+# Time for several attempts, in seconds: the last holder may delete the file between its opening and its locking.
+_ATTEMPTS = 0.1
+# Errors of file systems that have no locks.
+_NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
+
+
+@contextmanager
+def hold_lock(path: Path) -> Iterator[None]:
+    """Reserve a path for this process, with a file `.NAME.lock` beside it that is deleted at the end.
+
+    The operating system releases the lock when the process ends, even if it is killed. Windows, and file systems that have no
+    locks, give none: nothing is reserved there.
+
+    Parameters
+    ----------
+    path
+        File or folder to be written, which need not exist; its parent is created.
+
+    Raises
+    ------
+    BlockingIOError
+        When another process holds it; one sentence with its number, its machine and since when.
+    OSError
+        When the lock file cannot be written.
+    """
+    if sys.platform == "win32":
+        # A locked file can neither be read there, to learn who holds it, nor be deleted by its holder.
+        yield
+        return
+    from filelock import FileLock
+
+    file = path.resolve().parent / f".{path.resolve().name}.lock"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    lock = FileLock(file, timeout=_ATTEMPTS, fallback_to_soft=False)
+    _acquire(lock, file, path)
+    try:
+        file.write_text(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}")
+        yield
+    finally:
+        # While the lock is held: afterwards the file may be that of another process.
+        file.unlink(missing_ok=True)
+        lock.release()
+
+
+def _acquire(lock: FileLock, file: Path, path: Path) -> None:
+    from filelock import Timeout
+
+    try:
+        lock.acquire()
+    except Timeout:
+        holder = _read_holder(file) or "another process"
+        raise BlockingIOError(f"{path}: is being written by {holder}; wait for its end, or choose another output") from None
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
+
+
+def _read_holder(file: Path) -> str:
+    try:
+        return file.read_text(errors="replace")
+    except OSError:
+        return ""
