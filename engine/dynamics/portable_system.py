@@ -53,7 +53,12 @@ class PortableSystem:
         return {
             "constants": list(self.constants),
             "layout": {
-                **{"lanes": LANES, "order": ORDER, "hidden": HIDDEN, "gate": GATE, "overshoot": OVERSHOOT, "tolerance": TOLERANCE},
+                "lanes": LANES,
+                "order": ORDER,
+                "hidden": HIDDEN,
+                "gate": GATE,
+                "overshoot": OVERSHOOT,
+                "tolerance": TOLERANCE,
                 "fates": {fate.name.lower(): int(fate) for fate in Fate},
             },
             "table": self.table.tolist(),

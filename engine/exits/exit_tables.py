@@ -119,7 +119,8 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
         nodes, between = _nodes(count, largest), _between(count, largest)
         try:
             rows, expected = (
-                np.array([_row(curves_at(saddle + sigma**2)[channel]) for sigma in places.tolist()]) for places in (nodes, between)
+                np.array([_row(curves_at(saddle + sigma**2)[channel]) for sigma in places.tolist()])
+                for places in (nodes, between)
             )
         except ValueError:
             continue

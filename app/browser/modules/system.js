@@ -12,6 +12,7 @@
  * @property {ExitTable[]} exits  one for each channel
  * @property {number[] | null} mirror  image of each channel number under x → −x; null without this symmetry
  * @property {{length: number, time: number}} units
+ * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
  *
  * @typedef {object} Layout
  * @property {number} lanes  length of a row of lanes
@@ -21,6 +22,10 @@
  * @property {number} overshoot  flag: the step ends after the horizon
  * @property {number} tolerance  of the steps that the server takes
  * @property {Record<"bounded" | "not_computed" | "failed" | "outside" | "forbidden", number>} fates
+ *
+ * @typedef {object} WindowTable
+ * @property {number[]} energies  rising, in units of the page
+ * @property {[number, number, number, number][]} windows  lowest and highest abscissa, lowest and highest ordinate
  *
  * @typedef {object} ExitTable
  * @property {number} saddle  energy at which the channel opens
@@ -50,3 +55,22 @@
  * @param {number} energy
  */
 export const coversEnergy = (system, energy) => system.exits.every(({highest}) => energy <= highest)
+
+/**
+ * The default window at an energy, linear between tabulated ones; null beyond the table.
+ *
+ * @param {WindowTable | undefined} table
+ * @param {number} energy  in units of the page
+ * @returns {import("./slice.js").Window | null}
+ */
+export function windowAt(table, energy) {
+  const above = table ? table.energies.findIndex(each => each >= energy) : -1
+  if (!table || above < 0 || energy < table.energies[0]) return null
+  const below = Math.max(above - 1, 0)
+  const [low, high] = [table.energies[below], table.energies[above]]
+  const share = high > low ? (energy - low) / (high - low) : 0
+  const [xLow, xHigh, ordinateLow, ordinateHigh] = table.windows[below].map(
+    (edge, k) => edge + share * (table.windows[above][k] - edge),
+  )
+  return {xLow, xHigh, ordinateLow, ordinateHigh}
+}

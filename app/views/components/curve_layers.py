@@ -69,17 +69,16 @@ class CurveLayers:
             for glyph in glyphs:
                 glyph.line_color = getattr(self._inks, ink)
 
-    def show(self, spec: MapSpec, *, preview: bool = False) -> None:
-        """Draw the curves of a map's plane, window and energy; a preview leaves the equipotentials unchanged."""
-        limit, critical, *others = _trace(spec, () if preview or spec.plane is Plane.X_H else (1.0, *_LEVELS))
+    def show(self, spec: MapSpec) -> None:
+        """Draw the curves of a map's plane, window and energy."""
+        limit, critical, *others = _trace(spec, () if spec.plane is Plane.X_H else (1.0, *_LEVELS))
         self._limit.data = _lines(limit)
         orbits = find_lyapunov_orbits(spec.potential, _energy(spec)) if spec.plane is Plane.X_Y else ()
         # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
-        if not preview:
-            self._critical.data = _lines(critical)
-            self._levels.data = _lines([line for lines in others for line in lines])
+        self._critical.data = _lines(critical)
+        self._levels.data = _lines([line for lines in others for line in lines])
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:

@@ -111,7 +111,9 @@ def _with_exports(compiled: bytes, names: Sequence[str]) -> bytes:
     exports = [_name(name) + bytes([_FUNCTION_EXPORT, index]) for index, name in enumerate(names)]
     export = _section(_EXPORT, bytes([len(exports)]) + b"".join(exports))
     kept = [
-        (export if number == _CODE else b"") + compiled[begin:end] for number, begin, end in _sections(compiled) if number != _CUSTOM
+        (export if number == _CODE else b"") + compiled[begin:end]
+        for number, begin, end in _sections(compiled)
+        if number != _CUSTOM
     ]
     return compiled[:_HEADER_BYTES] + b"".join(kept)
 
