@@ -7,10 +7,11 @@ from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, ex
 from engine.basins.uncertainty_exponent import fit_uncertainty
 from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
-from engine.execution import count_cores
+from engine.dynamics.portable_system import PortableSystem, make_portable_system
+from engine.execution import count_cores, raise_if_cancelled
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
-from engine.jobs.context import JobRequest
+from engine.jobs.context import JobContext, JobRequest
 from engine.jobs.manager import Jobs
 from engine.jobs.requests import (
     Answer,
@@ -24,7 +25,6 @@ from engine.jobs.requests import (
     OrbitRequest,
     OriginFateRequest,
     PotentialReviewRequest,
-    PreviewRequest,
     RegularityRequest,
     SeparationRequest,
     StableManifoldsRequest,
@@ -36,7 +36,6 @@ from engine.jobs.requests import (
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
 from engine.maps.origin_fates import join_origin_fates
-from engine.maps.preview import PREVIEW_SIDE, PREVIEW_TIME, compute_preview, preview_spec
 from engine.maps.result import describe_codes
 from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
@@ -85,8 +84,6 @@ __all__ = [
     "MOST_REQUESTS",
     "PAPER_ENERGIES",
     "PARAMETERS",
-    "PREVIEW_SIDE",
-    "PREVIEW_TIME",
     "SECTION",
     "SHOWN_DIGITS",
     "STRENGTHS",
@@ -109,6 +106,7 @@ __all__ = [
     "HyperbolicTangent",
     "IndicatorVerdict",
     "JobClient",
+    "JobContext",
     "JobRequest",
     "JobStats",
     "JobSubmitter",
@@ -120,9 +118,9 @@ __all__ = [
     "PaperFits",
     "PointKind",
     "Polynomial",
+    "PortableSystem",
     "PotentialEntry",
     "PotentialReviewRequest",
-    "PreviewRequest",
     "RadiusEnvelope",
     "RegularityRequest",
     "SeparationRequest",
@@ -139,7 +137,6 @@ __all__ = [
     "common_energy",
     "compiled_operations",
     "compute_energy_point",
-    "compute_preview",
     "compute_radius_envelope",
     "compute_survival",
     "count_cores",
@@ -157,11 +154,12 @@ __all__ = [
     "is_ready_for_maps",
     "join_origin_fates",
     "judge_regularity",
+    "make_portable_system",
     "plan_sweep",
     "prepare_for_certificates",
     "prepare_for_maps",
     "prepare_kernels",
-    "preview_spec",
+    "raise_if_cancelled",
     "seconds_until_ready_for_maps",
     "tabulate_crossing_statistics",
     "trace_equipotentials",

@@ -40,7 +40,17 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
         "dh": [window.ordinate_high - window.ordinate_low],
+        "energy": [np.nan if isinstance(frame.spec.energy, tuple) else frame.spec.energy],
         "complete": [frame.complete],
+    }
+
+
+def pixel_coding() -> dict[str, Any]:
+    """How pixels become codes, for programs that make the columns elsewhere: outcomes, first class, classes of crossings."""
+    return {
+        "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
+        "first": _FIRST_CLASS,
+        "leastCrossings": _LEAST_CROSSINGS.tolist(),
     }
 
 

@@ -9,7 +9,6 @@ from typing import Any, Protocol
 from app.job_clients.error_messages import sentence
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.locking import Locked
-from app.job_clients.preview_requests import NO_OVERLOAD, LoadPolicy, PreviewRequests
 from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
 from engine.service import JobSubmitter, Subscription, WarmupRequest, is_ready_for_maps
@@ -31,9 +30,6 @@ class MapListener(Protocol):
     def map_failed(self, sentence: str) -> None:
         """The map has failed for the reason given."""
 
-    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """A preview has arrived."""
-
 
 class MapRequests:
     """Map requests of one session.
@@ -50,8 +46,8 @@ class MapRequests:
         Runs callbacks under the session's lock; it may drop all calls but the latest.
     follow_ups
         Analyses of each complete map.
-    load_policy
-        Under overload, frames between the first and the last are skipped and previews are delayed.
+    is_overloaded
+        Whether the server is overloaded; then frames between the first and the last are skipped.
     """
 
     def __init__(
@@ -61,7 +57,7 @@ class MapRequests:
         listener: MapListener,
         locked: Locked,
         follow_ups: Sequence[FollowUp] = (),
-        load_policy: LoadPolicy = NO_OVERLOAD,
+        is_overloaded: Callable[[], bool] = lambda: False,
     ) -> None:
         self._state, self._jobs, self._listener = state, jobs, listener
         self._subscription: Subscription | None = None
@@ -72,17 +68,15 @@ class MapRequests:
         # Generation of which a frame has been delivered.
         self._delivered = -1
         self._compiling = False
-        self._load_policy = load_policy
+        self._is_overloaded = is_overloaded
         self._continue = locked(self._on_prepared)
         self._show_frame = locked(self._on_frame)
         self._show_error = locked(self._on_error)
-        self.previews = PreviewRequests(state, jobs, listener.preview_arrived, locked, load_policy)
         self._follow_ups = FollowUpRequests(state, jobs, follow_ups, listener.map_failed, locked)
         state.param.watch(lambda *events: self.request_map(), [*SYSTEM, "plane", "energy", "t_max", "resolution", "window"])
 
     def request_map(self) -> None:
-        """Request the map of the view state and cancel the session's earlier map and preview."""
-        self.previews.cancel()
+        """Request the map of the view state and cancel the session's earlier map."""
         self.cancel_map()
         generation = self._start_generation()
         self._compiling = not is_ready_for_maps(self._state.potential)
@@ -107,7 +101,7 @@ class MapRequests:
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
         """Deliver a frame; under overload only the first and the last one."""
-        if self._delivered == generation and not frame.complete and self._load_policy.is_overloaded():
+        if self._delivered == generation and not frame.complete and self._is_overloaded():
             return
         columns = map_columns(frame, characters=self._state.judge)
         self._deliver(self._show_frame, generation, frame, columns)
@@ -124,14 +118,6 @@ class MapRequests:
         with self._generation_lock:
             if generation == self._generation:
                 callback(generation, *arguments)
-
-    def request_preview(self, energy: float) -> None:
-        """Request a preview at another energy and cancel the map; ignored before the integrator is compiled."""
-        if not is_ready_for_maps(self._state.potential):
-            return
-        self.cancel_map()
-        self._start_generation()
-        self.previews.request(energy)
 
     def cancel_map(self) -> None:
         """Cancel the map and its follow-up analyses."""
@@ -153,7 +139,6 @@ class MapRequests:
         """Cancel everything at the end of the session."""
         self._start_generation()
         self.cancel_map()
-        self.previews.cancel()
 
     def _on_frame(self, generation: int, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         if generation == self._generation:

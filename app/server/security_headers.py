@@ -1,8 +1,9 @@
 """Security headers of responses.
 
 The Content-Security-Policy allows scripts from this server, and inline scripts of the served page by a nonce, so that
-injected scripts do not run. Bokeh and Panel need three exceptions: ``unsafe-eval``, as both create functions from text;
-``blob:``, from which Panel imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
+injected scripts do not run; workers from this server alone; and WebAssembly (``wasm-unsafe-eval``), which the engine in the
+browser is. Bokeh and Panel need three exceptions: ``unsafe-eval``, as both create functions from text; ``blob:``, from which
+Panel imports components; and ``unsafe-inline`` for styles, which Bokeh inserts at run time.
 """
 
 from __future__ import annotations
@@ -54,7 +55,8 @@ def content_policy(frame_ancestors: tuple[str, ...], nonce: str | None = None) -
     """
     directives = {
         "default-src": ["'self'"],
-        "script-src": ["'self'", "blob:", "'unsafe-eval'", *([f"'nonce-{nonce}'"] if nonce else [])],
+        "script-src": ["'self'", "blob:", "'unsafe-eval'", "'wasm-unsafe-eval'", *([f"'nonce-{nonce}'"] if nonce else [])],
+        "worker-src": ["'self'"],
         "style-src": ["'self'", "'unsafe-inline'"],
         "img-src": ["'self'", "data:", "blob:"],
         "font-src": ["'self'", "data:"],

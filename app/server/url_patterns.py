@@ -14,6 +14,7 @@ from typing import Any
 
 from panel.io.server import DocHandler, RootHandler, WSHandler
 
+from app.browser.module_files import ROUTE as MODULES
 from app.server.endpoints import ROUTES, NotFound
 from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
@@ -41,7 +42,9 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     """
     for patterns in (per_app_patterns, toplevel_patterns):
         patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
-    toplevel_patterns += [route for route in (*ROUTES, ("/.*", NotFound)) if route not in toplevel_patterns]
+    modules = (MODULES[0], _secured(MODULES[1]), MODULES[2])
+    if all(path != modules[0] for path, *_ in toplevel_patterns):
+        toplevel_patterns += [*ROUTES, modules, ("/.*", NotFound)]
 
 
 def _secured(handler: type) -> type:

@@ -10,10 +10,12 @@ from urllib.parse import parse_qsl
 
 import panel as pn
 
-from app.job_clients.energy_animation import EnergyAnimation
+from app.browser.engine_component import BrowserEngine
+from app.browser.system_request import BrowserSystemRequest
+from app.browser.views import describe_view
+from app.job_clients.latest_request import LatestRequest
 from app.job_clients.map_requests import MapRequests
 from app.job_clients.orbit_requests import ChosenOrbit
-from app.job_clients.preview_requests import LoadPolicy
 from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
@@ -40,12 +42,9 @@ from app.views.panels.downloads import Downloads
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, Window
+from engine import EscapeMap, Fate, Potential, Window
 from engine.service import JobClient, System, describe_fate, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
-
-# Time until a preview that was postponed under load is tried again.
-_RETRY_MS = 300
 
 
 class Explorer:
@@ -72,8 +71,8 @@ class Explorer:
         self.analyses = AnalysisPresenter(
             self.state, jobs, self.maps, self.downloads.show_analyses, self.downloads.show_curves, self._locked
         )
-        load_policy = LoadPolicy(process.is_overloaded, lambda call: document.add_timeout_callback(call, _RETRY_MS))
-        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), load_policy)
+        self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
+        self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
         self.orbits: OrbitPresenter = OrbitPresenter(
             self.state, jobs, self.maps.marks, self._add_start, self._show_orbits, self._locked, self._latest
         )
@@ -87,9 +86,6 @@ class Explorer:
             head=[AnalysisTabs(self.state).tabs],
         )
         self.progress = ProgressView(self._locked(self.map_requests.stop_map), self._locked(self.map_requests.request_map))
-        self.animation = EnergyAnimation(
-            document, lambda: self.map_requests.previews.under_way, self._show_animated, self._end_animation
-        )
         self._requested_at: float | None = None
         self._navigating = False
         self._connect()
@@ -120,13 +116,12 @@ class Explorer:
                 copied=locked(self._copied),
             )
         )
+        self.engine = BrowserEngine(locked(self._end_animation))
         self.downloads: Downloads = Downloads(state, self._copy_link)
         self.notice = Notice()
         self.gallery = Gallery(locked(self._show_preset))
         self.tour: Tour = Tour(locked(self._act))
         actions = ControlActions(
-            preview=lambda energy: self.map_requests.request_preview(energy),
-            settle=lambda: self.map_requests.request_map(),
             play=locked(self._play),
             choose_potential=locked(lambda: self.potential.toggle()),
             lock_times=locked(lambda on: state.param.update(lock_times=self.maps.longest_time if on else None)),
@@ -158,6 +153,7 @@ class Explorer:
         """Cancel all requests at the end of the session."""
         for requests in (self.map_requests, self.orbits, self.analyses, self.potential):
             requests.close()
+        self._browser_systems.cancel()
         self._client.close()
 
     def set_dark(self, dark: bool) -> None:
@@ -278,7 +274,7 @@ class Explorer:
         self.statistics.show_box(box)
 
     def _show_preset(self, preset: Preset) -> None:
-        self.animation.stop()
+        self.engine.stop()
         self.state.param.update(chosen=0, **(asdict(System(preset.case)) | preset.values()))
 
     def _copied(self, success: bool) -> None:
@@ -306,22 +302,18 @@ class Explorer:
         """Close the open drawer, or stop the animation, or else the map."""
         if self.drawers.shown is not None:
             self.drawers.show(None)
-        elif self.animation.playing:
-            self.animation.stop()
+        elif self.engine.playing:
+            self.engine.stop()
         else:
             self.map_requests.stop_map()
 
     def _play(self) -> None:
-        if self.animation.playing:
-            self.animation.stop()
+        if self.engine.playing:
+            self.engine.stop()
         elif self.state.plane.energy_axis is None:
             energies = self.state.system.energies
-            self.animation.start(self.state.energy, energies.low, energies.high)
+            self.engine.play(self.state.energy, energies.low, energies.high)
             self.controls.show_playing(True)
-
-    def _show_animated(self, energy: float) -> None:
-        self.controls.show_animated(energy)
-        self.map_requests.request_preview(energy)
 
     def _end_animation(self, energy: float) -> None:
         self.controls.show_playing(False)
@@ -331,6 +323,7 @@ class Explorer:
 
     def map_requested(self, *, compiling: bool = False) -> None:
         """A map is requested."""
+        self.engine.show_view(describe_view(self.state))
         self._requested_at = time.monotonic()
         self.progress.start()
         self._count_down(compiling)
@@ -348,15 +341,6 @@ class Explorer:
     def _show_compiling(self) -> None:
         self.progress.show_compiling(seconds_until_ready_for_maps(self.state.potential))
 
-    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        """Paint a preview."""
-        with pn.io.hold():
-            self.analyses.begin(frame.spec)
-            self.maps.show(frame, columns, preview=True)
-            if frame.spec.common_energy is not None:
-                self.controls.show_energy(frame.spec.common_energy)
-            self.progress.show_preview()
-
     def map_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame of a map."""
         if self._requested_at is not None:
@@ -368,11 +352,18 @@ class Explorer:
             if self.state.window is None:
                 self.maps.set_home(frame.spec.find_window())
             self.progress.show(frame)
+            self._request_browser_system(frame.spec.potential)
             if frame.stride == 1:
                 self.statistics.show(frame)
             self.downloads.show_map(frame)
             if frame.complete:
                 self.accessible_table.show_map(frame)
+
+    def _request_browser_system(self, potential: Potential) -> None:
+        """Request the system of the maps for the engine in the browser, which needs the compiled kernels, once."""
+        if potential == self.state.potential:
+            energies = self.state.system.energies
+            self._browser_systems.submit(BrowserSystemRequest(potential, energies.low, energies.high))
 
     def map_stopped(self) -> None:
         """The map is cancelled."""

@@ -59,7 +59,15 @@ def explorer_page(explorer: Explorer) -> ExplorerTemplate:
 
 def _stage(explorer: Explorer) -> pn.viewable.Viewable:
     """Status line, maps, the inspector of the orbits and the analysis that is chosen; the stylesheet places them."""
-    views = (explorer.orbits.inspector, explorer.analysis, explorer.drawers, explorer.browser, explorer.tour, explorer.notice)
+    views = (
+        explorer.orbits.inspector,
+        explorer.analysis,
+        explorer.drawers,
+        explorer.browser,
+        explorer.engine,
+        explorer.tour,
+        explorer.notice,
+    )
     return _column(
         explorer.progress.bar,
         explorer.toolbar.layout(*explorer.progress.layout()),

@@ -251,6 +251,21 @@ def _straight_curve(axes: Axes, saddle: np.ndarray) -> np.ndarray:
     return curve
 
 
+def exit_curve_over_chord(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray | None:
+    """(columns,) the exit curve of an orbit in units of the well, in the axes of its chord, which depend smoothly on the energy.
+
+    None if the path is not a smooth graph over the chord.
+    """
+    path = orbit.half_path.T
+    if chord_axes(path).outward @ potential.outward_directions[orbit.channel - 1] < 0.0:
+        # Mirrored orbits have the well on the other side of their path.
+        path = path[:, ::-1]
+    curve = _fit_exit_curve(chord_axes(path), potential.saddles[orbit.channel - 1], path)
+    if curve is not None:
+        curve[events.REACH] = _find_reach(potential, orbit.energy, curve)
+    return curve
+
+
 def closed_channel_curves(potential: Potential) -> np.ndarray:
     """(channels, columns) exit curves for closed channels: short lines across the saddles, where V is above any lower energy."""
     rows = [_straight_curve(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)]

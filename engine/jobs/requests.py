@@ -7,13 +7,10 @@ from dataclasses import dataclass, replace
 from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.basins.wada import WadaTest, compute_wada_test
-from engine.execution import raise_if_cancelled
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.jobs.context import JobContext
 from engine.maps.origin_fates import OriginFateMap, join_origin_fates
-from engine.maps.preview import compute_preview, preview_spec
 from engine.maps.regularity import RegularityMap, compute_regularity
-from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
 from engine.potentials.potential import Potential
@@ -150,19 +147,6 @@ class WarmupRequest:
         if not is_ready_for_maps(self.unresolved.potential):
             context.compilation_executor.submit(prepare_for_maps, self.unresolved.potential).result()
         return Answer(self.unresolved.spec())
-
-
-@dataclass(frozen=True)
-class PreviewRequest:
-    """Request for the preview of a map."""
-
-    unresolved: UnresolvedMapSpec
-
-    def run(self, context: JobContext) -> Answer[EscapeMap]:
-        """Compute the preview; it is final although its map is not complete. Raises ValueError if the spec is not valid."""
-        preview = compute_preview(preview_spec(self.unresolved.spec()), context.executor, context.cancel)
-        raise_if_cancelled(context.cancel)
-        return Answer(preview, preview.nbytes)
 
 
 @dataclass(frozen=True)

@@ -130,6 +130,12 @@ class Slice:
         place = "" if self.shows_positions else f"({', '.join(symbols.get(position, '0') for position in _POSITIONS)})"
         return f"{kinetic}V{place} = h"
 
+    def to_dict(self) -> dict[str, Any]:
+        """The slice as plain data: names of the axes, values of other coordinates, and the momentum that the energy decides."""
+        held = {coordinate.value: 0.0 for coordinate in (*_POSITIONS, *_MOMENTA)} | {c.value: value for c, value in self.fixed}
+        fixed = {name: value for name, value in held.items() if name not in (*self.axis_names, self.solved.value)}
+        return {"axes": list(self.axis_names), "fixed": fixed, "decided": self.solved.value, "sign": self.sign}
+
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
         """The units of both axes in which their coordinates are numbers of the size of the well."""
         return self.abscissa.unit(units), self.ordinate.unit(units)

@@ -69,19 +69,18 @@ class CurveLayers:
             for glyph in glyphs:
                 glyph.line_color = getattr(self._inks, ink)
 
-    def show(self, spec: MapSpec, *, preview: bool = False) -> None:
-        """Draw the curves of a map's plane, window and energy; a preview leaves the equipotentials unchanged."""
+    def show(self, spec: MapSpec) -> None:
+        """Draw the curves of a map's plane, window and energy."""
         window, h = spec.find_window(), spec.common_energy
         self._limit.data = _lines(trace_zero_velocity_curve(spec.potential, spec.plane, spec.energy, window))
         orbits = find_lyapunov_orbits(spec.potential, h) if spec.plane.shows_positions and h is not None else ()
         # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
-        if not preview:
-            energies = [level * spec.potential.escape_energy for level in (1.0, *_LEVELS)] if h is not None else []
-            critical, *others = trace_equipotentials(spec.potential, spec.plane, energies, window) if energies else [[]]
-            self._critical.data = _lines(critical)
-            self._levels.data = _lines([line for lines in others for line in lines])
+        energies = [level * spec.potential.escape_energy for level in (1.0, *_LEVELS)] if h is not None else []
+        critical, *others = trace_equipotentials(spec.potential, spec.plane, energies, window) if energies else [[]]
+        self._critical.data = _lines(critical)
+        self._levels.data = _lines([line for lines in others for line in lines])
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:

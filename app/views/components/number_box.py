@@ -37,6 +37,10 @@ export function render({model, el}) {
   input.addEventListener("blur", commit)
   // Enter after the number that was there before is no change.
   input.addEventListener("keydown", event => { if (event.key === "Enter") commit() })
+  // The page shows another number, which the server does not know of yet.
+  const show = event => { if (!typing) input.value = String(event.detail) }
+  if (model.shown_event) document.addEventListener(model.shown_event, show)
+  model.on("lifecycle:remove", () => document.removeEventListener(model.shown_event, show))
   model.on(["label", "step", "disabled", "shown"], follow)
   follow()
 }
@@ -62,6 +66,7 @@ class NumberBox(JSComponent):
     label = param.String()
     step = param.Number(default=0.1, doc="step of the arrow keys and buttons")
     disabled = param.Boolean()
+    shown_event = param.String(doc="event of the page with a number to show that is not the server's")
     shown = param.Dict(default={}, doc="number, and how many typed ones the server knew of when it set this one")
 
     _esm = _BOX

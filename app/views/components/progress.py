@@ -12,7 +12,6 @@ import panel as pn
 from app.views.components.numbers import grouped, percent
 from app.views.components.widgets import button
 from engine import Certificate, EscapeMap, Fate
-from engine.service import PREVIEW_TIME
 
 STOP, CONTINUE = "Stop", "Continue"
 # Styles: a change of `visible` would have the browser lay out the page, figures included, twice for each map.
@@ -56,10 +55,6 @@ class ProgressView:
         text = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
         self._set(running=not frame.complete, label=STOP, text=text)
         self.bar.value = int(100 * frame.progress)
-
-    def show_preview(self) -> None:
-        """A preview is shown; the text is the same for all of them, so that it is sent once."""
-        self._set(running=False, label=STOP, text=f"Preview up to t = {PREVIEW_TIME:g}")
 
     def stop(self) -> None:
         """The map is stopped and can be continued."""

@@ -146,16 +146,13 @@ class MapsView:
             self._toolbar.tools = [*self._toolbar.tools, self._drags[drag]]
         self._toolbar.active_drag = self._drags.get(drag)
 
-    def show(self, frame: EscapeMap, columns: dict[str, list[Any]], *, preview: bool = False) -> None:
-        """Paint a frame; the ranges follow a new window. A preview changes as little as possible."""
+    def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
+        """Paint a frame; the ranges follow a new window."""
         if frame.spec != self._spec:
             self._follow(frame.spec)
             self._spec, self._regularity_text = frame.spec, ""
-            if preview:
-                self.outlines.show(frame.spec, preview=True)
-            else:
-                self.describe()
-        if frame.stride == 1 and not preview:
+            self.describe()
+        if frame.stride == 1:
             self._typical_time = longest_typical_time(frame)
             self._scale_times()
         self.source.data = columns
@@ -382,4 +379,4 @@ def _blank() -> dict[str, list[Any]]:
     codes = np.zeros((1, 1), np.uint8)
     columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "crossings", "character", "passage")}
     columns |= {"escape_time": [np.full((1, 1), np.nan, np.float32)]}
-    return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "complete": [False]}
+    return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "energy": [np.nan], "complete": [False]}

@@ -9,19 +9,18 @@ from typing import Any
 
 import panel as pn
 
-from app.runtime.process_state import process_state
+from app.browser.energy_slider import SHOWN, EnergySlider
 from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.number_box import NumberBox
-from app.views.components.widgets import SegmentedControl, Slider, Switches, bind, button
+from app.views.components.widgets import SegmentedControl, Switches, bind, button
 from engine import CASES, Plane
 from engine.service import EnergyRange, System
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
 PLAY, STOP = "▶ Play", "■ Stop"
-_MOST_DECIMALS = 12
 # Space beside the rail of a slider, half the width of its thumb, see theme.css.
 _THUMB = "9px"
 _TICK = "position:absolute;left:{share:.2%};width:1px;height:6px;background:var(--ui-edge-strong)"
@@ -36,10 +35,6 @@ class ControlActions:
 
     Attributes
     ----------
-    preview
-        Called with each energy that the slider passes while it is dragged.
-    settle
-        Called when the slider is dragged back to the energy of the state: the map is shown again.
     play
         Starts or stops the animation over all energies.
     choose_potential
@@ -48,19 +43,9 @@ class ControlActions:
         Called with whether the scale of escape times keeps its limits.
     """
 
-    preview: Callable[[float], None]
-    settle: Callable[[], None]
     play: Callable[[], None]
     choose_potential: Callable[[], None]
     lock_times: Callable[[bool], None]
-
-
-class ThrottledSlider(Slider):
-    """A slider that reports its moves after 5 ms, in place of Panel's 50 ms, and after 150 ms under high load."""
-
-    @property
-    def _debounce(self) -> int:
-        return 150 if process_state().load.is_high() else 5
 
 
 class Controls:
@@ -69,8 +54,6 @@ class Controls:
     def __init__(self, state: ViewState, actions: ControlActions) -> None:
         self.state = state
         self._actions = actions
-        self._previewed = False
-        self._following = False
         self.case = SegmentedControl(
             label="Case", options=list(CASES), value=self._case(), css_classes=["segmented", "half"], margin=(0, 0, 0, 10)
         )
@@ -79,11 +62,13 @@ class Controls:
             label="Plane", options={plane.title: plane for plane in Plane}, value=state.plane, margin=(8, 10)
         )
         self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
+        self.energy = EnergySlider(self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10))
         self.play = button(PLAY, actions.play, width=84, css_classes=["half"], margin=(0, 10), align="end")
         self.exact_energy = NumberBox(
-            self._take_exact_energy,
+            self._take_energy,
             state.energy,
             label="Exact h",
+            shown_event=SHOWN,
             sizing_mode="stretch_width",
             css_classes=["half"],
             margin=(0, 0, 0, 10),
@@ -93,14 +78,13 @@ class Controls:
         layers = Fold("Layers", self.layers.parts, is_open=True)
         state.param.watch(lambda event: layers.rebuild(), "manifolds")
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
-        self._energy_column = pn.Column(sizing_mode="stretch_width", margin=0, css_classes=["energy"])
         self._follow_system()
         self._connect()
 
     def layout(self, potential: pn.viewable.Viewable) -> list[pn.viewable.Viewable]:
         """Parts of a column: the system with the choice of other potentials, plane, energy, quality and layers."""
         system = [self.case, self.other, self.facts, potential, self.plane]
-        energy = [self._energy_column, self.exact_energy, self.play]
+        energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
     def begin_touch(self) -> None:
@@ -146,35 +130,6 @@ class Controls:
         """Label the button with what it does next."""
         self.play.label = STOP if playing else PLAY
 
-    def show_animated(self, energy: float) -> None:
-        """Move the slider to an energy of the animation."""
-        self._following = True
-        try:
-            self.energy.value = energy
-        finally:
-            self._following = False
-
-    def show_energy(self, energy: float) -> None:
-        """Show the energy of a preview as a number."""
-        self.exact_energy.show(round(energy, self.state.system.energies.decimals))
-
-    def _preview(self, event: Any) -> None:
-        """The slider moves; a move to the energy of the state is the end of a drag, or follows the state."""
-        if self._following:
-            return
-        energy = _without_noise(event.new)
-        if energy == _without_noise(self._slider_energy()):
-            self._settle()
-        else:
-            self._previewed = True
-            self._actions.preview(energy)
-
-    def _settle(self) -> None:
-        """Show the map again after previews of other energies."""
-        if self._previewed:
-            self._previewed = False
-            self._actions.settle()
-
     def _take_case(self, case: str | None) -> None:
         # None and the case of the state: the widget follows the state.
         if case is not None and case != self.state.case:
@@ -190,21 +145,8 @@ class Controls:
             with pn.io.hold():
                 self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
 
-    def _take_slider_energy(self, event: Any) -> None:
-        # An energy beyond the slider, which can be typed, stays when the slider is released at its end.
-        energy = _without_noise(event.new)
-        if not self._following and energy != _without_noise(self._slider_energy()):
-            self._previewed = False
-            # All that follows makes one message.
-            with pn.io.hold():
-                self.state.energy = energy
-
-    def _slider_energy(self) -> float:
-        """The position of the slider for the energy of the state."""
-        energies = self.state.system.energies
-        return float(min(max(self.state.energy, energies.low), energies.high))
-
-    def _take_exact_energy(self, energy: float) -> None:
+    def _take_energy(self, energy: float) -> None:
+        # All that follows makes one message.
         with pn.io.hold():
             self.state.energy = energy
 
@@ -213,9 +155,8 @@ class Controls:
         state, system, energies = self.state, self.state.system, self.state.system.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
-        self.energy = self._make_slider(energies)
+        self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
-        self._energy_column.objects = [self.energy, self.ticks]
         self.exact_energy.step = 10.0**-energies.decimals
         self.facts.object = (
             f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(system.title)}</b>: V = {escape_text(system.formula_shown)}"
@@ -224,39 +165,15 @@ class Controls:
         )
         self._follow_energy()
 
-    def _make_slider(self, energies: EnergyRange) -> ThrottledSlider:
-        """A slider for a range of energies; if the range of one changed, Bokeh would report a clamped value as a user's."""
-        slider = ThrottledSlider(
-            label="Energy h", start=energies.low, end=energies.high, step=10.0**-energies.decimals, value=self._slider_energy(),
-            format=_slider_format(self._slider_energy(), energies), sizing_mode="stretch_width", margin=(0, 10),
-        )  # fmt: skip
-        # If a move and a release arrive together, the release is handled first.
-        slider.param.watch(self._preview, "value", precedence=1)
-        slider.param.watch(self._take_slider_energy, "value_throttled")
-        return slider
-
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane.energy_axis is not None
-        energies, shown = state.system.energies, self._slider_energy()
-        label = "Energy h" if shown == state.energy else f"h = {state.energy:.12g}, beyond the end of the slider"
-        # The browser uses a new format when the value changes.
-        self.energy.format = _slider_format(shown, energies)
-        self.energy.param.update(value=shown, disabled=on_h, label="Energy is the vertical axis here" if on_h else label)
+        beyond = not state.system.energies.low <= state.energy <= state.system.energies.high
+        title = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else "Energy h: "
+        self.energy.param.update(energy=state.energy, disabled=on_h, title="Energy is the vertical axis here" if on_h else title)
         self.exact_energy.disabled = on_h
         self.exact_energy.show(state.energy)
         self.play.disabled = on_h
-
-
-def _without_noise(energy: float) -> float:
-    """An energy without the rounding error of the browser, which sends multiples of the slider's step."""
-    return round(energy, _MOST_DECIMALS)
-
-
-def _slider_format(energy: float, energies: EnergyRange) -> str:
-    """Format that shows an energy without rounding, and with the decimals of the steps at least."""
-    decimals = max(len(f"{energy:.12f}".rstrip("0").partition(".")[2]), energies.decimals, 0)
-    return f"0.{'0' * decimals}"
 
 
 def _ticks(escape: float, energies: EnergyRange) -> str:

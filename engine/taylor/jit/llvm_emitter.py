@@ -1,7 +1,8 @@
 """Straight-line programs written directly as LLVM instructions: a tenth of a second where Numba's front end takes seconds.
 
 Numba infers a type for every variable of a function and lowers each operation with all of Python's semantics. A generated program
-is a few thousand operations on doubles and integers without branches, of which each is one or two instructions.
+is a few thousand operations on doubles and integers without branches, of which each is one or two instructions. The same
+instructions on vectors make the functions of `engine.taylor.jit.webassembly`.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ def straight_line(program: StraightLine) -> Any:
     def result_type(given: tuple[Any, ...]) -> Any:
         """Found by writing the program once into a module that is thrown away."""
         block = ir.Function(ir.Module(), ir.FunctionType(ir.VoidType(), []), "trial").append_basic_block()
-        results = _write(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(each), None) for each in given])
+        results = write_program(program, ir.IRBuilder(block), [ir.Constant(_llvm_type(each), None) for each in given])
         return types.Tuple([_NUMBA_TYPES[result.type] for result in results])  # type: ignore[no-untyped-call]
 
     @intrinsic
@@ -44,7 +45,7 @@ def straight_line(program: StraightLine) -> Any:
 
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             passed = [builder.extract_value(values[0], i) for i in range(len(given))]
-            return context.make_tuple(builder, signature.return_type, _write(program, builder, passed))
+            return context.make_tuple(builder, signature.return_type, write_program(program, builder, passed))
 
         return Signature(result_type(given), (types.StarArgTuple(given),), None), generate  # type: ignore[no-untyped-call]
 
@@ -72,32 +73,49 @@ def _llvm_type(given: Any) -> Any:
     return _INT if given == types.int64 else _FLOAT
 
 
-def _write(program: StraightLine, builder: ir.IRBuilder, passed: list[Any]) -> list[Any]:
-    """Append the instructions of a program; returns its results."""
+def write_program(program: StraightLine, builder: ir.IRBuilder, passed: list[Any], lanes: int = 1) -> list[Any]:
+    """Append the instructions of a program; returns its results.
+
+    passed: the program's parameters; the table may be any sequence of values. With two or more `lanes` all values are vectors.
+    """
     parameters = dict(zip(program.parameters, passed, strict=True))
+    table = parameters[TABLE]
+    floats, ints = (_FLOAT, _INT) if lanes == 1 else (ir.VectorType(_FLOAT, lanes), ir.VectorType(_INT, lanes))
     values: list[Any] = []
     for symbol, operands in program.operations:
         match symbol, operands:
             case "input", (name,):
                 values.append(parameters[name])
             case "constant", (number,):
-                values.append(ir.Constant(_INT if isinstance(number, int) else _FLOAT, number))
+                values.append(_constant(ints if isinstance(number, int) else floats, number))
             case "entry", (index,):
-                values.append(builder.extract_value(parameters[TABLE], index))
+                values.append(table[index] if isinstance(table, list) else builder.extract_value(table, index))
             case _:
-                values.append(_operate(symbol, builder, [values[index] for index in operands]))
+                values.append(_operate(symbol, builder, floats, ints, [values[index] for index in operands]))
     return [values[index] for index in program.results]
 
 
-def _operate(symbol: str, builder: ir.IRBuilder, operands: list[Any]) -> Any:
-    is_float = operands[0].type == _FLOAT
+def _constant(kind: Any, number: float) -> Any:
+    return ir.Constant(kind, [number] * kind.count if isinstance(kind, ir.VectorType) else number)
+
+
+def _absolute(module: ir.Module, floats: Any) -> Any:
+    """The absolute value of a double or of vectors, which `declare_intrinsic` does not know."""
+    if not isinstance(floats, ir.VectorType):
+        return module.declare_intrinsic("llvm.fabs", [floats])
+    name = f"llvm.fabs.v{floats.count}f64"
+    return module.globals.get(name) or ir.Function(module, ir.FunctionType(floats, [floats]), name)
+
+
+def _operate(symbol: str, builder: ir.IRBuilder, floats: Any, ints: Any, operands: list[Any]) -> Any:
+    is_float = operands[0].type == floats
     match symbol:
         case "abs":
-            return builder.call(builder.module.declare_intrinsic("llvm.fabs", [_FLOAT]), operands)
+            return builder.call(_absolute(builder.module, floats), operands)
         case "bits_of":
-            return builder.bitcast(*operands, _INT)
+            return builder.bitcast(*operands, ints)
         case "double_of":
-            return builder.bitcast(*operands, _FLOAT)
+            return builder.bitcast(*operands, floats)
         case "where":
             return builder.select(*operands)
         case "&":

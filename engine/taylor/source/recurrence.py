@@ -86,11 +86,15 @@ _GRADIENT_AND_HESSIAN = (*_GRADIENT, (0, 0), (0, 1), (1, 1))
 
 
 class GeneratedFunction(NamedTuple):
-    """A kernel as Python source, and the straight-line program that it calls by the program's name."""
+    """A kernel as Python source, and the straight-line program that it calls by the program's name.
+
+    lane_inputs: the inputs of the program that differ from lane to lane, in order; the others are the same for all lanes.
+    """
 
     name: str
     program: StraightLine
     kernel: str
+    lane_inputs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -331,7 +335,7 @@ def _lane_loop(
         f"        ({''.join(f'r{index}, ' for index in program.results)}) = {program.name}({', '.join(program.parameters)})",
         *(f"        {target} {source}" for target, source in sources.items()),
     ]
-    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n", tuple(reads))
 
 
 _START = {"x0": "x[i]", "y0": "y[i]", "x1": "px[i]", "y1": "py[i]"}

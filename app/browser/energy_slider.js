@@ -1,0 +1,61 @@
+// @ts-check
+/**
+ * The slider of the energy. It reports to the server when it is released; on the way it tells the page.
+ *
+ * @param {{model: any, el: HTMLElement}} component
+ */
+export function render({model, el}) {
+  const label = document.createElement("label")
+  const [name, number] = [document.createElement("span"), document.createElement("output")]
+  const rail = document.createElement("input")
+  el.classList.add("energy-slider")
+  rail.type = "range"
+  rail.step = "any"
+  label.htmlFor = rail.id = "energy"
+  label.append(name, number)
+  el.append(label, rail)
+  const rounded = (/** @type {number} */ energy) => Number(energy.toFixed(Math.max(model.decimals, 0)))
+  const clamped = (/** @type {number} */ energy) => Math.min(Math.max(energy, model.low), model.high)
+  const write = (/** @type {number} */ energy) => {
+    rail.value = String(energy)
+    const decimals = Number(energy.toFixed(12)).toString().split(".")[1]?.length ?? 0
+    number.textContent = energy.toFixed(Math.min(Math.max(decimals, model.decimals, 0), 12))
+    rail.style.setProperty("--share", String((energy - model.low) / (model.high - model.low)))
+    rail.setAttribute("aria-valuetext", number.textContent)
+  }
+  // An energy beyond the slider stays until the thumb is moved.
+  const follow = () => {
+    rail.min = String(model.low)
+    rail.max = String(model.high)
+    rail.disabled = model.disabled
+    name.textContent = model.title
+    write(clamped(model.energy))
+  }
+  const tell = (/** @type {string} */ event, /** @type {number} */ energy) =>
+    document.dispatchEvent(new CustomEvent(event, {detail: energy}))
+  const drag = (/** @type {number} */ energy) => {
+    write(energy)
+    for (const event of ["energydragged", "energyshown"]) tell(event, energy)
+  }
+  const release = () => {
+    const energy = rounded(rail.valueAsNumber)
+    tell("energyreleased", energy)
+    if (energy !== clamped(model.energy)) model.send_msg({energy})
+  }
+  // A step of the keys is that of the numbers shown; without one the browser takes a hundredth of the range.
+  const press = (/** @type {KeyboardEvent} */ event) => {
+    const direction = {ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1}[event.key]
+    if (!direction) return
+    event.preventDefault()
+    drag(clamped(rounded(rail.valueAsNumber + direction * 10 ** -model.decimals)))
+    release()
+  }
+  rail.addEventListener("input", () => drag(rounded(rail.valueAsNumber)))
+  rail.addEventListener("change", release)
+  rail.addEventListener("keydown", press)
+  const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
+  document.addEventListener("energyshown", show)
+  model.on("lifecycle:remove", () => document.removeEventListener("energyshown", show))
+  model.on(["low", "high", "decimals", "title", "disabled", "energy"], follow)
+  follow()
+}

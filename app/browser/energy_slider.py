@@ -1,0 +1,46 @@
+"""The slider of the energy: it reports to the server when it is released, and to the engine in the browser on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+SHOWN = "energyshown"
+"""Event of the page, with the energy that the pictures show, which the server does not know of yet."""
+
+
+class EnergySlider(JSComponent):
+    """A slider for the energy.
+
+    Parameters
+    ----------
+    on_release
+        Called with each energy that the visitor chooses, without the session's lock.
+    **options
+        Parameters of the component.
+    """
+
+    title = param.String(doc="text before the number")
+    low = param.Number(default=0.0, doc="left end")
+    high = param.Number(default=1.0, doc="right end")
+    decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")
+    energy = param.Number(default=0.0, doc="energy of the server; beyond the ends, the thumb is at the end")
+    disabled = param.Boolean()
+
+    _esm = Path(__file__).with_name("energy_slider.js")
+
+    def __init__(self, on_release: Callable[[float], None], **options: Any) -> None:
+        super().__init__(**options)
+        self._on_release = on_release
+        self.on_msg(lambda event: self._receive(event.data))
+
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
+        match message:
+            case {"energy": float() | int() as energy} if isfinite(energy) and not self.disabled:
+                self._on_release(float(min(max(energy, self.low), self.high)))

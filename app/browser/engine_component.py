@@ -1,0 +1,72 @@
+"""The engine in the visitor's browser: it shows pictures while the energy or the window moves, and the orbit under the cursor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import count
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+from app.browser.module_files import ADDRESS
+from app.browser.system_request import BrowserSystem
+
+
+class EngineComponent(JSComponent):
+    """The browser side; it sends {energy} when the energy has been played, and {playing}."""
+
+    address = param.String(doc="of the first module")
+    system = param.Dict(default={}, doc="see `BrowserSystem.to_dict`")
+    view = param.Dict(default={}, doc="see `BrowserEngine.show_view`")
+    command = param.Dict(default={}, doc="name: play or stop; energy, low, high; number that makes repeats differ")
+
+    _esm = Path(__file__).with_name("component.js")
+
+
+class BrowserEngine:
+    """Tells the engine in the browser what the page shows.
+
+    Parameters
+    ----------
+    on_energy
+        Called with the energy at which the animation of the energy ends.
+    """
+
+    def __init__(self, on_energy: Callable[[float], None]) -> None:
+        self._on_energy = on_energy
+        self._numbers = count()
+        self._component = EngineComponent(address=ADDRESS, width=0, height=0, margin=0, styles={"position": "absolute"})
+        self._component.on_msg(lambda event: self._receive(event.data))
+        self.playing = False
+
+    def layout(self) -> EngineComponent:
+        """An invisible component that must be on the page."""
+        return self._component
+
+    def show_system(self, system: BrowserSystem) -> None:
+        """Send a system, which the page shows or will show."""
+        self._component.system = system.to_dict()
+
+    def show_view(self, view: dict[str, Any]) -> None:
+        """Say what the page shows, in the form of `app.browser.views.describe_view`."""
+        self._component.view = view
+
+    def play(self, energy: float, low: float, high: float) -> None:
+        """Raise the energy to `high`."""
+        self.playing = True
+        self._component.command = {"name": "play", "energy": energy, "low": low, "high": high, "number": next(self._numbers)}
+
+    def stop(self) -> None:
+        """Stop playing, at the current energy."""
+        if self.playing:
+            self._component.command = {"name": "stop", "number": next(self._numbers)}
+
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
+        match message:
+            case {"energy": float() | int() as energy} if self.playing and isfinite(energy):
+                self.playing = False
+                self._on_energy(float(energy))

@@ -1,0 +1,245 @@
+// @ts-check
+/**
+ * The orbit under the cursor, drawn in (x, y) over the first picture, or over the second one while the cursor is in the first.
+ * With a finger: press, and move.
+ */
+
+import {exitLines, LimitingCurves} from "./curves.js"
+import {Integrator} from "./integrator.js"
+import {Interior} from "./interior.js"
+import {exitCurves} from "./exits.js"
+import {Potential} from "./potential.js"
+import {Starts, unitOf} from "./slice.js"
+import {windowAt} from "./system.js"
+import {traceOrbit} from "./trace.js"
+
+/** Longest time that is followed, in units of the well. */
+const LONGEST = 200
+/** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
+const [PRESS_MS, PRESS_PIXELS] = [350, 8]
+const PICTURES = ["curves", "basins", "times", "crossings", "characters", "origins"]
+/** @type {import("./system.js").Slice} */
+const PLANE = {axes: ["x", "y"], fixed: {px: 0}, decided: "py", sign: 1}
+/** Of the text, in pixels. */
+const [PADDING, TEXT_HEIGHT] = [6, 22]
+const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
+  border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
+
+/** What is known of an orbit, in words. @type {(trace: import("./trace.js").Trace, unit: number) => string} */
+function describe({channel, time, crossings}, unit) {
+  const t = Number((time * unit).toPrecision(4))
+  const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
+  return channel > 0 ? `Exit ${channel} at t = ${t}, ${count}` : `Inside until t = ${t}, ${count}`
+}
+
+export class Card {
+  /**
+   * @param {HTMLElement} el
+   * @param {() => import("./frames.js").Wish | null} wish  what the pictures show
+   * @param {() => any} maps  the columns of the pictures
+   * @param {() => string[]} colours  of the channels
+   */
+  constructor(el, wish, maps, colours) {
+    this.#wish = wish
+    this.#maps = maps
+    this.#colours = colours
+    this.#canvas = document.createElement("canvas")
+    this.#canvas.className = "orbit-card"
+    this.#canvas.style.cssText = STYLE
+    this.#canvas.setAttribute("role", "img")
+    el.append(this.#canvas)
+    document.addEventListener("pointermove", event => this.#move(event), true)
+    document.addEventListener("pointerdown", event => this.#press(event), true)
+    document.addEventListener("pointerup", () => this.#lift(), true)
+    document.addEventListener("pointercancel", () => this.#lift(), true)
+    document.addEventListener("pointerleave", () => this.#hide())
+    document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
+  }
+
+  #wish
+  #maps
+  #colours
+  #canvas
+  #limits = new LimitingCurves()
+  /** @type {import("./system.js").System | null} */
+  #system = null
+  /** @type {{integrator: Integrator, interior: Interior, potential: Potential} | null} */
+  #engine = null
+  /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
+  #finger = null
+  #pressed = false
+
+  /**
+   * @param {import("./system.js").System} system
+   * @param {WebAssembly.Module} module
+   */
+  setSystem(system, module) {
+    const potential = new Potential(system.terms)
+    this.#system = system
+    this.#engine = {integrator: new Integrator(system, module), interior: new Interior(potential), potential}
+  }
+
+  /** @param {PointerEvent} event */
+  #press(event) {
+    this.#lift()
+    if (event.pointerType !== "touch" || !this.#viewAt(event)) return
+    const timer = setTimeout(() => {
+      this.#pressed = true
+      this.#show(event)
+    }, PRESS_MS)
+    this.#finger = {timer, x: event.clientX, y: event.clientY}
+  }
+
+  #lift() {
+    if (this.#finger) clearTimeout(this.#finger.timer)
+    this.#finger = null
+    this.#pressed = false
+  }
+
+  /** @param {PointerEvent} event */
+  #move(event) {
+    if (event.pointerType === "touch") {
+      const finger = this.#finger
+      // The picture would move.
+      if (this.#pressed) event.stopPropagation()
+      else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
+      if (!this.#pressed) return
+    }
+    this.#show(event)
+  }
+
+  /**
+   * The picture at a point of the screen.
+   *
+   * @param {PointerEvent} event
+   */
+  #viewAt(event) {
+    const onMap = event.composedPath().some(node => node instanceof Element && node.classList.contains("map"))
+    return onMap ? frames().find(({box}) => contains(box, event)) : undefined
+  }
+
+  /** @param {PointerEvent} event */
+  #show(event) {
+    const [picture, wish, system, engine] = [this.#viewAt(event), this.#wish(), this.#system, this.#engine]
+    const place = picture && this.#start(picture, event)
+    // While the energy or the window is dragged, the pictures are being watched.
+    if (!picture || !place || !wish || !system || !engine || (event.buttons && event.pointerType !== "touch")) {
+      this.#hide()
+      return
+    }
+    const {potential, integrator, interior} = engine
+    const units = wish.slice.axes.map(axis => unitOf(system.units, axis))
+    const starts = new Starts(wish.slice, potential, wish.energy / unitOf(system.units, "h"))
+    const {found} = starts
+    const exists = starts.find(place[0] / units[0], place[1] / units[1])
+    if (!exists || interior.isOutside(exitCurves(system.exits, found.h), found.h, found.x, found.y)) {
+      this.#hide()
+      return
+    }
+    this.#draw(picture, found.h, traceOrbit(integrator, found, LONGEST))
+  }
+
+  #hide() {
+    this.#canvas.style.display = "none"
+  }
+
+  /**
+   * The centre of the pixel under the pointer; the point itself between pictures.
+   *
+   * @param {Frame} picture
+   * @param {PointerEvent} event
+   * @returns {[number, number] | null}
+   */
+  #start({box, view}, event) {
+    const {x, y, dw, dh, fate} = this.#maps()
+    const point = [
+      view.frame.x_scale.invert(event.clientX - box.left + view.frame.bbox.left),
+      view.frame.y_scale.invert(event.clientY - box.top + view.frame.bbox.top),
+    ]
+    const [rows, columns] = fate[0].shape
+    const snap = (/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ count) =>
+      low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
+    return [snap(point[0], x[0], dw[0], columns), snap(point[1], y[0], dh[0], rows)]
+  }
+
+  /**
+   * @param {Frame} over  the picture under the pointer
+   * @param {number} energy  in units of the well
+   * @param {import("./trace.js").Trace} trace
+   */
+  #draw(over, energy, trace) {
+    const [system, engine, context] = [this.#system, this.#engine, this.#canvas.getContext("2d")]
+    if (!system || !engine || !context) return
+    const shown = frames()
+    const {box} = shown.find(({view}) => view !== over.view) ?? over
+    const h = energy * unitOf(system.units, "h")
+    const window = windowAt(system.windows.X_Y, h)
+    if (!window) return this.#hide()
+    this.#place(box, context)
+    const style = getComputedStyle(this.#canvas)
+    const [ink, paper] = ["--ui-ink", "--ui-surface"].map(name => style.getPropertyValue(name))
+    const scale = box.width / (window.xHigh - window.xLow)
+    const draw = (/** @type {ArrayLike<number>} */ xs, /** @type {ArrayLike<number>} */ ys, /** @type {string} */ colour, /** @type {number} */ width) => {
+      context.strokeStyle = colour
+      context.lineWidth = width
+      context.beginPath()
+      for (let i = 0; i < xs.length; i++) context.lineTo((xs[i] - window.xLow) * scale, (window.ordinateHigh - ys[i]) * scale)
+      context.stroke()
+    }
+    const limit = this.#limits.trace(system, engine.potential, {slice: PLANE, window, energy: h})
+    limit.xs.forEach((xs, k) => draw(xs, limit.ys[k], ink, 1.5))
+    const colours = this.#colours()
+    for (const {channel, xs, ys} of exitLines(system, h)) draw(xs, ys, colours[channel - 1], 3)
+    const [x, y] = [trace.x, trace.y].map(values => values.map(value => value * system.units.length))
+    draw(x, y, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
+    const text = describe(trace, system.units.time)
+    context.fillStyle = ink
+    context.beginPath()
+    context.arc((x[0] - window.xLow) * scale, (window.ordinateHigh - y[0]) * scale, 3.5, 0, 2 * Math.PI)
+    context.fill()
+    context.font = "12px system-ui, sans-serif"
+    const [width, height] = [context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT]
+    context.fillStyle = paper
+    context.fillRect(0, box.height - height, width, height)
+    context.fillStyle = ink
+    context.fillText(text, PADDING, box.height - PADDING)
+    this.#canvas.setAttribute("aria-label", text)
+  }
+
+  /**
+   * @param {DOMRect} box
+   * @param {CanvasRenderingContext2D} context
+   */
+  #place(box, context) {
+    const ratio = window.devicePixelRatio
+    Object.assign(this.#canvas, {width: box.width * ratio, height: box.height * ratio})
+    Object.assign(this.#canvas.style, {
+      display: "block", left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px`,
+    })
+    context.scale(ratio, ratio)
+  }
+}
+
+/**
+ * The picture of a map on the screen: its view and the box of its frame.
+ *
+ * @typedef {{view: any, box: DOMRect}} Frame
+ *
+ * @returns {Frame[]}
+ */
+function frames() {
+  const views = [...Bokeh.index.all_views()].filter((/** @type {any} */ view) => PICTURES.includes(view.model.name))
+  return views
+    .map((/** @type {any} */ view) => {
+      const canvas = view.canvas_view.el.getBoundingClientRect()
+      const {left, top, width, height} = view.frame.bbox
+      return {view, box: new DOMRect(canvas.left + left, canvas.top + top, width, height)}
+    })
+    .filter((/** @type {Frame} */ {box}) => box.width > 0)
+    .sort((/** @type {Frame} */ one, /** @type {Frame} */ other) =>
+      PICTURES.indexOf(one.view.model.name) - PICTURES.indexOf(other.view.model.name))
+}
+
+/** @type {(box: DOMRect, event: PointerEvent) => boolean} */
+const contains = (box, {clientX, clientY}) =>
+  clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom

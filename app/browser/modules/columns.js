@@ -1,0 +1,72 @@
+// @ts-check
+/**
+ * How pixels are written as codes; the server sends it, see `plots/image_columns.py`.
+ *
+ * @typedef {object} Coding
+ * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes
+ * @property {number} first  code of the first class
+ * @property {number[]} leastCrossings  fewest crossings of each class
+ *
+ * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
+ */
+
+/**
+ * The columns of the pictures' data source for the pixels of a view, as the server makes them of a map.
+ *
+ * @param {Coding} coding
+ * @param {import("./pixels.js").View} view
+ * @param {import("./pixels.js").Pixels} pixels
+ * @param {Columns} like  columns from the server, for the types of their images
+ * @returns {Columns}
+ */
+export function pixelColumns({outcomes, first, leastCrossings}, view, pixels, like) {
+  const {window, columns, rows} = view
+  const codes = new Map(outcomes)
+  const count = columns * rows
+  const fate = new Uint8Array(count)
+  const crossingClass = new Uint8Array(count)
+  for (let i = 0; i < count; i++) {
+    const outcome = codes.get(pixels.fate[i])
+    fate[i] = outcome ?? first + pixels.fate[i] - 1
+    crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
+  }
+  const [Bytes, Floats] = [like.fate[0].constructor, like.escape_time[0].constructor]
+  const shape = [rows, columns]
+  const none = new Bytes(new Uint8Array(1).buffer, [1, 1])
+  return {
+    fate: [new Bytes(fate.buffer, shape)],
+    crossing_class: [new Bytes(crossingClass.buffer, shape)],
+    crossings: [new Floats(Float32Array.from(pixels.crossings).buffer, shape)],
+    escape_time: [new Floats(pixels.time.buffer, shape)],
+    character: [none],
+    passage: [none],
+    x: [window.xLow],
+    y: [window.ordinateLow],
+    dw: [window.xHigh - window.xLow],
+    dh: [window.ordinateHigh - window.ordinateLow],
+    energy: [view.energy],
+    complete: [false],
+  }
+}
+
+/** Edges of windows closer than this, as a share of its side, are the same. */
+const SAME_EDGE = 1e-6
+/** Coarse frames of the server reach this much beyond the window. */
+const WIDEST = 1.1
+const SAME_ENERGY = 1e-12
+
+/**
+ * Whether columns from the server show a wish, with at least as many pixels as a preview of it.
+ *
+ * @param {Columns} columns
+ * @param {import("./frames.js").Wish} wish
+ * @param {number} rows  of the preview
+ */
+export function showsWish({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
+  const near = (/** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ from, /** @type {number} */ to) =>
+    Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
+  const sameEnergy = slice.axes[1] === "h" || Math.abs(energy[0] - wanted) <= SAME_ENERGY * Math.abs(wanted)
+  const sameWindow =
+    near(x[0], dw[0], window.xLow, window.xHigh) && near(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
+  return sameEnergy && sameWindow && (complete[0] || fate[0].shape[0] >= rows)
+}

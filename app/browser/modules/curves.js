@@ -1,0 +1,52 @@
+// @ts-check
+/** The lines over the pictures at an energy of a preview: the limiting curve, and the exits with their numbers. */
+
+import {exitCurves, exitPoint} from "./exits.js"
+import {sampleGrid, levelLines} from "./contours.js"
+import {Starts, unitOf} from "./slice.js"
+
+/** Points along an exit. */
+const EXIT_POINTS = 41
+/** Place of the number of a channel, as a share of the distance of its exit. */
+const LABEL_SHARE = 0.86
+
+/** Traces limiting curves; those of one window need the values of V only once. */
+export class LimitingCurves {
+  /** @type {import("./contours.js").Grid | null} */
+  #grid = null
+  #key = ""
+
+  /**
+   * @param {import("./system.js").System} system
+   * @param {import("./potential.js").Potential} potential
+   * @param {import("./frames.js").Wish} wish
+   */
+  trace(system, potential, {slice, window, energy}) {
+    const key = JSON.stringify([system.key, slice, window])
+    if (key !== this.#key || !this.#grid) {
+      const starts = new Starts(slice, potential, 0)
+      const [unitX, unitOrdinate] = slice.axes.map(axis => unitOf(system.units, axis))
+      this.#grid = sampleGrid(window, (x, ordinate) => starts.requiredEnergy(x / unitX, ordinate / unitOrdinate))
+      this.#key = key
+    }
+    return levelLines(this.#grid, slice.axes[1] === "h" ? 0 : energy / unitOf(system.units, "h"))
+  }
+}
+
+/**
+ * The lines of the open exits in units of the page, with the numbers of their channels.
+ *
+ * @param {import("./system.js").System} system
+ * @param {number} energy  in units of the page
+ * @returns {{channel: number, xs: number[], ys: number[], label: [number, number]}[]}
+ */
+export function exitLines({exits, units}, energy) {
+  const lines = exitCurves(exits, energy / unitOf(units, "h")).map((curve, k) => {
+    const points = Array.from({length: EXIT_POINTS}, (_, i) => exitPoint(curve, (2 * i) / (EXIT_POINTS - 1) - 1))
+    const [xs, ys] = [0, 1].map(axis => points.map(point => point[axis] * units.length))
+    const middle = EXIT_POINTS >> 1
+    const label = /** @type {[number, number]} */ ([LABEL_SHARE * xs[middle], LABEL_SHARE * ys[middle]])
+    return {channel: k + 1, xs, ys, label, open: curve.open}
+  })
+  return lines.filter(({open}) => open)
+}

@@ -1,0 +1,220 @@
+// @ts-check
+/**
+ * Pictures at the rate of the display: as many pixels as fit a frame while the view moves, more of them, and to a later time,
+ * when it rests. Only the newest view is kept; the picture that is being computed while the view moves is finished first, so that
+ * a fast hand sees pictures at all.
+ *
+ * @typedef {import("./pixels.js").View} View
+ * @typedef {import("./pixels.js").Pixels} Pixels
+ * @typedef {Omit<View, "columns" | "rows" | "horizon">} Wish
+ */
+
+import {mirroredAxes} from "./slice.js"
+
+/** Pixels along a side while the view moves, at least, and longest time in units of the well. */
+export const LEAST_SIDE = 76
+const MOVING_HORIZON = 30
+/** Pictures while the view rests: pixels along a side, and longest time in units of the well. */
+const RESTING = [
+  {side: 112, horizon: 100},
+  {side: 224, horizon: 100},
+]
+/** Time for the pixels of a frame, in ms; the rest of it is for painting. */
+const FRAME_MS = 10
+/** Limits of the change of the side from one frame to the next. */
+const [SLOWER, FASTER] = [0.8, 1.25]
+/** A view that has not changed for this long, in ms, rests. */
+const REST_MS = 60
+/** Pixels of a part while the view rests: a new view waits for one part at most. */
+const PART_PIXELS = 500
+
+export class Frames {
+  /**
+   * @param {import("./pool.js").Pool} pool
+   * @param {number} workers
+   * @param {(view: View, pixels: Pixels) => void} show
+   */
+  constructor(pool, workers, show) {
+    this.#pool = pool
+    this.#workers = workers
+    this.#show = show
+  }
+
+  #pool
+  #workers
+  #show
+  /** @type {import("./system.js").System | null} */
+  #system = null
+  /** @type {Wish | null} */
+  #wish = null
+  /** @type {"nothing" | "moving" | "resting"} */
+  #computing = "nothing"
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #rest
+  #side = LEAST_SIDE
+  #mostPixels = RESTING[RESTING.length - 1].side
+
+  /**
+   * @param {import("./system.js").System} system
+   * @param {WebAssembly.Module} module
+   */
+  setSystem(system, module) {
+    this.stop()
+    this.#system = system
+    this.#pool.setSystem(system, module)
+  }
+
+  /**
+   * Compute this view, at once or after the picture of an earlier one.
+   *
+   * @param {Wish} wish
+   */
+  want(wish) {
+    this.#wish = wish
+    clearTimeout(this.#rest)
+    if (this.#computing !== "moving") this.#begin()
+  }
+
+  /** Compute nothing more. */
+  stop() {
+    clearTimeout(this.#rest)
+    this.#wish = null
+    this.#computing = "nothing"
+    this.#pool.cancel()
+  }
+
+  #begin() {
+    const wish = this.#wish
+    this.#wish = null
+    if (!wish) return
+    this.#computing = "moving"
+    const [side, begun] = [this.#side, performance.now()]
+    this.#compute({...wish, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
+      const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
+      const next = Math.round(side * Math.min(Math.max(change, SLOWER), FASTER))
+      this.#side = Math.min(Math.max(next, LEAST_SIDE), this.#mostPixels)
+      this.#computing = "nothing"
+      if (this.#wish) this.#begin()
+      else this.#rest = setTimeout(() => this.#refine(wish, 0), REST_MS)
+    })
+  }
+
+  /**
+   * Compute the pictures of a resting view, one after the other.
+   *
+   * @param {Wish} wish
+   * @param {number} level
+   */
+  #refine(wish, level) {
+    if (level === RESTING.length) {
+      this.#computing = "nothing"
+      return
+    }
+    const {side, horizon} = RESTING[level]
+    if (side < this.#side) {
+      this.#refine(wish, level + 1)
+      return
+    }
+    this.#computing = "resting"
+    const parts = Math.ceil((side * side) / PART_PIXELS)
+    this.#compute({...wish, columns: side, rows: side, horizon}, parts, () => this.#refine(wish, level + 1))
+  }
+
+  /**
+   * @param {View} view
+   * @param {number} parts  into which the rows are dealt out
+   * @param {() => void} done
+   */
+  #compute(view, parts, done) {
+    if (!this.#system) return
+    const picture = new Picture(this.#system, view)
+    const list = picture.deal(parts)
+    let left = list.length
+    this.#pool.compute(view, list, (part, pixels) => {
+      picture.add(part, pixels)
+      if (--left > 0) return
+      this.#show(view, picture.finish())
+      done()
+    })
+  }
+}
+
+/** The pixels of a view, of which mirror images are computed once. */
+export class Picture {
+  /**
+   * @param {import("./system.js").System} system
+   * @param {View} view
+   */
+  constructor(system, view) {
+    const {columns, rows} = view
+    this.#view = view
+    this.#mirror = system.mirror ?? []
+    this.#flips = mirroredAxes(system, view.slice, view.window)
+    const count = columns * rows
+    /** @type {Pixels} */
+    this.pixels = {
+      fate: new Int8Array(count),
+      time: new Float32Array(count).fill(NaN),
+      crossings: new Uint16Array(count),
+    }
+  }
+
+  #view
+  #mirror
+  #flips
+
+  /**
+   * Deal the rows to compute out into parts.
+   *
+   * @param {number} count
+   * @returns {import("./pixels.js").Part[]}
+   */
+  deal(count) {
+    const {columns, rows} = this.#view
+    const half = (/** @type {number} */ side) => Math.ceil(side / 2)
+    const computed = this.#flips?.[1] ? half(rows) : rows
+    const width = this.#flips && !this.#flips[1] ? half(columns) : columns
+    const parts = Math.min(count, computed)
+    return Array.from({length: parts}, (_, first) => ({
+      rows: Uint32Array.from({length: Math.ceil((computed - first) / parts)}, (_, k) => first + k * parts),
+      columns: width,
+    }))
+  }
+
+  /**
+   * @param {import("./pixels.js").Part} part
+   * @param {Pixels} computed
+   */
+  add(part, computed) {
+    const {fate, time, crossings} = this.pixels
+    part.rows.forEach((row, place) => {
+      const [from, to] = [place * part.columns, row * this.#view.columns]
+      fate.set(computed.fate.subarray(from, from + part.columns), to)
+      time.set(computed.time.subarray(from, from + part.columns), to)
+      crossings.set(computed.crossings.subarray(from, from + part.columns), to)
+    })
+  }
+
+  /**
+   * The pixels, with mirror images.
+   *
+   * @returns {Pixels}
+   */
+  finish() {
+    const flips = this.#flips
+    if (!flips) return this.pixels
+    const {columns, rows} = this.#view
+    const {fate, time, crossings} = this.pixels
+    for (let row = flips[1] ? rows >> 1 : 0; row < rows; row++) {
+      const source = flips[1] ? rows - 1 - row : row
+      for (let column = flips[1] ? 0 : columns >> 1; column < columns; column++) {
+        const [to, from] = [row * columns + column, source * columns + columns - 1 - column]
+        if (from >= to) continue
+        fate[to] = fate[from] > 0 ? this.#mirror[fate[from]] : fate[from]
+        time[to] = time[from]
+        crossings[to] = crossings[from]
+      }
+    }
+    return this.pixels
+  }
+}

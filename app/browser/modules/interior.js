@@ -1,0 +1,129 @@
+// @ts-check
+/**
+ * Which starts lie inside the exits: connected to the origin below the energy without crossing an exit. The path downhill from
+ * the point is that of `engine/taylor/kernels/interior.py`.
+ */
+
+import {exitDistance, positionAcross} from "./exits.js"
+
+// Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
+const [LONGEST_STEP, SHORTEST_STEP] = [1 / 32, 1e-6]
+const MOST_STEPS = 10_000
+// The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
+const [COS, SIN] = [Math.cos(0.1), Math.sin(0.1)]
+// Smallest decrease of V in a step, relative to that along the gradient.
+const DECREASE = 0.25
+// Lines to the origin stay below the energy by this, so that they do not pass over a saddle of the same energy.
+const ENERGY_MARGIN = 1e-12
+// Largest slope at a critical point.
+const NO_SLOPE = 1e-9
+
+export class Interior {
+  /** @param {import("./potential.js").Potential} potential */
+  constructor(potential) {
+    this.#potential = potential
+    this.#bernstein = bernsteinMatrix(potential.degree)
+  }
+
+  #potential
+  #bernstein
+
+  /**
+   * Whether a point is beyond an exit; false in the forbidden region.
+   *
+   * @param {import("./exits.js").ExitCurve[]} curves
+   * @param {number} energy
+   * @param {number} x
+   * @param {number} y
+   */
+  isOutside(curves, energy, x, y) {
+    const potential = this.#potential
+    const level = energy - ENERGY_MARGIN
+    let odd = false
+    let step = LONGEST_STEP
+    for (let i = 0; i < MOST_STEPS; i++) {
+      const value = potential.expand(x, y)
+      const {slopeX, slopeY} = potential
+      const slope = Math.hypot(slopeX, slopeY)
+      if (value < potential.ray[0]) break
+      // A saddle of this energy belongs to the well.
+      if (slope < NO_SLOPE && value >= level) return false
+      if (this.#isBelow(level)) return odd !== crossesExits(curves, x, y, 0, 0)
+      const directionX = -(COS * slopeX - SIN * slopeY) / slope
+      const directionY = -(SIN * slopeX + COS * slopeY) / slope
+      step = Math.min(2 * step, LONGEST_STEP)
+      while (step > SHORTEST_STEP) {
+        if (potential.value(x + step * directionX, y + step * directionY) < value - DECREASE * step * slope) break
+        step *= 0.5
+      }
+      if (step <= SHORTEST_STEP) break
+      const [nextX, nextY] = [x + step * directionX, y + step * directionY]
+      if (crossesExits(curves, x, y, nextX, nextY)) odd = !odd
+      ;[x, y] = [nextX, nextY]
+    }
+    return !odd
+  }
+
+  /**
+   * Whether all Bernstein coefficients of V on the line to the origin, and with them V there, are at most a level.
+   *
+   * @param {number} level
+   */
+  #isBelow(level) {
+    const {ray} = this.#potential
+    for (const row of this.#bernstein) {
+      let b = 0
+      for (let k = 0; k < row.length; k++) b += row[k] * ray[k]
+      if (b > level) return false
+    }
+    return true
+  }
+}
+
+/**
+ * From the coefficients of a power series on [0, 1] to those of Bernstein polynomials; row i has the first i + 1 columns.
+ *
+ * @param {number} degree
+ */
+function bernsteinMatrix(degree) {
+  const choose = (/** @type {number} */ n, /** @type {number} */ k) => {
+    let value = 1
+    for (let i = 0; i < k; i++) value = (value * (n - i)) / (i + 1)
+    return value
+  }
+  return Array.from({length: degree + 1}, (_, i) =>
+    Array.from({length: i + 1}, (_, k) => choose(i, k) / choose(degree, k)),
+  )
+}
+
+/**
+ * Whether a line crosses the open exits an odd number of times.
+ *
+ * @param {import("./exits.js").ExitCurve[]} curves
+ * @param {number} x0
+ * @param {number} y0
+ * @param {number} x1
+ * @param {number} y1
+ */
+function crossesExits(curves, x0, y0, x1, y1) {
+  let odd = false
+  for (const curve of curves) {
+    if (!curve.open) continue
+    const s0 = positionAcross(curve, x0, y0)
+    const s1 = positionAcross(curve, x1, y1)
+    // The part of the line with −1 ≤ s ≤ 1.
+    let low = 0
+    let high = 1
+    if (s0 !== s1) {
+      const one = (-1 - s0) / (s1 - s0)
+      const other = (1 - s0) / (s1 - s0)
+      low = Math.max(low, Math.min(one, other))
+      high = Math.min(high, Math.max(one, other))
+    } else if (Math.abs(s0) > 1) continue
+    if (low >= high) continue
+    const atLow = exitDistance(curve, (1 - low) * x0 + low * x1, (1 - low) * y0 + low * y1)
+    const atHigh = exitDistance(curve, (1 - high) * x0 + high * x1, (1 - high) * y0 + high * y1)
+    if (atLow > 0 !== atHigh > 0) odd = !odd
+  }
+  return odd
+}

@@ -1,0 +1,100 @@
+// @ts-check
+/**
+ * A model of Bokeh.
+ *
+ * @typedef {object} Model
+ * @property {Record<string, any>} properties
+ * @property {(values: Record<string, any>, options?: {sync: boolean}) => void} setv
+ * @property {(signal: any, slot: () => void) => void} connect
+ */
+
+/** Values of a model that may not be on the page yet; before it is, nothing is shown. */
+export class LocalWhenPresent {
+  /**
+   * @param {() => any} find
+   * @param {string[]} names  of the properties
+   */
+  constructor(find, names) {
+    this.#make = () => {
+      const model = find()
+      return model && new Local(model, names)
+    }
+  }
+
+  #make
+  /** @type {Local | null} */
+  #local = null
+
+  /** Values of the server; none before the model is on the page. */
+  get server() {
+    this.#local ??= this.#make()
+    return this.#local?.server ?? {}
+  }
+
+  /** @param {Record<string, any>} values */
+  show(values) {
+    this.#local ??= this.#make()
+    this.#local?.show(values)
+  }
+
+  restore() {
+    this.#local?.restore()
+  }
+}
+
+/** Values of a model that are shown in this browser only, in place of those of the server, which stay known. */
+export class Local {
+  /**
+   * @param {Model & Record<string, any>} model
+   * @param {string[]} names  of the properties
+   * @param {() => void} onServer  called when the server, or the visitor, changes one
+   */
+  constructor(model, names, onServer = () => {}) {
+    this.#model = model
+    this.server = Object.fromEntries(names.map(name => [name, model[name]]))
+    this.#displayed = this.server
+    for (const name of names) {
+      model.connect(model.properties[name].change, () => {
+        if (this.#setting) return
+        this.server = {...this.server, [name]: model[name]}
+        onServer()
+      })
+    }
+  }
+
+  #model
+  #displayed
+  #setting = false
+  #shown = false
+
+  /** @param {Record<string, any>} values */
+  show(values) {
+    this.#set(values)
+    this.#shown = true
+  }
+
+  /** Show the values of the server again. */
+  restore() {
+    if (this.#shown && this.#displayed !== this.server) this.#set(this.server)
+    this.accept()
+  }
+
+  /** Leave on the page what was there before a change of the server. */
+  keep() {
+    this.show(this.#displayed)
+  }
+
+  /** Take over the values of the server, which are on the page already after a change of it. */
+  accept() {
+    this.#displayed = this.server
+    this.#shown = false
+  }
+
+  /** @param {Record<string, any>} values */
+  #set(values) {
+    this.#displayed = values
+    this.#setting = true
+    this.#model.setv(values, {sync: false})
+    this.#setting = false
+  }
+}

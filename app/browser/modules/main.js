@@ -1,0 +1,63 @@
+// @ts-check
+/** Connects the component of the page, see `app/browser/engine_component.py`, with the modules. */
+
+import {Card} from "./card.js"
+import {Frames} from "./frames.js"
+import {Player} from "./player.js"
+import {Pool, workerCount} from "./pool.js"
+import {Preview} from "./preview.js"
+
+/** The smallest module with an instruction on vectors. */
+const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11)
+
+/**
+ * @param {any} model
+ * @param {HTMLElement} el
+ */
+export function start(model, el) {
+  if (!WebAssembly.validate(SIMD)) {
+    // Without vectors the last map stays until the next one comes, and there is nothing to play.
+    model.on("command", () => model.command.name === "play" && model.send_msg({energy: model.command.energy}))
+    return
+  }
+  const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
+  const find = (/** @type {string} */ name) => page.get_model_by_name(name)
+  const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))
+  /** @type {Preview} */
+  let preview
+  const frames = new Frames(pool, workerCount(), (view, pixels) => preview.show(view, pixels))
+  preview = new Preview(find, frames)
+  const tell = (/** @type {number} */ energy) => document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
+  const player = new Player(
+    energy => {
+      preview.showEnergy(energy)
+      tell(energy)
+    },
+    energy => {
+      preview.release()
+      model.send_msg({energy})
+    },
+  )
+  const card = new Card(el, () => preview.wish, () => find("maps").data, () => model.view.colours)
+  document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
+  document.addEventListener("energyreleased", () => preview.release())
+  const takeView = () => model.view.system && preview.setView(model.view)
+  const takeSystem = async () => {
+    if (!model.system.key) return
+    const {key} = model.system
+    const module = await WebAssembly.compile(model.system.module)
+    if (model.system.key !== key) return
+    const {module: _, ...system} = model.system
+    for (const user of [card, preview]) user.setSystem(system, module)
+  }
+  const obey = () => {
+    const {name, energy, low, high} = model.command
+    if (name === "play") player.start(energy, low, high)
+    else player.stop()
+  }
+  model.on("view", takeView)
+  model.on("system", takeSystem)
+  model.on("command", obey)
+  takeView()
+  void takeSystem()
+}

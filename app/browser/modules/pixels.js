@@ -1,0 +1,112 @@
+// @ts-check
+/** Fates of the starts of a view, some rows at a time. */
+
+import {exitCurves} from "./exits.js"
+import {propagate} from "./propagate.js"
+import {pixelCentres, Starts, unitOf} from "./slice.js"
+
+/**
+ * What a picture shows: a part of a slice at an energy, in units of the page.
+ *
+ * @typedef {object} View
+ * @property {import("./system.js").Slice} slice
+ * @property {number} energy
+ * @property {import("./slice.js").Window} window
+ * @property {number} columns
+ * @property {number} rows
+ * @property {number} horizon  longest time, in units of the well
+ *
+ * The pixels of a view in some rows and in the first columns of these.
+ *
+ * @typedef {object} Part
+ * @property {Uint32Array} rows
+ * @property {number} columns
+ *
+ * @typedef {object} Pixels
+ * @property {Int8Array} fate
+ * @property {Float32Array} time  of the escape, in units of the page; NaN for others
+ * @property {Uint16Array} crossings
+ */
+
+/**
+ * Error of an orbit's integration in pixels: a preview needs no steps as short as those of an orbit that is followed to t = 1e5.
+ * The last coefficients of a step are about its error in units of the well.
+ */
+const ERROR_IN_PIXELS = 1e-6
+const LARGEST_TOLERANCE = 1e-9
+
+/**
+ * Norm of the last coefficients of a step, small enough for the pixels of a view.
+ *
+ * @param {import("./system.js").System} system
+ * @param {View} view
+ */
+export function toleranceFor({units, layout}, {slice, window, columns, rows}) {
+  const width = (window.xHigh - window.xLow) / columns / unitOf(units, slice.axes[0])
+  const height = (window.ordinateHigh - window.ordinateLow) / rows / unitOf(units, slice.axes[1])
+  return Math.min(Math.max(ERROR_IN_PIXELS * Math.min(width, height), layout.tolerance), LARGEST_TOLERANCE)
+}
+
+/**
+ * @param {import("./integrator.js").Integrator} integrator
+ * @param {import("./interior.js").Interior} interior
+ * @param {import("./potential.js").Potential} potential
+ * @param {View} view
+ * @param {Part} part
+ * @returns {Pixels}
+ */
+export function computePixels(integrator, interior, potential, view, part) {
+  const {system} = integrator
+  const {fates} = system.layout
+  const {slice, window} = view
+  const [unitX, unitOrdinate] = slice.axes.map(axis => unitOf(system.units, axis))
+  const x = pixelCentres(window.xLow / unitX, window.xHigh / unitX, view.columns)
+  const ordinate = pixelCentres(window.ordinateLow / unitOrdinate, window.ordinateHigh / unitOrdinate, view.rows)
+  const energy = view.energy / unitOf(system.units, "h")
+  const count = part.rows.length * part.columns
+  const orbits = {
+    state: new Float64Array(4 * count),
+    todo: new Uint32Array(count),
+    fate: new Int8Array(count).fill(fates.not_computed),
+    time: new Float64Array(count).fill(NaN),
+    crossings: new Uint16Array(count),
+  }
+  // One set of exits, or one for each row.
+  const ofRows = slice.axes[1] === "h" ? Array.from(part.rows, row => exitCurves(system.exits, ordinate[row])) : null
+  const ofView = exitCurves(system.exits, energy)
+  const starts = new Starts(slice, potential, energy)
+  const {found} = starts
+  let todo = 0
+  let orbit = 0
+  part.rows.forEach((row, place) => {
+    const exits = ofRows ? ofRows[place] : ofView
+    for (let column = 0; column < part.columns; column++, orbit++) {
+      if (!starts.find(x[column], ordinate[row])) orbits.fate[orbit] = fates.forbidden
+      else if (interior.isOutside(exits, found.h, found.x, found.y)) orbits.fate[orbit] = fates.outside
+      else {
+        orbits.state[4 * orbit] = found.x
+        orbits.state[4 * orbit + 1] = found.y
+        orbits.state[4 * orbit + 2] = found.px
+        orbits.state[4 * orbit + 3] = found.py
+        orbits.todo[todo++] = orbit
+      }
+    }
+  })
+  orbits.todo = orbits.todo.subarray(0, todo)
+  const exits = ofRows ? (/** @type {number} */ orbit) => ofRows[Math.floor(orbit / part.columns)] : () => ofView
+  propagate(integrator, {...orbits, exits}, view.horizon, toleranceFor(system, view), gatesOf(ofRows ?? [ofView]))
+  return {
+    fate: orbits.fate,
+    time: Float32Array.from(orbits.time, time => time * system.units.time),
+    crossings: orbits.crossings,
+  }
+}
+
+/**
+ * The gate of each channel that is inside its exits at several energies.
+ *
+ * @param {import("./exits.js").ExitCurve[][]} exits
+ */
+function gatesOf(exits) {
+  return exits[0].map(({outward}, k) => ({outward, gate: Math.min(...exits.map(curves => curves[k].gate))}))
+}

@@ -1,0 +1,53 @@
+// @ts-check
+/** Plays the energy: raises it to the end of its range, once per frame of the display. */
+
+/** Duration of the whole range. */
+const SWEEP_MS = 20_000
+
+export class Player {
+  /**
+   * @param {(energy: number) => void} show
+   * @param {(energy: number) => void} end  called with the last energy
+   */
+  constructor(show, end) {
+    this.#show = show
+    this.#end = end
+  }
+
+  #show
+  #end
+  #frame = 0
+  #energy = 0
+
+  get playing() {
+    return this.#frame !== 0
+  }
+
+  /**
+   * Start at an energy, from the beginning of the range if it is at the end; no effect while it plays.
+   *
+   * @param {number} energy
+   * @param {number} low
+   * @param {number} high
+   */
+  start(energy, low, high) {
+    if (this.playing) return
+    this.#energy = energy >= low && energy < high ? energy : low
+    let last = performance.now()
+    const tick = (/** @type {number} */ now) => {
+      this.#energy = Math.min(this.#energy + ((high - low) * Math.max(now - last, 0)) / SWEEP_MS, high)
+      last = now
+      this.#show(this.#energy)
+      if (this.#energy >= high) this.stop()
+      else this.#frame = requestAnimationFrame(tick)
+    }
+    this.#frame = requestAnimationFrame(tick)
+  }
+
+  stop() {
+    if (!this.playing) return
+    cancelAnimationFrame(this.#frame)
+    this.#frame = 0
+    this.#end(this.#energy)
+  }
+}

@@ -1,0 +1,212 @@
+// @ts-check
+/**
+ * The pictures of the page while the energy or the window moves. The browser's pixels stay until the server's map shows the same
+ * view with at least as many.
+ */
+
+import {pixelColumns, showsWish} from "./columns.js"
+import {exitLines, LimitingCurves} from "./curves.js"
+import {Local, LocalWhenPresent} from "./local.js"
+import {Potential} from "./potential.js"
+import {unitOf} from "./slice.js"
+import {LEAST_SIDE} from "./frames.js"
+import {coversEnergy, windowAt} from "./system.js"
+
+/**
+ * What the server says of the view.
+ *
+ * @typedef {object} ServerView
+ * @property {string} system  key of the system
+ * @property {string} plane  name of the slice
+ * @property {import("./system.js").Slice} slice
+ * @property {number} energy
+ * @property {boolean} home  whether the window is the default one
+ * @property {string[]} colours  of the channels
+ * @property {import("./columns.js").Coding} coding
+ * @property {number} t_max
+ *
+ * Models of Bokeh by their names; null for those that are not on the page.
+ *
+ * @typedef {(name: string) => any} FindModel
+ */
+
+export class Preview {
+  /**
+   * @param {FindModel} find
+   * @param {import("./frames.js").Frames} frames
+   */
+  constructor(find, frames) {
+    const ranges = find("basins")
+    this.#frames = frames
+    this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
+    const moved = () => this.#moved()
+    this.#x = new Local(ranges.x_range, ["start", "end"], moved)
+    this.#y = new Local(ranges.y_range, ["start", "end"], moved)
+    this.#ranges = () => [ranges.x_range, ranges.y_range]
+    this.#limit = new LocalWhenPresent(() => find("zero_velocity_curve"), ["data"])
+    this.#exits = new LocalWhenPresent(() => find("lyapunov_orbits"), ["data"])
+    this.#labels = new LocalWhenPresent(() => find("channel_numbers"), ["data"])
+    this.#status = new LocalWhenPresent(findStatus, ["text"])
+  }
+
+  #frames
+  #maps
+  #x
+  #y
+  #ranges
+  #limit
+  #exits
+  #labels
+  #status
+  #curves = new LimitingCurves()
+  /** @type {import("./system.js").System | null} */
+  #system = null
+  /** @type {Potential | null} */
+  #potential = null
+  /** @type {ServerView | null} */
+  #view = null
+  /** Energy of the slider or of the player, until the server has it. @type {number | null} */
+  #energy = null
+  #held = false
+  #waiting = false
+  /** The preview on the page. @type {import("./pixels.js").View | null} */
+  #shown = null
+
+  /**
+   * Use a system, which is that of the view or will be.
+   *
+   * @param {import("./system.js").System} system
+   * @param {WebAssembly.Module} module
+   */
+  setSystem(system, module) {
+    this.#system = system
+    this.#potential = new Potential(system.terms)
+    this.#frames.setSystem(system, module)
+    this.#follow()
+  }
+
+  /** @param {ServerView} view */
+  setView(view) {
+    const other = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
+    this.#view = view
+    if (!this.#held) this.#energy = null
+    if (other) this.#restore()
+  }
+
+  /**
+   * Show another energy until `release`.
+   *
+   * @param {number} energy
+   */
+  showEnergy(energy) {
+    this.#held = true
+    this.#energy = energy
+    const [view, system] = [this.#view, this.#system]
+    const isHome = view?.home && view.system === system?.key
+    const window = isHome && system ? windowAt(system.windows[view.plane], energy) : null
+    if (window) {
+      this.#x.show({start: window.xLow, end: window.xHigh})
+      this.#y.show({start: window.ordinateLow, end: window.ordinateHigh})
+    }
+    this.#follow()
+  }
+
+  /** The energy has been handed to the server. */
+  release() {
+    this.#held = false
+  }
+
+  /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Wish | null} */
+  get wish() {
+    const [view, system, [x, y]] = [this.#view, this.#system, this.#ranges()]
+    if (!view || !system || view.system !== system.key || !(x.start < x.end && y.start < y.end)) return null
+    const energy = this.#energy ?? view.energy
+    const window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+    const highest = view.slice.axes[1] === "h" ? window.ordinateHigh : energy
+    return coversEnergy(system, highest / unitOf(system.units, "h")) ? {slice: view.slice, energy, window} : null
+  }
+
+  /** A range changes: its other end and the pixels from the server may follow at once. */
+  #moved() {
+    if (this.#waiting) return
+    this.#waiting = true
+    queueMicrotask(() => {
+      this.#waiting = false
+      this.#follow()
+    })
+  }
+
+  /** Show what is wanted: the server's map if it has it, else a preview. */
+  #follow() {
+    const wish = this.wish
+    if (!wish) {
+      this.#maps.accept()
+      return
+    }
+    const same = this.#shown && JSON.stringify(wish) === JSON.stringify(pick(this.#shown))
+    const rows = same && this.#shown ? this.#shown.rows : LEAST_SIDE
+    if (showsWish(this.#maps.server.data, wish, rows)) {
+      this.#restore()
+      return
+    }
+    this.#maps.keep()
+    if (!same) this.#frames.want(wish)
+  }
+
+  /**
+   * Show the pixels of a preview.
+   *
+   * @param {import("./pixels.js").View} view
+   * @param {import("./pixels.js").Pixels} pixels
+   */
+  show(view, pixels) {
+    const [system, potential, server] = [this.#system, this.#potential, this.#view]
+    if (!system || !potential || !server) return
+    this.#shown = view
+    this.#maps.show({data: pixelColumns(server.coding, view, pixels, this.#maps.server.data)})
+    this.#limit.show({data: this.#curves.trace(system, potential, view)})
+    if (view.slice.axes.join() === "x,y") this.#showExits(system, view.energy, server.colours)
+    this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
+  }
+
+  /**
+   * @param {import("./system.js").System} system
+   * @param {number} energy
+   * @param {string[]} colours
+   */
+  #showExits(system, energy, colours) {
+    const lines = exitLines(system, energy)
+    const colour = lines.map(({channel}) => colours[channel - 1])
+    this.#exits.show({data: {xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys), colour}})
+    // Always as many texts: Bokeh fails when texts with colours of their own become fewer.
+    const labels = this.#labels.server.data ?? {text: []}
+    const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
+      Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
+    this.#labels.show({
+      data: {
+        x: fill(lines.map(({label}) => label[0]), NaN),
+        y: fill(lines.map(({label}) => label[1]), NaN),
+        text: fill(lines.map(({channel}) => String(channel)), ""),
+        colour: fill(colour, colours[0]),
+      },
+    })
+  }
+
+  /** Show what the server shows. */
+  #restore() {
+    this.#frames.stop()
+    this.#shown = null
+    for (const local of [this.#maps, this.#limit, this.#exits, this.#labels, this.#status, this.#x, this.#y]) local.restore()
+  }
+}
+
+/** The status line, which has no name in the document. */
+const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
+
+/**
+ * The wish of a view.
+ *
+ * @param {import("./pixels.js").View} view
+ * @returns {import("./frames.js").Wish}
+ */
+const pick = ({slice, energy, window}) => ({slice, energy, window})

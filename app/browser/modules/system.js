@@ -1,0 +1,76 @@
+// @ts-check
+/**
+ * The data that the server sends with a potential. All of it is in units of the well; `units` converts from and to those of the
+ * page, which are powers of two times as large.
+ *
+ * @typedef {object} System
+ * @property {string} key  different for each system
+ * @property {string[]} constants  names of the numbers that are the same for all lanes, in the order in which step takes them
+ * @property {Layout} layout
+ * @property {number[]} table  coefficients in the form that step and jets take
+ * @property {[number, number, number][]} terms  [i, j, c] of V = Σ c x^i y^j
+ * @property {ExitTable[]} exits  one for each channel
+ * @property {number[] | null} mirror  image of each channel number under x → −x; null without this symmetry
+ * @property {{length: number, time: number}} units
+ * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
+ *
+ * @typedef {object} Layout
+ * @property {number} lanes  length of a row of lanes
+ * @property {number} order  order of the series
+ * @property {number} hidden  flag: the step may hide crossings of y = 0
+ * @property {number} gate  flag: the step ends beyond the gate of an exit
+ * @property {number} overshoot  flag: the step ends after the horizon
+ * @property {number} tolerance  of the steps that the server takes
+ * @property {Record<"bounded" | "not_computed" | "failed" | "outside" | "forbidden", number>} fates
+ *
+ * @typedef {object} WindowTable
+ * @property {number[]} energies  rising, in units of the page
+ * @property {[number, number, number, number][]} windows  lowest and highest abscissa, lowest and highest ordinate
+ *
+ * @typedef {object} ExitTable
+ * @property {number} saddle  energy at which the channel opens
+ * @property {number} highest  energy up to which the table is valid
+ * @property {number[]} nodes  √(h − saddle) at which the curve is tabulated, rising
+ * @property {number[][]} rows  for each node: gate, reach, origin, outward direction, middle, half width, slopes at both ends, and
+ *   Chebyshev coefficients
+ */
+
+/**
+ * Which starts a picture holds: two of the coordinates x, y, px, py and h are its axes, others are fixed, and the energy decides
+ * the last one, which has the given sign. h is that of the view if it is no axis.
+ *
+ * @typedef {"x" | "y" | "px" | "py" | "h"} Coordinate
+ *
+ * @typedef {object} Slice
+ * @property {[Coordinate, Coordinate]} axes
+ * @property {Partial<Record<Coordinate, number>>} fixed
+ * @property {"px" | "py"} decided
+ * @property {1 | -1} sign
+ */
+
+/**
+ * Whether the exits of a system are known at an energy in units of the well.
+ *
+ * @param {System} system
+ * @param {number} energy
+ */
+export const coversEnergy = (system, energy) => system.exits.every(({highest}) => energy <= highest)
+
+/**
+ * The default window at an energy, linear between tabulated ones; null beyond the table.
+ *
+ * @param {WindowTable | undefined} table
+ * @param {number} energy  in units of the page
+ * @returns {import("./slice.js").Window | null}
+ */
+export function windowAt(table, energy) {
+  const above = table ? table.energies.findIndex(each => each >= energy) : -1
+  if (!table || above < 0 || energy < table.energies[0]) return null
+  const below = Math.max(above - 1, 0)
+  const [low, high] = [table.energies[below], table.energies[above]]
+  const share = high > low ? (energy - low) / (high - low) : 0
+  const [xLow, xHigh, ordinateLow, ordinateHigh] = table.windows[below].map(
+    (edge, k) => edge + share * (table.windows[above][k] - edge),
+  )
+  return {xLow, xHigh, ordinateLow, ordinateHigh}
+}

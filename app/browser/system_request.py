@@ -1,0 +1,89 @@
+"""Request for a system as data for the engine in the browser."""
+
+from __future__ import annotations
+
+import hashlib
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine import Plane, Potential, Slice, default_window
+from engine.service import JobContext, PortableSystem, make_portable_system, raise_if_cancelled
+
+# Energies at which default windows are tabulated: below the escape energy, where they change slowly, and above it.
+_ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
+
+
+@dataclass(frozen=True)
+class BrowserSystem:
+    """A system for the browser.
+
+    Attributes
+    ----------
+    key
+        Different for each system.
+    portable
+        What integrates its orbits.
+    windows
+        {key of a plane: {"energies": […], "windows": [[x_low, x_high, ordinate_low, ordinate_high], …]}}, the default windows.
+    """
+
+    key: str
+    portable: PortableSystem
+    windows: dict[str, dict[str, Any]]
+
+    @property
+    def nbytes(self) -> int:
+        """Approximate size in bytes."""
+        return self.portable.nbytes + 4096
+
+    def to_dict(self) -> dict[str, Any]:
+        """The system as `System` in modules/system.js describes it, with its module and its windows."""
+        return {**self.portable.to_dict(), "key": self.key, "module": self.portable.module, "windows": self.windows}
+
+
+def system_key(potential: Potential) -> str:
+    """A text that is different for each potential."""
+    return hashlib.sha256(repr(potential.terms).encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class BrowserSystemRequest:
+    """Request for a system, for energies between `low` and `high`."""
+
+    potential: Potential
+    low: float
+    high: float
+
+    def run(self, context: JobContext) -> BrowserSystem:
+        """Compile the module, and tabulate exits and windows."""
+        return context.run_long_call(_make_system, self)
+
+
+def _make_system(request: BrowserSystemRequest, cancel: threading.Event) -> BrowserSystem:
+    potential = request.potential
+    planes = [plane for plane in Plane if plane.energy_axis is None]
+    windows = {plane.key: _tabulate_windows(request, plane, cancel) for plane in planes}
+    return BrowserSystem(system_key(potential), make_portable_system(potential, request.high), windows)
+
+
+def _tabulate_windows(request: BrowserSystemRequest, plane: Slice, cancel: threading.Event) -> dict[str, Any]:
+    """Default windows up to the highest energy that has one."""
+    escape = min(max(request.potential.escape_energy, request.low), request.high)
+    energies = np.unique(
+        [
+            *np.linspace(request.low, escape, _ENERGIES_BELOW),
+            *(escape + (request.high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2),
+        ]
+    ).tolist()
+    windows: list[list[float]] = []
+    for energy in energies:
+        raise_if_cancelled(cancel)
+        try:
+            window = default_window(request.potential, plane, energy)
+        except ValueError:
+            break
+        windows.append([window.x_low, window.x_high, window.ordinate_low, window.ordinate_high])
+    return {"energies": energies[: len(windows)], "windows": windows}

@@ -1,0 +1,22 @@
+"""What the page shows, as data for the engine in the browser."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from app.browser.system_request import system_key
+from app.state.view_state import ViewState
+from plots.image_columns import pixel_coding
+
+
+def describe_view(state: ViewState) -> dict[str, Any]:
+    """The view as `ServerView` in modules/preview.js describes it."""
+    return {
+        "system": system_key(state.potential),
+        "plane": state.plane.key,
+        "slice": state.plane.to_dict(),
+        "energy": state.energy,
+        "home": state.window is None,
+        "colours": list(state.colours.channels),
+        "coding": pixel_coding(),
+    }

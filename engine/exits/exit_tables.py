@@ -1,0 +1,168 @@
+"""Exits tabulated over a range of energies, so that they can be interpolated where Lyapunov orbits cannot be computed.
+
+The Lyapunov orbit over a saddle depends smoothly on σ = √(h − E), E the energy of the saddle: its width is proportional to σ, its
+height to σ². The table has the columns of the exit curve, in the axes of the orbit's chord, at Chebyshev nodes in σ, for
+barycentric interpolation (Berrut & Trefethen 2004, SIAM Review 46, 501).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.exits.lyapunov_orbits import exit_curve_over_chord, exit_gates, find_lyapunov_orbits
+from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
+from engine.taylor.kernels import events
+
+LARGEST_ERROR = 1e-6
+"""Largest distance of an interpolated exit from the exit, in units of the well."""
+
+# Nodes of a table: the fewest of these with which the error, measured between the nodes, is small enough.
+_NODES = (10, 20, 40)
+# Shares of the range of energies that are tried: near a maximum between two exits these change too fast.
+_SHARES = (1.0, 0.9, 0.75, 0.5)
+# Share of the largest error that the error between the nodes may have.
+_SAFETY = 0.1
+# Coefficients below this are left out at the end of the series, in units of the well.
+_NEGLIGIBLE = 1e-9
+# A reach without limit, as a number that can be interpolated.
+_FARTHEST_REACH = 1e6
+_POSITIONS = np.linspace(-1.0, 1.0, 21)
+# Columns of a row: gate and reach, then those of the exit curve for its axes and from `events.MIDDLE` on.
+_REACH = 1
+_CURVE_COLUMNS = np.r_[events.ORIGIN_X : events.OUTWARD_Y + 1, events.MIDDLE : events.CURVE_COLUMNS]
+_ORIGIN, _OUTWARD = slice(2, 4), slice(4, 6)
+_MIDDLE, _HALF_WIDTH, _COEFFICIENTS = 6, 7, 10
+
+_Curves = Callable[[float], dict[int, np.ndarray]]
+
+
+@dataclass(frozen=True, eq=False)
+class ExitTable:
+    """The exits of one channel, in units of the well. The arrays are read-only.
+
+    Attributes
+    ----------
+    saddle
+        Energy at which the channel opens.
+    highest
+        Energy up to which the table is valid; at least `saddle`, below which it is not needed.
+    nodes
+        (n,) σ, rising: Chebyshev nodes of the first kind; empty if there is no energy between `saddle` and `highest`.
+    rows
+        (n, columns) gate, reach, origin, outward direction, middle, half width, slopes at both ends and Chebyshev coefficients of
+        the exit curve.
+    """
+
+    saddle: float
+    highest: float
+    nodes: np.ndarray
+    rows: np.ndarray
+
+    def __post_init__(self) -> None:
+        for array in (self.nodes, self.rows):
+            read_only(array)
+
+    def points_at(self, energy: float, positions: np.ndarray) -> np.ndarray:
+        """(2, m) the points of the exit at an energy above the saddle, at s (m,) from −1 to 1."""
+        return _points(_interpolate(self.nodes, self.rows, float(np.sqrt(energy - self.saddle))), positions)
+
+
+def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...]:
+    """Tables of the exits of all channels for energies up to `highest`.
+
+    Parameters
+    ----------
+    potential
+        The potential in units of its well, `Potential.in_well_units`.
+    highest
+        The highest energy, dimensionless.
+
+    Returns
+    -------
+    One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. Interpolated exits
+    differ from exits by at most `LARGEST_ERROR`, as tested at energies between the nodes.
+    """
+    curves: dict[float, dict[int, np.ndarray]] = {}
+
+    def curves_at(energy: float) -> dict[int, np.ndarray]:
+        if energy not in curves:
+            curves[energy] = _curves(potential, energy)
+        return curves[energy]
+
+    saddles = enumerate(potential.saddle_energies.tolist(), start=1)
+    return tuple(_tabulate(curves_at, channel, saddle, highest) for channel, saddle in saddles)
+
+
+def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
+    """The exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
+    curves = {}
+    for orbit in find_lyapunov_orbits(potential, energy):
+        curve = exit_curve_over_chord(potential, orbit)
+        if curve is None:
+            raise ValueError(f"energy={energy}: exit {orbit.channel} is no smooth graph over its chord")
+        curves[orbit.channel] = curve
+    return curves
+
+
+def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -> ExitTable:
+    """The table of one channel."""
+    none = np.zeros(0), np.zeros((0, _COEFFICIENTS))
+    if highest <= saddle:
+        return ExitTable(saddle, highest, *none)
+    for share, count in itertools.product(_SHARES, _NODES):
+        largest = np.sqrt(share * (highest - saddle))
+        nodes, between = _nodes(count, largest), _between(count, largest)
+        try:
+            rows, expected = (
+                np.array([_row(curves_at(saddle + sigma**2)[channel]) for sigma in places.tolist()])
+                for places in (nodes, between)
+            )
+        except ValueError:
+            continue
+        found = [_points(_interpolate(nodes, rows, sigma), _POSITIONS) for sigma in between.tolist()]
+        if np.abs(np.array(found) - [_points(row, _POSITIONS) for row in expected]).max() < _SAFETY * LARGEST_ERROR:
+            used = np.flatnonzero(np.abs(rows).max(axis=0) > _NEGLIGIBLE).max() + 1
+            return ExitTable(saddle, saddle + share * (highest - saddle), nodes, rows[:, :used].copy())
+    return ExitTable(saddle, saddle, *none)
+
+
+def _nodes(count: int, largest: float) -> np.ndarray:
+    return 0.5 * largest * (1.0 - np.cos(np.pi * (2 * np.arange(count) + 1) / (2 * count)))
+
+
+def _between(count: int, largest: float) -> np.ndarray:
+    """Places between the nodes, and the end of the range."""
+    return 0.5 * largest * (1.0 - np.cos(np.pi * (np.arange(count) + 1) / count))
+
+
+def _row(curve: np.ndarray) -> np.ndarray:
+    """The row of a table for an exit curve."""
+    gate, reach = exit_gates(curve[None])[0, 2], min(curve[events.REACH], _FARTHEST_REACH)
+    return np.concatenate([[gate, reach], curve[_CURVE_COLUMNS]])
+
+
+def _interpolate(nodes: np.ndarray, rows: np.ndarray, place: float) -> np.ndarray:
+    """The row at a place. The reach is not smooth: the smaller one of two neighbours is taken."""
+    if place in nodes:
+        same: np.ndarray = rows[np.searchsorted(nodes, place)]
+        return same
+    k = np.arange(nodes.size)
+    weights = (-1.0) ** k * np.sin(np.pi * (2 * k + 1) / (2 * nodes.size)) / (place - nodes)
+    row: np.ndarray = weights @ rows / weights.sum()
+    above = int(np.searchsorted(nodes, place))
+    row[_REACH] = rows[max(above - 1, 0) : above + 1, _REACH].min()
+    row[_OUTWARD] /= np.hypot(*row[_OUTWARD])
+    return row
+
+
+def _points(row: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """(2, m) the points of an exit at s (m,)."""
+    u = np.polynomial.chebyshev.chebval(positions, row[_COEFFICIENTS:])
+    q = row[_MIDDLE] + row[_HALF_WIDTH] * positions
+    (x, y), (outward_x, outward_y) = row[_ORIGIN], row[_OUTWARD]
+    return np.array([x + u * outward_x - q * outward_y, y + u * outward_y + q * outward_x])
