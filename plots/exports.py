@@ -1,4 +1,4 @@
-"""Files to download: pictures, maps as NetCDF, orbits as CSV, and a Python script that reproduces them."""
+"""Files of results: pictures, maps as NetCDF, orbits as CSV, and a Python script that reproduces them."""
 
 from __future__ import annotations
 

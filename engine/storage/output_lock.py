@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from filelock import FileLock
 
-# Time for several attempts, in seconds: the last holder may delete the file between its opening and its locking.
-_ATTEMPTS = 0.1
+# Attempts while others take turns: the last holder may delete the file between its opening and its locking.
+_MOST_ATTEMPTS = 100
 # Errors of file systems that have no locks.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP)
 
@@ -48,7 +48,7 @@ def hold_lock(path: Path) -> Iterator[None]:
 
     file = path.resolve().parent / f".{path.resolve().name}.lock"
     file.parent.mkdir(parents=True, exist_ok=True)
-    lock = FileLock(file, timeout=_ATTEMPTS, fallback_to_soft=False)
+    lock = FileLock(file, blocking=False, fallback_to_soft=False)
     _acquire(lock, file, path)
     try:
         file.write_text(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}")
@@ -62,18 +62,23 @@ def hold_lock(path: Path) -> Iterator[None]:
 def _acquire(lock: FileLock, file: Path, path: Path) -> None:
     from filelock import Timeout
 
-    try:
-        lock.acquire()
-    except Timeout:
-        holder = _read_holder(file) or "another process"
-        raise BlockingIOError(f"{path}: is being written by {holder}; wait for its end, or choose another output") from None
-    except OSError as error:
-        if error.errno not in _NO_LOCKS:
+    for _ in range(_MOST_ATTEMPTS):
+        try:
+            lock.acquire()
+            return
+        except Timeout:
+            if file.exists():
+                break
+        except OSError as error:
+            if error.errno in _NO_LOCKS:
+                return
             raise
+    holder = _read_holder(file) or "another process"
+    raise BlockingIOError(f"{path}: is being written by {holder}; wait for its end, or choose another output")
 
 
 def _read_holder(file: Path) -> str:
     try:
         return file.read_text(errors="replace")
-    except OSError:
+    except FileNotFoundError:
         return ""

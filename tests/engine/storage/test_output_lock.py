@@ -77,7 +77,7 @@ def append_alone(path: Path, turns: int) -> None:
 
 def test_processes_that_take_turns_never_hold_the_lock_together(tmp_path: Path) -> None:
     """Each holder deletes the file of the lock, which others may have opened."""
-    processes = [start(append_alone, tmp_path / "out", 200) for _ in range(3)]
+    processes = [start(append_alone, tmp_path / "out", 50) for _ in range(3)]
     for process in processes:
         process.join(60)
     assert [process.exitcode for process in processes] == [0, 0, 0]
@@ -105,7 +105,13 @@ def test_other_errors_of_the_disk_are_raised(reason: int, tmp_path: Path, monkey
         pass
 
 
-def test_a_folder_that_nobody_may_write_to_is_an_error(tmp_path: Path) -> None:
-    """Even of the superuser, who may write to any folder of a disk."""
-    with pytest.raises(OSError, match="out"), hold_lock(Path("/proc/self/out")):
+def test_a_file_that_cannot_be_created_is_an_error(tmp_path: Path) -> None:
+    longest = os.pathconf(tmp_path, "PC_NAME_MAX")
+    with pytest.raises(OSError, match=re.escape(os.strerror(errno.ENAMETOOLONG))), hold_lock(tmp_path / ("x" * longest)):
+        pass
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it needs /proc")
+def test_a_folder_in_which_no_file_appears_is_given_up() -> None:
+    with pytest.raises(BlockingIOError, match="another process"), hold_lock(Path("/proc/self/out")):
         pass
