@@ -26,6 +26,8 @@ from app.server.log_format import set_up_logs
 from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
 from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
+from app.state.system import review_catalogue_entry
+from engine import CASES
 
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
 
@@ -45,8 +47,10 @@ def on_server_loaded(server_context: Any) -> None:
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     PeriodicCallback(lambda: _monitor_load(state), 1000.0 * load_monitor.TICK_SECONDS).start()
     start_warmup(state)
-    # Import the page before the first request, which would wait for it.
+    # Import the page and review the cases of the paper before the first request, which would wait for both.
     import_module("app.session.page")
+    for case in CASES:
+        review_catalogue_entry(case)
 
 
 def on_server_unloaded(server_context: Any) -> None:

@@ -12,7 +12,7 @@ from engine.execution import count_cores
 from engine.file_lock import hold_lock
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
-from engine.jobs.context import JobRequest
+from engine.jobs.context import JobContext, JobRequest
 from engine.jobs.manager import Jobs
 from engine.jobs.requests import (
     Answer,
@@ -25,7 +25,6 @@ from engine.jobs.requests import (
     EnergyPointRequest,
     OrbitRequest,
     OriginFateRequest,
-    PotentialReviewRequest,
     PreviewRequest,
     RegularityRequest,
     SeparationRequest,
@@ -98,6 +97,7 @@ __all__ = [
     "HyperbolicTangent",
     "IndicatorVerdict",
     "JobClient",
+    "JobContext",
     "JobRequest",
     "JobStats",
     "JobSubmitter",
@@ -110,7 +110,6 @@ __all__ = [
     "PointKind",
     "Polynomial",
     "PotentialEntry",
-    "PotentialReviewRequest",
     "PreviewRequest",
     "RadiusEnvelope",
     "RegularityRequest",

@@ -1,10 +1,10 @@
-"""The selected potential with its parameters, and its energy range."""
+"""A potential with its parameters, and what the page derives from it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 
 from app.state.energy_ranges import ENERGIES, EnergyRange
 from engine import CASES, POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
@@ -69,18 +69,62 @@ class System:
         return f"{name} with {changed}" if changed else name
 
     @property
-    def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of the parameters."""
-        if self.case == TYPED or self.changed:
-            return write_formula(self.potential, SHOWN_DIGITS)
-        return POTENTIALS[self.case].formula
+    def is_known(self) -> bool:
+        """Whether this is a case of the paper, whose review is known from the start."""
+        return self.case in CASES and not self.changed
+
+
+@dataclass(frozen=True)
+class SystemReview:
+    """A system with everything that the page derives from its potential, so that the event loop computes none of it.
+
+    Attributes
+    ----------
+    system
+        The system.
+    review
+        The review of its potential.
+    problem
+        Reason why the page cannot show it; None if it can.
+    energies
+        Energy range of the paper for its cases, else multiples of the escape energy; None if there is a problem.
+    """
+
+    system: System
+    review: PotentialReview
+    problem: str | None
+    energies: EnergyRange | None
 
     @property
-    def energies(self) -> EnergyRange:
-        """Energy range of the paper for its cases, else multiples of the escape energy."""
-        if self.case in CASES and not self.changed:
-            return ENERGIES[self.case]
-        return _energies(self.potential)
+    def potential(self) -> Potential:
+        """The potential, with its saddles already found."""
+        return self.review.potential
+
+    @property
+    def formula_shown(self) -> str:
+        """V(x, y) as text, with the values of the parameters."""
+        if self.system.case == TYPED or self.system.changed:
+            return write_formula(self.potential, SHOWN_DIGITS)
+        return POTENTIALS[self.system.case].formula
+
+
+def review_system(system: System) -> SystemReview:
+    """Review a system: up to seconds, so that the page calls this on worker threads only.
+
+    Raises
+    ------
+    ValueError
+        If the formula or a parameter is invalid.
+    """
+    review = review_potential(system.potential)
+    problem = refusal(review)
+    return SystemReview(system, review, problem, None if problem else _energies(system, review))
+
+
+@cache
+def review_catalogue_entry(case: str) -> SystemReview:
+    """The review of a catalogue entry; the server reviews the cases of the paper before it serves pages."""
+    return review_system(System(case))
 
 
 @lru_cache(maxsize=64)
@@ -89,10 +133,11 @@ def _potential(system: System) -> Potential:
     return plain.with_parameters(system.omega_1, system.omega_2, system.epsilon)
 
 
-@lru_cache(maxsize=64)
-def _energies(potential: Potential) -> EnergyRange:
-    escape = potential.escape_energy
-    span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * escape)
+def _energies(system: System, review: PotentialReview) -> EnergyRange:
+    if system.is_known:
+        return ENERGIES[system.case]
+    escape = review.escape_energy
+    span = max(_BELOW_HIGHEST * (review.highest_energy - escape), _NARROWEST * escape)
     first, high = min(_FIRST * escape, escape + 0.5 * span), min(_HIGH * escape, escape + span)
     # Enough decimals to keep all of these distinct.
     decimals = max(2 - math.floor(math.log10(escape)), 1 - math.floor(math.log10(high - escape)))

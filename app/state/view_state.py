@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from dataclasses import asdict
 from enum import StrEnum
 from typing import Any
 
@@ -10,8 +11,8 @@ import numpy as np
 import param
 
 from app.runtime.process_state import process_state
-from app.state.energy_ranges import ENERGIES
-from app.state.system import SYSTEM, TYPED, System
+from app.state.energy_ranges import ENERGIES, EnergyRange
+from app.state.system import TYPED, System, SystemReview, review_catalogue_entry
 from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
 from engine.service import FREQUENCIES, LARGEST_NUMBER, STRENGTHS, OrbitRequest, UnresolvedMapSpec
 from plots.palette import MOST_ORBITS, PALETTES, Palette
@@ -114,6 +115,7 @@ class ViewState(param.Parameterized):
         t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
         super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(DEFAULT_SIDE, resolutions[-1]))
         self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
+        self._reviewed = review_catalogue_entry(self.case)
         self.param.update(**values)
 
     @property
@@ -122,9 +124,25 @@ class ViewState(param.Parameterized):
         return System(self.case, self.formula, float(self.omega_1), float(self.omega_2), float(self.epsilon))
 
     @property
+    def reviewed(self) -> SystemReview:
+        """The chosen system with its review; RuntimeError if it is no catalogue entry and `show` did not get its review."""
+        if self._reviewed.system != self.system:
+            if self.case == TYPED or self.system.changed:
+                raise RuntimeError(f"{self.system} has not been reviewed")
+            self._reviewed = review_catalogue_entry(self.case)
+        return self._reviewed
+
+    @property
     def potential(self) -> Potential:
         """The potential of the chosen system."""
-        return self.system.potential
+        return self.reviewed.potential
+
+    @property
+    def energies(self) -> EnergyRange:
+        """The energy range of the chosen system."""
+        energies = self.reviewed.energies
+        assert energies is not None, "a refused system is not shown"
+        return energies
 
     @property
     def colours(self) -> Palette:
@@ -148,7 +166,7 @@ class ViewState(param.Parameterized):
         """The same at energy `h`."""
         energy: float | tuple[float, float] = h
         if self.plane is Plane.X_H:
-            energy = (self.potential.escape_energy, self.system.energies.high)
+            energy = (self.potential.escape_energy, self.energies.high)
         return UnresolvedMapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def orbit_spec(self, start: Start) -> OrbitRequest | None:
@@ -165,11 +183,15 @@ class ViewState(param.Parameterized):
             self.param.update(starts=(*self.starts, start), chosen=len(self.starts))
         return start in self.starts
 
-    def show_system(self, system: System, energy: float | None = None) -> None:
-        """Select a system at an energy, by default its initial energy, and remove window and starts."""
-        chosen = {name: getattr(system, name) for name in SYSTEM}
-        energy = system.energies.first if energy is None else energy
-        self.param.update(**chosen, energy=energy, window=None, starts=(), chosen=0)
+    def show(self, reviewed: SystemReview, **values: Any) -> None:
+        """Select a reviewed system together with other values."""
+        self._reviewed = reviewed
+        self.param.update(**{**values, **asdict(reviewed.system)})
+
+    def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
+        """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
+        assert reviewed.energies is not None, "a refused system is not shown"
+        self.show(reviewed, energy=reviewed.energies.first if energy is None else energy, window=None, starts=(), chosen=0)
 
     def remove_start(self, place: int) -> None:
         """Remove the start at an index."""

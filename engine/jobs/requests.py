@@ -18,7 +18,6 @@ from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import PotentialReview, review_potential
 from engine.statistics.decay_law_fits import fit_decay_laws
 from engine.statistics.decay_laws import DecayLaws
 from engine.statistics.escape_statistics import compute_statistics
@@ -108,17 +107,6 @@ class DivergentStartRequest:
         """Search for it; the value is None if there is none."""
         start = (self.potential, self.plane, self.energy, self.x, self.ordinate)
         return Answer(find_divergent_start(*start, self.t_max, executor=context.executor, cancel=context.cancel))
-
-
-@dataclass(frozen=True)
-class PotentialReviewRequest:
-    """Request for the validation report of a potential: the argument of `review_potential`."""
-
-    potential: Potential
-
-    def run(self, context: JobContext) -> Answer[PotentialReview]:
-        """Review the potential."""
-        return Answer(context.executor.submit(review_potential, self.potential).result(), nbytes=8192)
 
 
 @dataclass(frozen=True)

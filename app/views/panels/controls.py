@@ -11,7 +11,7 @@ import panel as pn
 
 from app.runtime.process_state import process_state
 from app.state.energy_ranges import EnergyRange
-from app.state.system import SYSTEM, System
+from app.state.system import SYSTEM, review_catalogue_entry
 from app.state.view_state import ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
@@ -157,7 +157,7 @@ class Controls:
 
     def show_energy(self, energy: float) -> None:
         """Show the energy of a preview as a number."""
-        self.exact_energy.show(round(energy, self.state.system.energies.decimals))
+        self.exact_energy.show(round(energy, self.state.energies.decimals))
 
     def _preview(self, event: Any) -> None:
         """The slider moves; a move to the energy of the state is the end of a drag, or follows the state."""
@@ -180,7 +180,7 @@ class Controls:
         # None and the case of the state: the widget follows the state.
         if case is not None and case != self.state.case:
             with pn.io.hold():
-                self.state.show_system(System(case))
+                self.state.show_system(review_catalogue_entry(case))
 
     def _case(self) -> str | None:
         """The case of the system in view; None for other potentials."""
@@ -202,7 +202,7 @@ class Controls:
 
     def _slider_energy(self) -> float:
         """The position of the slider for the energy of the state."""
-        energies = self.state.system.energies
+        energies = self.state.energies
         return float(min(max(self.state.energy, energies.low), energies.high))
 
     def _take_exact_energy(self, energy: float) -> None:
@@ -211,7 +211,7 @@ class Controls:
 
     def _follow_system(self) -> None:
         """Show slider, ticks, formula, channels and escape energy of the system."""
-        state, system, energies = self.state, self.state.system, self.state.system.energies
+        state, reviewed, energies = self.state, self.state.reviewed, self.state.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
         self.energy = self._make_slider(energies)
@@ -219,9 +219,9 @@ class Controls:
         self._energy_column.objects = [self.energy, self.ticks]
         self.exact_energy.step = 10.0**-energies.decimals
         self.facts.object = (
-            f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(system.title)}</b>: V = {escape_text(system.formula_shown)}"
-            f"<br><span class='quiet'>{state.potential.channels} exit channels above h = {state.potential.escape_energy:.6g}"
-            "</span></div>"
+            f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
+            f"V = {escape_text(reviewed.formula_shown)}<br><span class='quiet'>"
+            f"{state.potential.channels} exit channels above h = {state.potential.escape_energy:.6g}</span></div>"
         )
         self._follow_energy()
 
@@ -239,7 +239,7 @@ class Controls:
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane is Plane.X_H
-        energies, shown = state.system.energies, self._slider_energy()
+        energies, shown = state.energies, self._slider_energy()
         label = "Energy h" if shown == state.energy else f"h = {state.energy:.12g}, beyond the end of the slider"
         # The browser uses a new format when the value changes.
         self.energy.format = _slider_format(shown, energies)
