@@ -8,6 +8,7 @@ from __future__ import annotations
 import logging
 import os
 import sys
+import threading
 from importlib import import_module
 from typing import Any
 
@@ -18,6 +19,7 @@ from tornado.ioloop import PeriodicCallback
 from app.bokeh_patches.batched_patches import batch_patches
 from app.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, load_monitor
+from app.runtime.loop_watch import LoopWatch
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.runtime.state_collector import StateCollector
@@ -26,6 +28,8 @@ from app.server.log_format import set_up_logs
 from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
 from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
+from app.state.system_review import review_catalogue_entry
+from engine import CASES
 
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
 
@@ -43,10 +47,14 @@ def on_server_loaded(server_context: Any) -> None:
         run_callbacks_inline()
     stop_gracefully_on_sigterm(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
-    PeriodicCallback(lambda: _monitor_load(state), 1000.0 * load_monitor.TICK_SECONDS).start()
+    watch = LoopWatch(state.load, state.metrics.loop_delays)
+    PeriodicCallback(lambda: _monitor_load(state, watch), 1000.0 * load_monitor.TICK_SECONDS).start()
+    threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     start_warmup(state)
-    # Import the page before the first request, which would wait for it.
+    # Import the page and review the cases of the paper before the first request, which would wait for both.
     import_module("app.session.page")
+    for case in CASES:
+        review_catalogue_entry(case)
 
 
 def on_server_unloaded(server_context: Any) -> None:
@@ -81,6 +89,6 @@ def _start_state() -> ProcessState:
         os._exit(2)
 
 
-def _monitor_load(state: ProcessState) -> None:
-    state.load.tick()
+def _monitor_load(state: ProcessState, watch: LoopWatch) -> None:
+    watch.tick()
     state.jobs.pause_background(state.load.is_high())

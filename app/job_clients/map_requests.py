@@ -83,7 +83,7 @@ class MapRequests:
         self._listener.map_requested(compiling=self._compiling)
         # Even the window of a map depends on the exits, which need a compiled integrator: prepare it in a job.
         self._subscription = self._jobs.request(
-            WarmupRequest(self._state.unresolved_map_spec()),
+            WarmupRequest(self._state.map_spec()),
             lambda prepared: self._deliver(self._continue, generation, prepared.value),
             lambda error: self._deliver(self._show_error, generation, error),
         )

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 
-TICK_SECONDS = 0.1
+TICK_SECONDS = 0.02
 """Interval between two calls of `LoadMonitor.tick`."""
 
 HIGH_SECONDS = 0.05
 """Delay of a tick above which the load is high."""
 
-# Factor by which a delay decays per tick: the load is normal again half a second after a peak.
-_DECAY = 0.7
+# Factor by which a delay decays per tick, 0.7 in 0.1 s: the load is normal again half a second after a peak.
+_DECAY = 0.7 ** (TICK_SECONDS / 0.1)
 
 LONGEST_SECONDS = 2.0
 """A high load is reported as normal for one tick after this time, so that postponed work is delayed but never starved."""
@@ -25,8 +25,8 @@ class LoadMonitor:
         self._high_since: float | None = None
         self.delay = 0.0
 
-    def tick(self) -> None:
-        """Measure the delay; call every `TICK_SECONDS` on the event loop."""
+    def tick(self) -> float:
+        """Measure and return the delay in seconds; call every `TICK_SECONDS` on the event loop."""
         now = time.monotonic()
         late = max(0.0, now - self._due) if self._due is not None else 0.0
         self.delay = max(late, _DECAY * self.delay)
@@ -35,6 +35,11 @@ class LoadMonitor:
             self._high_since = None
         elif self._high_since is None:
             self._high_since = now
+        return late
+
+    def overdue_seconds(self) -> float:
+        """Time since the next tick was due, negative before; for other threads."""
+        return time.monotonic() - self._due if self._due is not None else 0.0
 
     def is_high(self) -> bool:
         """Whether work other than first frames should be postponed."""

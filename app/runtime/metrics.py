@@ -11,6 +11,8 @@ NAMESPACE = "escape_explorer"
 # Seconds; from an immediate answer to waiting for a compilation.
 _FIRST_FRAME_BUCKETS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
 
+_DELAY_BUCKETS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
+
 
 class ServerMetrics:
     """Counters of a process, in a registry of their own."""
@@ -22,6 +24,14 @@ class ServerMetrics:
         self.pages_refused = self._counter("pages_refused", "Page requests refused because the server was full or stopping")
         self.messages_delayed = self._counter("messages_delayed", "Messages delayed because their page took more than its share")
         self.log_records = self._counter("log_records", "Warnings and errors in the log", "level", "exception")
+        self.loop_delays = Histogram(
+            "event_loop_delay_seconds",
+            "Seconds by which the event loop was late, by cause",
+            ["cause"],
+            namespace=NAMESPACE,
+            registry=self.registry,
+            buckets=_DELAY_BUCKETS,
+        )
         self.first_frame = Histogram(
             "first_frame_seconds",
             "Seconds from the request for a map to its first frame",

@@ -40,6 +40,7 @@ from engine.service import (
     StableManifoldsRequest,
     TrustRequest,
     UncertaintyExponentRequest,
+    is_ready_for_maps,
 )
 from plots.manifold_strokes import select_image
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
@@ -212,6 +213,9 @@ class AnalysisPresenter:
     # Measurements started by buttons.
 
     def _measure(self) -> None:
+        if not is_ready_for_maps(self._state.potential):
+            self.measures.say("The window is not known before the integrator is compiled.")
+            return
         try:
             spec = UncertaintyExponentRequest(self._state.map_spec())
         except ValueError as error:
@@ -228,7 +232,7 @@ class AnalysisPresenter:
         if self.curves.running:
             self._stop_sweep()
             return
-        state, energies = self._state, self._state.system.energies
+        state, energies = self._state, self._state.energies
         plane = state.plane if state.plane.energy_axis is None else SECTION.plane
         swept = np.round(np.linspace(energies.low, energies.high, SWEPT_ENERGIES), 4).tolist()
         self.curves.show_running(True)

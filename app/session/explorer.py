@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from functools import partial
 from typing import Any
 from urllib.parse import parse_qsl
 
@@ -24,8 +24,9 @@ from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
 from app.state.navigation import window_moves
-from app.state.permalink import LINKED, read_link, write_link
+from app.state.permalink import LINKED, fit_to_system, linked_system, read_link, refused_link, without_system, write_link
 from app.state.presets import Preset
+from app.state.system_review import SystemReview, is_known, review_catalogue_entry
 from app.state.view_state import SYSTEM, Analysis, ViewState
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.analysis_choice import AnalysisTabs
@@ -43,7 +44,7 @@ from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
 from engine import EscapeMap, Fate, Potential, Window
-from engine.service import JobClient, System, describe_fate, seconds_until_ready_for_maps
+from engine.service import JobClient, System, describe_fate, is_ready_for_maps, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
 
 
@@ -54,10 +55,10 @@ class Explorer:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
         parameters = _parameters()
-        values, self._problems = read_link(parameters)
+        self._link, self._problems = read_link(parameters)
         # A tour over a shared view would hide it.
         self._offers_tour = not parameters
-        self.state = ViewState(**values)
+        self.state = self._first_state()
         self._document = document
         self._countdown: Any = None
         callbacks = SessionCallbacks(document)
@@ -162,10 +163,42 @@ class Explorer:
             self.maps.set_dark(dark)
             self.orbits.plots.outlines.set_dark(dark)
 
+    def _first_state(self) -> ViewState:
+        """The view of the link, with the first system in place of one that must be reviewed."""
+        system = linked_system(self._link)
+        if not is_known(system):
+            return ViewState(**without_system(self._link))
+        fitting, problems = fit_to_system(self._link, review_catalogue_entry(system.case))
+        self._problems += problems
+        return ViewState(case=system.case, **fitting)
+
     def _begin(self) -> None:
-        """Request the map and the orbits of the state, and show the problems of the link."""
+        """Show the view of the link as soon as its system is reviewed."""
+        system = linked_system(self._link)
+        if is_known(system):
+            self._begin_view()
+        else:
+            self.progress.show_reviewing()
+            self.potential.open(system, self._begin_with, self._begin_without)
+
+    def _begin_with(self, reviewed: SystemReview) -> None:
+        """Show the view of a link with the system that it names."""
+        self._problems += self._show_linked(self._link, reviewed)
+        self.potential.panel.section.open(True)
+        self._show_problems()
+
+    def _begin_without(self, problem: str) -> None:
+        """Show the first view in place of a system that is refused."""
+        self._problems.append(refused_link(problem))
+        self._begin_view()
+
+    def _begin_view(self) -> None:
+        """Request the map and the orbits of the state, which later follow its changes."""
         self.map_requests.request_map()
         self.orbits.begin()
+        self._show_problems()
+
+    def _show_problems(self) -> None:
         if self._problems:
             self.notice.warn(" ".join(self._problems))
 
@@ -183,15 +216,24 @@ class Explorer:
         """Show the state of a link in the browser's history."""
         self.browser.follow_steps(steps)
         values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
-        shown = ViewState(**values)
         self.history.move_to(entry)
+        self.potential.open(linked_system(values), partial(self._show_linked, values), self._warn_of_link)
+
+    def _warn_of_link(self, problem: str) -> None:
+        self.notice.warn(refused_link(problem))
+
+    def _show_linked(self, values: dict[str, Any], reviewed: SystemReview) -> list[str]:
+        """Show the values of a link with its system; returns messages for invalid ones."""
+        fitting, problems = fit_to_system(values, reviewed)
+        shown = ViewState(**fitting)
         self._navigating = True
         try:
             with pn.io.hold():
-                self.state.param.update(**{name: getattr(shown, name) for name in LINKED})
+                self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
             self._navigating = False
         self._follow_history()
+        return problems
 
     def _set_palette(self) -> None:
         palette = self.state.colours
@@ -210,18 +252,26 @@ class Explorer:
             case Act.PLAY:
                 self._play()
             case Act.ZOOM:
-                window_moves(state)["+"]()
+                self._press("+")
             case Act.ORBIT:
-                window = state.map_spec().find_window()
-                x = 0.6 * window.x_low + 0.4 * window.x_high
-                ordinate = 0.6 * window.ordinate_low + 0.4 * window.ordinate_high
-                self._add_start(*self.maps.snapped(x, ordinate))
+                self._add_example()
             case Act.TWIN:
                 self.orbits.find_divergent_start()
             case Act.LAYER:
                 state.judge = True
             case Act.GALLERY:
                 self.drawers.show("gallery")
+
+    def _add_example(self) -> None:
+        """Add a start beside the middle of the window."""
+        try:
+            window = self._window()
+        except ValueError as error:
+            self.notice.warn(str(error))
+            return
+        x = 0.6 * window.x_low + 0.4 * window.x_high
+        ordinate = 0.6 * window.ordinate_low + 0.4 * window.ordinate_high
+        self._add_start(*self.maps.snapped(x, ordinate))
 
     def _begin_touch(self) -> None:
         self.toolbar.begin_touch()
@@ -275,7 +325,8 @@ class Explorer:
 
     def _show_preset(self, preset: Preset) -> None:
         self.engine.stop()
-        self.state.param.update(chosen=0, **(asdict(System(preset.case)) | preset.values()))
+        show = partial(self.state.show, chosen=0, **preset.values())
+        self.potential.open(System(preset.case), show, self.notice.warn)
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")
@@ -286,7 +337,7 @@ class Explorer:
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""
         moves: dict[str, Callable[[], Any]] = {
-            **window_moves(self.state),
+            **window_moves(self.state, self._window),
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
             "p": self._play,
@@ -297,6 +348,12 @@ class Explorer:
             moves[key]()
         except ValueError as error:
             self.notice.warn(str(error))
+
+    def _window(self) -> Window:
+        """The window in view; ValueError while it is not known, as the event loop must not compile the kernels that find it."""
+        if self.state.window is None and not is_ready_for_maps(self.state.potential):
+            raise ValueError("The window is not known before the integrator is compiled.")
+        return self.state.map_spec().find_window()
 
     def _escape(self) -> None:
         """Close the open drawer, or stop the animation, or else the map."""
@@ -311,13 +368,13 @@ class Explorer:
         if self.engine.playing:
             self.engine.stop()
         elif self.state.plane.energy_axis is None:
-            energies = self.state.system.energies
+            energies = self.state.energies
             self.engine.play(self.state.energy, energies.low, energies.high)
             self.controls.show_playing(True)
 
     def _end_animation(self, energy: float) -> None:
         self.controls.show_playing(False)
-        self.state.energy = round(energy, self.state.system.energies.decimals)
+        self.state.energy = round(energy, self.state.energies.decimals)
 
     # Results of requests.
 

@@ -1,14 +1,36 @@
-"""Choice of the potential: validated in the background, shown with its properties, and used if it is valid."""
+"""Choice of the potential: reviewed in the background, shown with its properties, and used if it is valid."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
+from app.job_clients.system_reviews import SystemReviewRequest
+from app.state.system_review import SystemReview, is_known, review_catalogue_entry
 from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import PotentialPanel
-from engine import CASES, Potential, PotentialReview
-from engine.service import Answer, JobSubmitter, PotentialReviewRequest, System
-from plots.accepted_potentials import refusal
+from engine.service import Answer, JobSubmitter, System
+
+
+@dataclass(frozen=True)
+class _Proposal:
+    """A system under review.
+
+    Attributes
+    ----------
+    system
+        The system.
+    use
+        Called with the review of a valid system; None if only its properties are shown.
+    refuse
+        Called with the reason if it cannot be used; None if it stands beside the text.
+    """
+
+    system: System
+    use: Callable[[SystemReview], object] | None = None
+    refuse: Callable[[str], None] | None = None
 
 
 class PotentialPresenter:
@@ -16,13 +38,11 @@ class PotentialPresenter:
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, locked: Locked) -> None:
         self._state = state
-        # The system under review, and whether it is to be used.
-        self._proposed: tuple[System, bool] | None = None
-        self._reviews: dict[Potential, PotentialReview] = {}
-        self.panel = PotentialPanel(locked(self._preview), locked(self._choose))
-        self._request = LatestRequest(jobs, self._on_review, self.panel.say, locked)
+        self._proposal: _Proposal | None = None
+        self._last: SystemReview | None = None
+        self.panel = PotentialPanel(state.reviewed, locked(self._preview), locked(self._choose))
+        self._request = LatestRequest(jobs, self._on_review, self._on_failure, locked)
         state.param.watch(lambda *events: self._follow(), list(SYSTEM))
-        self.panel.section.open(state.case not in CASES or bool(state.system.changed))
         self._follow()
 
     def toggle(self) -> None:
@@ -31,57 +51,76 @@ class PotentialPresenter:
         if self.panel.section.is_open:
             self._preview(self.panel.shown)
 
+    def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
+        """Review the system of a link, a preset or the browser's history, then use or refuse it; at once if it is known."""
+        self._propose(_Proposal(system, use, refuse))
+
     def close(self) -> None:
         """Cancel the request at the end of the session."""
         self._request.cancel()
 
     def _preview(self, system: System) -> None:
-        self._propose(system, use=False)
+        # The event of the last letter may arrive after Enter.
+        if self._proposal is None or self._proposal.system != system:
+            self._propose(_Proposal(system))
 
     def _choose(self, system: System) -> None:
-        self._propose(system, use=system != self._state.system)
+        use = None if system == self._state.system else lambda reviewed: self._use(reviewed)
+        self._propose(_Proposal(system, use))
 
-    def _propose(self, system: System, *, use: bool) -> None:
-        """Review a system, unless its review is cached; `use` shows it if it is valid."""
-        try:
-            potential = system.potential
-        except ValueError as error:
+    def _use(self, reviewed: SystemReview) -> None:
+        self._state.show_system(reviewed, self._energy_for(reviewed))
+
+    def _propose(self, proposal: _Proposal) -> None:
+        """Review a system, unless its review is known."""
+        self._proposal = proposal
+        known = self._known_review(proposal.system)
+        if known is not None:
             self._request.cancel()
-            self._proposed = None
-            self.panel.say(str(error))
-            return
-        # The event of the last letter may arrive after Enter.
-        self._proposed = system, use or self._proposed == (system, True)
-        if potential in self._reviews:
-            self._show(self._reviews[potential])
+            self._show(known)
         else:
-            self._request.submit(PotentialReviewRequest(potential))
+            self.panel.wait()
+            self._request.submit(SystemReviewRequest(proposal.system))
 
-    def _on_review(self, answer: Answer[PotentialReview]) -> None:
-        self._reviews = {answer.value.potential: answer.value}
+    def _known_review(self, system: System) -> SystemReview | None:
+        if is_known(system):
+            return review_catalogue_entry(system.case)
+        return next((known for known in (self._state.reviewed, self._last) if known is not None and known.system == system), None)
+
+    def _on_review(self, answer: Answer[SystemReview]) -> None:
+        self._last = answer.value
         self._show(answer.value)
 
-    def _show(self, review: PotentialReview) -> None:
-        if self._proposed is None:
-            return
-        system, use = self._proposed
-        self._proposed = system, False
-        problem = refusal(review)
-        if use and problem is None:
-            self._state.show_system(system, self._energy_for(system))
+    def _on_failure(self, sentence: str) -> None:
+        proposal, self._proposal = self._proposal, None
+        if proposal is not None and proposal.refuse is not None:
+            proposal.refuse(sentence)
         else:
-            self.panel.show(review, problem)
+            self.panel.say(sentence)
 
-    def _energy_for(self, system: System) -> float | None:
+    def _show(self, reviewed: SystemReview) -> None:
+        proposal, self._proposal = self._proposal, None
+        if proposal is None:
+            return
+        if reviewed.problem is not None and proposal.refuse is not None:
+            proposal.refuse(reviewed.problem)
+        elif reviewed.problem is None and proposal.use is not None:
+            proposal.use(reviewed)
+        else:
+            self.panel.show(reviewed.review, reviewed.problem)
+
+    def _energy_for(self, reviewed: SystemReview) -> float | None:
         """Energy in the same ratio to the escape energy as before; None for another potential."""
-        before = self._state.system
-        if (system.case, system.formula) != (before.case, before.formula):
+        before, system = self._state.reviewed, reviewed.system
+        if (system.case, system.formula) != (before.system.case, before.system.formula) or reviewed.energies is None:
             return None
-        ratio = system.potential.escape_energy / before.potential.escape_energy
-        return round(float(self._state.energy * ratio), system.energies.decimals + 1)
+        ratio = reviewed.review.escape_energy / before.review.escape_energy
+        return round(float(self._state.energy * ratio), reviewed.energies.decimals + 1)
 
     def _follow(self) -> None:
-        """Follow the view state."""
-        self.panel.follow(self._state.system)
+        """Follow the view state; a system that is still under review comes too late."""
+        self._proposal = None
+        self._request.cancel()
+        self.panel.follow(self._state.reviewed)
         if self.panel.section.is_open:
             self._preview(self._state.system)

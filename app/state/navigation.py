@@ -34,19 +34,22 @@ def zoom(window: Window, factor: float) -> Window:
     return Window(x - half_x, x + half_x, ordinate - half, ordinate + half)
 
 
-def window_moves(state: ViewState) -> dict[str, Callable[[], None]]:
-    """Actions of the keys that move the window of a view state; they raise ValueError at the limit of double precision."""
+def window_moves(state: ViewState, find_window: Callable[[], Window]) -> dict[str, Callable[[], None]]:
+    """Actions of the keys that move the window of a view state; they raise ValueError at the limit of double precision.
+
+    `find_window` returns the window in view, which is not that of the state if that is None.
+    """
 
     def show(change: Callable[[Window], Window | None]) -> Callable[[], None]:
         def act() -> None:
-            state.window = change(state.map_spec().find_window())
+            state.window = change(find_window())
 
         return act
 
     return {
         "+": show(lambda window: zoom(window, ZOOM_FACTOR)),
         "-": show(lambda window: zoom(window, 1.0 / ZOOM_FACTOR)),
-        "h": show(lambda window: None),
+        "h": lambda: state.param.update(window=None),
         **{arrow: show(partial(_pan_by, arrow)) for arrow in DIRECTIONS},
     }
 

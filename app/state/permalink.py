@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, astuple
+from dataclasses import astuple
 from typing import Any
 from urllib.parse import urlencode
 
 import numpy as np
 
+from app.state.system_review import SystemReview
 from app.state.view_state import (
     IMAGE_CHOICES,
     LAYERS,
@@ -20,9 +21,8 @@ from app.state.view_state import (
     allowed_resolutions,
     allowed_t_max,
 )
-from engine import CASES, POTENTIALS, Plane, Window, review_potential
+from engine import POTENTIALS, Plane, Window
 from engine.service import FREQUENCIES, LARGEST_NUMBER, LONGEST_TEXT, STRENGTHS, TYPED, System
-from plots.accepted_potentials import refusal
 from plots.palette import MOST_ORBITS, PALETTES
 
 LONGEST_VALUE = LONGEST_TEXT
@@ -65,7 +65,7 @@ def write_link(state: ViewState) -> str:
 
 
 def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
-    """Parse the parameters of a link.
+    """Parse the parameters of a link; its potential is reviewed later, see `linked_system` and `fit_to_system`.
 
     Parameters
     ----------
@@ -91,41 +91,44 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
             values[attribute] = read(text)
         except (ValueError, KeyError):
             problems.append(f"Ignored {_quoted(name, text)}: choose {legal}.")
-    values, problem = _with_system(values)
-    problems += [problem] if problem else []
-    values, problem = _with_energy(values)
-    problems += [problem] if problem else []
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     return values, problems
 
 
-def _with_system(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
-    """Complete the values by a system and its energy; drop an invalid system and return the reason."""
-    asked = {name: values[name] for name in SYSTEM if name in values}
-    if not asked:
-        return values, ""
-    defaults: dict[str, Any] = {"case": TYPED if "formula" in asked else ViewState.param.case.default}
-    system = System(**(defaults | asked))
-    try:
-        problem = None if system.case in CASES and not system.changed else refusal(review_potential(system.potential))
-    except ValueError as error:
-        problem = str(error)
-    if problem is None:
-        return {"energy": system.energies.first} | values | asdict(system), ""
-    # What belongs to another system is meaningless for the default one.
-    others = {name: value for name, value in values.items() if name not in (*SYSTEM, *_OF_SYSTEM)}
-    return others, f"Ignored the potential in the link: {problem}"
+def linked_system(values: Mapping[str, Any]) -> System:
+    """The system of the values of a link, not reviewed yet; that of the first view if they name none."""
+    named: dict[str, Any] = {"case": TYPED if "formula" in values else ViewState.param.case.default}
+    return System(**(named | {name: values[name] for name in SYSTEM if name in values}))
 
 
-def _with_energy(values: dict[str, Any]) -> tuple[dict[str, Any], str]:
-    """Drop an energy below the well, and return the reason."""
-    system = System(**({"case": ViewState.param.case.default} | {name: values[name] for name in SYSTEM if name in values}))
-    lowest, first = float(system.potential.value(0.0, 0.0)), system.energies.first
-    if values.get("energy", first) > lowest:
-        return values, ""
-    problem = f"Ignored h={values['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
-    return values | {"energy": first}, problem
+def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a link that have a meaning for any system."""
+    return {name: value for name, value in values.items() if name not in (*SYSTEM, *_OF_SYSTEM)}
+
+
+def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[dict[str, Any], list[str]]:
+    """The values of a link to show together with its system, and a message for an invalid one.
+
+    Parameters
+    ----------
+    values
+        Values of `read_link`.
+    reviewed
+        The review of their `linked_system`, which is not refused.
+    """
+    assert reviewed.energies is not None, "a refused system is not shown"
+    lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.energies.first
+    shown = {"energy": first} | {name: value for name, value in values.items() if name not in SYSTEM}
+    if shown["energy"] > lowest:
+        return shown, []
+    problem = f"Ignored h={shown['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
+    return shown | {"energy": first}, [problem]
+
+
+def refused_link(problem: str) -> str:
+    """The message for a link whose system is refused."""
+    return f"Ignored the potential in the link: {problem}"
 
 
 def _quoted(name: str, text: str) -> str:

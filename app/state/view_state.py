@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import reprlib
-from dataclasses import fields
+from dataclasses import asdict, fields
 from enum import StrEnum
 from typing import Any
 
@@ -11,8 +11,9 @@ import numpy as np
 import param
 
 from app.runtime.process_state import process_state
+from app.state.system_review import SystemReview, review_catalogue_entry
 from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
-from engine.service import FREQUENCIES, LARGEST_NUMBER, PAPER_ENERGIES, STRENGTHS, TYPED, OrbitRequest, System, UnresolvedMapSpec
+from engine.service import FREQUENCIES, LARGEST_NUMBER, PAPER_ENERGIES, STRENGTHS, TYPED, EnergyRange, OrbitRequest, System
 from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
@@ -118,6 +119,7 @@ class ViewState(param.Parameterized):
         t_max, resolutions = list(allowed_t_max().values()), list(allowed_resolutions().values())
         super().__init__(t_max=min(1e5, t_max[-1]), resolution=min(DEFAULT_SIDE, resolutions[-1]))
         self.param.t_max.objects, self.param.resolution.objects = t_max, resolutions
+        self._reviewed = review_catalogue_entry(self.case)
         self.param.update(**values)
 
     @property
@@ -126,9 +128,25 @@ class ViewState(param.Parameterized):
         return System(self.case, self.formula, float(self.omega_1), float(self.omega_2), float(self.epsilon))
 
     @property
+    def reviewed(self) -> SystemReview:
+        """The chosen system with its review; RuntimeError if it is no catalogue entry and `show` did not get its review."""
+        if self._reviewed.system != self.system:
+            if self.case == TYPED or self.system.changed:
+                raise RuntimeError(f"{self.system} has not been reviewed")
+            self._reviewed = review_catalogue_entry(self.case)
+        return self._reviewed
+
+    @property
     def potential(self) -> Potential:
         """The potential of the chosen system."""
-        return self.system.potential
+        return self.reviewed.potential
+
+    @property
+    def energies(self) -> EnergyRange:
+        """The energy range of the chosen system."""
+        energies = self.reviewed.energies
+        assert energies is not None, "a refused system is not shown"
+        return energies
 
     @property
     def colours(self) -> Palette:
@@ -142,24 +160,16 @@ class ViewState(param.Parameterized):
 
     def map_spec(self) -> MapSpec:
         """Specification of the map; ValueError if a choice is invalid."""
-        return self.unresolved_map_spec().spec()
-
-    def unresolved_map_spec(self) -> UnresolvedMapSpec:
-        """Specification of the map whose window may not be known yet."""
-        return self.unresolved_map_spec_at(self.energy)
-
-    def unresolved_map_spec_at(self, h: float) -> UnresolvedMapSpec:
-        """The same at energy `h`."""
-        energy: float | tuple[float, float] = h
+        energy: float | tuple[float, float] = self.energy
         if self.plane.energy_axis is not None:
-            energy = (self.potential.escape_energy, self.system.energies.high)
-        return UnresolvedMapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
+            energy = (self.potential.escape_energy, self.energies.high)
+        return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def orbit_spec(self, start: Start) -> OrbitRequest | None:
         """Request for the orbit of a start; None if the start is forbidden at this energy."""
         x, ordinate = (np.array([value]) for value in start)
-        x0, y, px, py = (float(value) for value in start_states(self.potential, self.plane, self.energy, x, ordinate)[0])
-        return OrbitRequest(self.potential, (x0, y, px, py), self.t_max) if np.isfinite(py) else None
+        x0, y, px, py = state = start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist()
+        return OrbitRequest(self.potential, (x0, y, px, py), self.t_max) if np.isfinite(state).all() else None
 
     def add_start(self, start: Start) -> bool:
         """Add a start and choose it; returns False if there are `MOST_ORBITS` others already."""
@@ -169,11 +179,15 @@ class ViewState(param.Parameterized):
             self.param.update(starts=(*self.starts, start), chosen=len(self.starts))
         return start in self.starts
 
-    def show_system(self, system: System, energy: float | None = None) -> None:
-        """Select a system at an energy, by default its initial energy, and remove window and starts."""
-        chosen = {name: getattr(system, name) for name in SYSTEM}
-        energy = system.energies.first if energy is None else energy
-        self.param.update(**chosen, energy=energy, window=None, starts=(), chosen=0)
+    def show(self, reviewed: SystemReview, **values: Any) -> None:
+        """Select a reviewed system together with other values."""
+        self._reviewed = reviewed
+        self.param.update(**{**values, **asdict(reviewed.system)})
+
+    def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
+        """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
+        assert reviewed.energies is not None, "a refused system is not shown"
+        self.show(reviewed, energy=reviewed.energies.first if energy is None else energy, window=None, starts=(), chosen=0)
 
     def remove_start(self, place: int) -> None:
         """Remove the start at an index."""

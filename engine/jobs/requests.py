@@ -14,7 +14,6 @@ from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import PotentialReview, review_potential
 from engine.slices.slice import Energy, Slice
 from engine.slices.window import Window
 from engine.statistics.decay_law_fits import fit_decay_laws
@@ -109,44 +108,17 @@ class DivergentStartRequest:
 
 
 @dataclass(frozen=True)
-class PotentialReviewRequest:
-    """Request for the validation report of a potential: the argument of `review_potential`."""
-
-    potential: Potential
-
-    def run(self, context: JobContext) -> Answer[PotentialReview]:
-        """Review the potential."""
-        return Answer(context.executor.submit(review_potential, self.potential).result(), nbytes=8192)
-
-
-@dataclass(frozen=True)
-class UnresolvedMapSpec:
-    """The arguments of `MapSpec`, not validated yet; a window of None is not replaced by the default window yet."""
-
-    potential: Potential
-    plane: Slice
-    energy: Energy
-    resolution: tuple[int, int]
-    window: Window | None
-    t_max: float
-
-    def spec(self) -> MapSpec:
-        """Return the validated spec. The default window needs Lyapunov orbits: milliseconds, and compiled kernels."""
-        system = (self.potential, self.plane, self.energy, self.resolution)
-        return MapSpec(*system, self.window, self.t_max)
-
-
-@dataclass(frozen=True)
 class WarmupRequest:
-    """Request to compile the kernels of a map and resolve its spec."""
+    """Request to compile the kernels of a map and find its window."""
 
-    unresolved: UnresolvedMapSpec
+    map_spec: MapSpec
 
     def run(self, context: JobContext) -> Answer[MapSpec]:
         """Compile what is not compiled yet. Raises ValueError if the spec is not valid."""
-        if not is_ready_for_maps(self.unresolved.potential):
-            context.compilation_executor.submit(prepare_for_maps, self.unresolved.potential).result()
-        return Answer(self.unresolved.spec())
+        if not is_ready_for_maps(self.map_spec.potential):
+            context.compilation_executor.submit(prepare_for_maps, self.map_spec.potential).result()
+        self.map_spec.find_window()
+        return Answer(self.map_spec)
 
 
 @dataclass(frozen=True)

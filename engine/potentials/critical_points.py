@@ -7,12 +7,12 @@ method refines them, and starts on a grid find roots whose eigenvalues are too i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from decimal import Decimal, localcontext
 
 import numpy as np
 
-from engine.polynomials import Powers, Terms, degree, derivative, evaluate, largest_coefficients, substitute
+from engine.polynomials import Terms, degree, derivative, evaluate, largest_coefficients, substitute
+from engine.potentials.common_factor import have_common_factor
 
 # Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x.
 _ROTATION_ANGLES = (0.7390851332151607, 2.1)
@@ -24,8 +24,12 @@ _DEGENERATE_ROOT_TOLERANCE = 1e-3
 # Largest ratio of the singular values of a Jacobian that counts as singular.
 _SINGULAR_RATIO = 1e-6
 _RESIDUAL_TOLERANCE = 1e-12
+# At the distance of `_DEGENERATE_ROOT_TOLERANCE`, a Jacobian above this exceeds the residual tolerance.
+_ZERO_JACOBIAN = 1e-8
 _NEWTON_STEPS = 60
 _MANY_DIGITS = 60
+# Limit on the steps with many digits, about 0.1 ms each, for all points. Potentials with a well need less than 200.
+_MOST_EXACT_STEPS = 16_000
 _GRID = np.linspace(-3.0, 3.0, 31)
 # Eigenvalues beyond this distance are infinite ones with rounding errors, and Newton's method is on its way to infinity.
 _LARGEST_ROOT = 1e5
@@ -35,8 +39,16 @@ _MOST_REFINEMENTS = 60
 _LARGEST_ROTATION = 0.5
 
 
+_ON_A_CURVE = "the two polynomials vanish along a common curve: their common roots are not isolated points"
+_TOO_DEGENERATE = "Whether all points where the force vanishes are isolated cannot be decided with the steps allowed."
+
+
 class NotIsolatedError(ValueError):
     """The common roots of two polynomials form a curve, so they cannot be listed."""
+
+
+class UndecidedError(ValueError):
+    """The common roots are not found within the limit on the steps in exact arithmetic."""
 
 
 def find_critical_points(first: Terms, second: Terms) -> np.ndarray:
@@ -55,6 +67,8 @@ def find_critical_points(first: Terms, second: Terms) -> np.ndarray:
     ------
     NotIsolatedError
         If a polynomial is zero everywhere, or both vanish along a curve.
+    UndecidedError
+        If there are too many degenerate points to refine, as around a root of high multiplicity.
     """
     first, second = ({powers: c for powers, c in terms.items() if c} for terms in (first, second))
     if not first or not second:
@@ -67,7 +81,7 @@ def find_critical_points(first: Terms, second: Terms) -> np.ndarray:
     points = _unique_points(p, q, _newton_roots(p, q, np.concatenate(starts)))
     # Bézout's theorem: two polynomials without a common factor have no more common roots than this.
     if len(points) > degree(p) * degree(q):
-        raise NotIsolatedError("the two polynomials vanish along a common curve: their common roots are not isolated points")
+        raise NotIsolatedError(_ON_A_CURVE)
     return points * length
 
 
@@ -192,12 +206,15 @@ def _dense_coefficients(terms: Terms, highest: int) -> np.ndarray:
 
 
 def _unique_points(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
-    """Each of the points once."""
+    """Each of the points once; NotIsolatedError if they form a curve."""
     tolerance = np.where(_is_degenerate(p, q, points), _DEGENERATE_ROOT_TOLERANCE, _SIMPLE_ROOT_TOLERANCE)
     unique = points[_distinct(points, tolerance)]
-    refined = [
-        _refined_root(p, q, point) if flat else point for point, flat in zip(unique, _is_degenerate(p, q, unique), strict=True)
-    ]
+    degenerate = _is_degenerate(p, q, unique)
+    # Before any of them is refined, which takes milliseconds each.
+    if np.count_nonzero(degenerate & _has_tangent(p, q, unique)) > degree(p) + degree(q) and have_common_factor(p, q):
+        raise NotIsolatedError(_ON_A_CURVE)
+    newton = _ExactNewton(p, q)
+    refined = [newton.refine(point) if flat else point for point, flat in zip(unique, degenerate, strict=True)]
     roots = np.array([root for root in refined if root is not None]).reshape(-1, 2)
     # Several inaccurate points can be refined to one root.
     return roots[_distinct(roots, np.full(len(roots), _SIMPLE_ROOT_TOLERANCE))]
@@ -213,32 +230,56 @@ def _distinct(points: np.ndarray, tolerance: np.ndarray) -> list[int]:
     return distinct
 
 
-def _refined_root(p: Terms, q: Terms, point: np.ndarray) -> np.ndarray | None:
-    """The common root to which Newton's method with many digits converges; None if the point is one to rounding errors only."""
-    polynomials = (p, q, *(derivative(f, axis) for f in (p, q) for axis in (0, 1)))
-    with localcontext(prec=_MANY_DIGITS):
-        exact = [{powers: Decimal(c) for powers, c in f.items()} for f in polynomials]
-        x, y = (Decimal(float(coordinate)) for coordinate in point)
-        step = Decimal(1)
-        for _ in range(_NEWTON_STEPS):
-            f, g, px, py, qx, qy = (_exact_value(terms, x, y) for terms in exact)
-            determinant = px * qy - py * qx
-            if not determinant:
-                step = abs(f) + abs(g)
-                break
-            dx, dy = (f * qy - g * py) / determinant, (g * px - f * qx) / determinant
-            x, y, step = x - dx, y - dy, abs(dx) + abs(dy)
-        return np.array([float(x), float(y)]) if step < Decimal(_SIMPLE_ROOT_TOLERANCE) else None
+class _ExactNewton:
+    """Newton's method with many digits for a common root of two polynomials."""
 
+    def __init__(self, p: Terms, q: Terms) -> None:
+        polynomials = (p, q, *(derivative(f, axis) for f in (p, q) for axis in (0, 1)))
+        with localcontext(prec=_MANY_DIGITS):
+            self._exact = [{powers: Decimal(c) for powers, c in f.items()} for f in polynomials]
+        self._powers = range(max(degree(p), degree(q)) + 1)
+        self._steps_left = _MOST_EXACT_STEPS
 
-def _exact_value(terms: Mapping[Powers, Decimal], x: Decimal, y: Decimal) -> Decimal:
-    # Decimals refuse 0 to the power 0.
-    return sum((c * (x**i if i else 1) * (y**j if j else 1) for (i, j), c in terms.items()), Decimal(0))
+    def refine(self, point: np.ndarray) -> np.ndarray | None:
+        """The root to which a point converges; None if the point is a root to rounding errors only."""
+        with localcontext(prec=_MANY_DIGITS):
+            x, y = (Decimal(float(coordinate)) for coordinate in point)
+            step = Decimal(1)
+            for _ in range(_NEWTON_STEPS):
+                f, g, px, py, qx, qy = self._values(x, y)
+                determinant = px * qy - py * qx
+                if not determinant:
+                    step = abs(f) + abs(g)
+                    break
+                dx, dy = (f * qy - g * py) / determinant, (g * px - f * qx) / determinant
+                x, y, step = x - dx, y - dy, abs(dx) + abs(dy)
+            return np.array([float(x), float(y)]) if step < Decimal(_SIMPLE_ROOT_TOLERANCE) else None
+
+    def _values(self, x: Decimal, y: Decimal) -> list[Decimal]:
+        if not self._steps_left:
+            raise UndecidedError(_TOO_DEGENERATE)
+        self._steps_left -= 1
+        # Decimals refuse 0 to the power 0.
+        x_powers, y_powers = ([axis**k if k else Decimal(1) for k in self._powers] for axis in (x, y))
+        return [sum((c * x_powers[i] * y_powers[j] for (i, j), c in terms.items()), Decimal(0)) for terms in self._exact]
 
 
 def _is_degenerate(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
     """(n,) whether the Jacobian of (p, q) is singular at each common root: the curves p = 0 and q = 0 touch there."""
-    jacobian = [[evaluate(derivative(f, axis), *points.T) for axis in (0, 1)] for f in (p, q)]
-    singular_values = np.linalg.svd(np.moveaxis(np.array(jacobian), -1, 0), compute_uv=False)
-    flags: np.ndarray = singular_values[:, 1] <= _SINGULAR_RATIO * np.maximum(singular_values[:, 0], 1.0)
+    largest, smallest = _singular_values(p, q, points)
+    flags: np.ndarray = smallest <= _SINGULAR_RATIO * np.maximum(largest, 1.0)
     return flags
+
+
+def _has_tangent(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
+    """(n,) whether the Jacobian of (p, q) is far from zero at each common root; on a common curve its kernel is the tangent."""
+    largest, _ = _singular_values(p, q, points)
+    flags: np.ndarray = largest > _ZERO_JACOBIAN * (1.0 + np.hypot(*points.T)) ** (max(degree(p), degree(q)) - 1)
+    return flags
+
+
+def _singular_values(p: Terms, q: Terms, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) the larger and (n,) the smaller singular value of the Jacobian of (p, q) at each point."""
+    jacobian = [[evaluate(derivative(f, axis), *points.T) for axis in (0, 1)] for f in (p, q)]
+    largest, smallest = np.linalg.svd(np.moveaxis(np.array(jacobian), -1, 0), compute_uv=False).T
+    return largest, smallest

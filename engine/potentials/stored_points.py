@@ -50,6 +50,6 @@ def stored_points(kind: str, terms: Terms, find: Callable[[], np.ndarray]) -> np
 def _versions() -> tuple[str, ...]:
     """Whatever else the results depend on: the modules that find them and the libraries below."""
     engine = Path(__file__).parents[1]
-    modules = (engine / f"{name}.py" for name in ("polynomials", "potentials/critical_points", "potentials/exit_saddles"))
-    sources = (hashlib.sha256(module.read_bytes()).hexdigest() for module in modules)
+    names = ("polynomials", *(f"potentials/{name}" for name in ("critical_points", "common_factor", "exit_saddles")))
+    sources = (hashlib.sha256((engine / f"{name}.py").read_bytes()).hexdigest() for name in names)
     return (*sources, *(metadata.version(package) for package in ("numpy", "scipy")))

@@ -11,7 +11,7 @@ from math import comb
 import numpy as np
 
 from engine.polynomials import HIGHEST_DEGREE, Powers, degree
-from engine.potentials.critical_points import NotIsolatedError, winding_number
+from engine.potentials.critical_points import NotIsolatedError, UndecidedError, winding_number
 from engine.potentials.exit_saddles import DescentError
 from engine.potentials.formula_parser import COEFFICIENT_RANGE, LONGEST_TEXT, MOST_TERMS, write_formula
 from engine.potentials.hill_region import is_open_below
@@ -109,7 +109,8 @@ class PotentialReview(Result):
 def review_potential(potential: Potential) -> PotentialReview:
     """Check whether a potential can be used, without compiling or integrating anything.
 
-    It takes a tenth of a second usually, and about 2 s at most; repeated calls are answered from a cache.
+    It takes a tenth of a second usually, and about 2 s at most; repeated calls are answered from a cache. All iterations have
+    limits on their steps, so that the result does not depend on the speed of the machine.
 
     Parameters
     ----------
@@ -154,6 +155,8 @@ def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoi
         points, _ = _critical_points(potential), potential.channel_mergers
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"
+    except UndecidedError as error:
+        return (), str(error)
     except NotIsolatedError:
         return (), (
             "The force vanishes along a curve instead of at isolated points, as in an infinite valley or a circular potential, "

@@ -12,7 +12,6 @@ from urllib.parse import parse_qsl, urlsplit
 import pytest
 from playwright.sync_api import TimeoutError as Late
 
-from app.state.permalink import read_link
 from app.state.presets import PRESETS
 from app.state.view_state import Analysis, ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
@@ -20,6 +19,7 @@ from app.views.components.numbers import grouped, percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
 from engine.service import OrbitRequest
 from plots.image_columns import longest_typical_time, map_columns
+from tests.app.state.opened_link import open_link
 from tests.browser.explorer_page import ExplorerPage
 
 OPENED = "?case=I&plane=x_px&h=0.19&t_max=100&resolution=112"
@@ -112,9 +112,8 @@ def computed_orbit(request: OrbitRequest) -> Orbit:
 def expected_page(address: str) -> dict[str, Any]:
     """What the page has to show at an address."""
     query = urlsplit(address).query
-    values, problems = read_link(dict(parse_qsl(query)))
+    state, problems = open_link(dict(parse_qsl(query)))
     assert not problems, problems
-    state = ViewState(**values)
     shown = shown_in(state)
     layers = {label: bool(getattr(state, name)) for name, label in LAYER_LABELS.items()}
     analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}

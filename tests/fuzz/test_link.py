@@ -15,6 +15,7 @@ from app.state.permalink import LINKED, read_link, write_link
 from app.state.view_state import SYSTEM, ViewState
 from engine import CASES
 from engine.service import TYPED
+from tests.app.state.opened_link import open_link
 from tests.fuzz.hostile import LONGEST_MESSAGE, STRINGS, floats, formulas, result_or_error, texts
 
 NAMES = (
@@ -37,24 +38,23 @@ links = st.dictionaries(st.sampled_from(NAMES), values, max_size=5)
 
 
 def check(parameters: dict[str, str]) -> None:
-    values, problems = read_link(parameters)
-    assert set(values) <= set(LINKED)
+    assert set(read_link(parameters)[0]) <= set(LINKED)
+    state, problems = open_link(parameters)
     for problem in problems:
         # A message about a formula quotes it; the page escapes it.
         if not problem.startswith(POTENTIAL_PROBLEM):
             assert SAFE.fullmatch(problem), problem
         assert len(problem) <= LONGEST_MESSAGE
     assert len(problems) <= len(parameters) + 1
-    state = ViewState(**values)
     assert state.potential.channels
-    assert state.system.energies.low < state.system.energies.first < state.system.energies.high
+    assert state.energies.low < state.energies.first < state.energies.high
     # Other systems would have to be compiled first.
     if state.case in CASES and not state.system.changed:
         result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     for start in state.starts:
         spec = result_or_error(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
         assert spec is None or len(spec.state) == 4
-    assert read_link(dict(parse_qsl(write_link(state)[1:])))[1] == []
+    assert open_link(dict(parse_qsl(write_link(state)[1:])))[1] == []
 
 
 @given(links)

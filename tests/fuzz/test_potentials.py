@@ -9,12 +9,14 @@ from urllib.parse import parse_qsl
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.permalink import read_link, write_link
+from app.state.permalink import write_link
+from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
 from engine import POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
 from engine.service import PARAMETERS, TYPED, System
 from plots.accepted_potentials import refusal
+from tests.app.state.opened_link import open_link
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
 
 LONGEST_REVIEW = 3.0
@@ -39,14 +41,14 @@ def check_display(system: System, review: PotentialReview) -> None:
     if refusal(review) is not None:
         return
     state = ViewState()
-    state.show_system(system)
-    energies = system.energies
+    state.show_system(review_system(system))
+    energies = state.energies
     assert energies.low < energies.first < energies.high
     assert review.escape_energy < energies.first < review.highest_energy
     assert state.orbit_spec((0.0, 0.0)) is not None
-    values, problems = read_link(dict(parse_qsl(write_link(state)[1:])))
+    again, problems = open_link(dict(parse_qsl(write_link(state)[1:])))
     assert problems == []
-    assert ViewState(**values).potential == system.potential
+    assert again.potential == system.potential
 
 
 @given(term_lists)

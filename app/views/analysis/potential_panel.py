@@ -9,6 +9,7 @@ from typing import Any
 
 import panel as pn
 
+from app.state.system_review import SystemReview
 from app.views.components.collapsible_section import CollapsibleSection
 from app.views.components.widgets import Slider, button
 from engine import POTENTIALS, PotentialReview, write_formula
@@ -31,18 +32,20 @@ class PotentialPanel:
 
     Parameters
     ----------
+    used
+        The system of the maps.
     review
         Called with the system that is being typed.
     apply
         Called with the system that is chosen.
     """
 
-    def __init__(self, review: Callable[[System], None], apply: Callable[[System], None]) -> None:
+    def __init__(self, used: SystemReview, review: Callable[[System], None], apply: Callable[[System], None]) -> None:
         self._review, self._apply = review, apply
-        self._system = System("I")
+        self._used = used
         self._moved: str | None = None
         self._filling = False
-        self.shown = self._system
+        self.shown = used.system
         """The system of the widgets; that of the maps may be another one."""
         known = {f"{entry.title}: {entry.description}": name for name, entry in POTENTIALS.items()}
         self.known = pn.widgets.Select(
@@ -70,16 +73,20 @@ class PotentialPanel:
         text = [self.known, self.formula, hint, self.message, self.move]
         return [*text, parameters, *self.sliders.values(), self.reset, self.facts]
 
-    def follow(self, system: System) -> None:
+    def follow(self, used: SystemReview) -> None:
         """Show the system of the maps."""
-        self._system = system
-        self._show(system)
+        self._used = used
+        self._show(used.system)
 
     def show(self, review: PotentialReview, problem: str | None) -> None:
         """Show the properties of the potential of the widgets, and why it cannot be used."""
         self._write(_alert(problem) if problem else self._is_draft("Press Enter to use this potential."))
         self._offer(review.moved_formula if problem else None)
         self.facts.object = _summary(review) + _points(review) + _remarks(review)
+
+    def wait(self) -> None:
+        """The potential of the widgets is under review."""
+        self._write("<p>Reviewing …</p>")
 
     def say(self, sentence: str) -> None:
         """Show why the potential of the widgets has no properties."""
@@ -89,12 +96,12 @@ class PotentialPanel:
 
     def _write(self, message: str) -> None:
         """Show a message, and what the maps show if it is another potential."""
-        system = self._system
-        self.message.object = message + self._is_draft(f"The maps still show {system.title}: V = {system.formula_shown}")
+        used = self._used
+        self.message.object = message + self._is_draft(f"The maps still show {used.system.title}: V = {used.formula_shown}")
 
     def _is_draft(self, sentence: str) -> str:
         """HTML of a sentence if the widgets do not show the potential of the maps, else empty."""
-        return f"<p>{escape(sentence)}</p>" if self.shown != self._system else ""
+        return f"<p>{escape(sentence)}</p>" if self.shown != self._used.system else ""
 
     def _offer(self, moved: str | None) -> None:
         self._moved, self.move.visible = moved, moved is not None
@@ -130,8 +137,8 @@ class PotentialPanel:
     def _take_known(self, case: str) -> None:
         if case == self.shown.case:
             return
-        if case == self._system.case:
-            self._choose(self._system)
+        if case == self._used.system.case:
+            self._choose(self._used.system)
         else:
             # A typed potential starts from the formula of the previous one.
             self._choose(System(case, write_formula(self.shown.potential, SHOWN_DIGITS) if case == TYPED else ""))
@@ -140,7 +147,7 @@ class PotentialPanel:
         """Review or use the text that the user typed."""
         if self._filling:
             return
-        self.shown = self._system if text == _text(self._system) else System(TYPED, text)
+        self.shown = self._used.system if text == _text(self._used.system) else System(TYPED, text)
         self._show_around_text()
         use(self.shown)
 

@@ -45,6 +45,10 @@ class ProgressView:
         self._last_stage = None
         self._set(running=True, label=STOP, text="Starting …")
 
+    def show_reviewing(self) -> None:
+        """The potential of the link is reviewed before a map is requested."""
+        self._set(running=False, label=STOP, text="Reviewing the potential …")
+
     def show_compiling(self, seconds: float) -> None:
         """The kernels of the map are compiled first, which takes about this long."""
         left = f"about {math.ceil(seconds)} s left" if seconds > 0.0 else "a moment more"

@@ -48,8 +48,8 @@ class AccessibleTable:
         self.text.object = f"<table><caption>What is shown</caption>{head}{rows}</table>"
 
     def _view(self) -> list[tuple[str, str]]:
-        state, system = self._state, self._state.system
-        rows = [("system", system.title), ("potential V(x, y)", system.formula_shown)]
+        state, reviewed = self._state, self._state.reviewed
+        rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula_shown)]
         rows += [("plane", state.plane.title), ("t_max", grouped(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:

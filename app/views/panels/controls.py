@@ -10,13 +10,14 @@ from typing import Any
 import panel as pn
 
 from app.browser.energy_slider import SHOWN, EnergySlider
+from app.state.system_review import review_catalogue_entry
 from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.number_box import NumberBox
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 from engine import CASES, Plane
-from engine.service import EnergyRange, System
+from engine.service import EnergyRange
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
@@ -134,7 +135,7 @@ class Controls:
         # None and the case of the state: the widget follows the state.
         if case is not None and case != self.state.case:
             with pn.io.hold():
-                self.state.show_system(System(case))
+                self.state.show_system(review_catalogue_entry(case))
 
     def _case(self) -> str | None:
         """The case of the system in view; None for other potentials."""
@@ -152,23 +153,23 @@ class Controls:
 
     def _follow_system(self) -> None:
         """Show slider, ticks, formula, channels and escape energy of the system."""
-        state, system, energies = self.state, self.state.system, self.state.system.energies
+        state, reviewed, energies = self.state, self.state.reviewed, self.state.energies
         self.case.value = self._case()
         self.other.color = "light" if self._case() else "primary"
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self.exact_energy.step = 10.0**-energies.decimals
         self.facts.object = (
-            f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(system.title)}</b>: V = {escape_text(system.formula_shown)}"
-            f"<br><span class='quiet'>{state.potential.channels} exit channels above h = {state.potential.escape_energy:.6g}"
-            "</span></div>"
+            f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
+            f"V = {escape_text(reviewed.formula_shown)}<br><span class='quiet'>"
+            f"{state.potential.channels} exit channels above h = {state.potential.escape_energy:.6g}</span></div>"
         )
         self._follow_energy()
 
     def _follow_energy(self) -> None:
         state = self.state
         on_h = state.plane.energy_axis is not None
-        beyond = not state.system.energies.low <= state.energy <= state.system.energies.high
+        beyond = not state.energies.low <= state.energy <= state.energies.high
         title = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else "Energy h: "
         self.energy.param.update(energy=state.energy, disabled=on_h, title="Energy is the vertical axis here" if on_h else title)
         self.exact_energy.disabled = on_h

@@ -35,13 +35,13 @@ def test_a_zoom_beyond_double_precision_is_rejected() -> None:
 def test_the_first_zoom_starts_from_the_whole_interior() -> None:
     state = ViewState(case="I", energy=0.2)
     whole = state.map_spec().find_window()
-    window_moves(state)["+"]()
+    window_moves(state, lambda: whole)["+"]()
     assert state.window == zoom(whole, 2.0)
 
 
 def test_keys_move_the_window_of_the_state() -> None:
     state = ViewState(case="I", energy=0.2, window=WINDOW)
-    moves = window_moves(state)
+    moves = window_moves(state, lambda: state.window)
     moves["-"]()
     assert state.window == zoom(WINDOW, 0.5)
     moves["ArrowUp"]()

@@ -8,10 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.permalink import LONGEST_VALUE, read_link, write_link
+from app.state.permalink import LONGEST_VALUE, linked_system, read_link, write_link
 from app.state.view_state import LAYERS, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
 from engine import CASES, Plane, Window
+from engine.service import TYPED, System
 from plots.palette import MOST_ORBITS, PALETTES
+from tests.app.state.opened_link import open_link
 
 numbers = st.floats(-1e3, 1e3, allow_nan=False)
 pairs = st.tuples(numbers, numbers).filter(lambda pair: pair[0] < pair[1])
@@ -103,7 +105,7 @@ def test_an_invalid_value_is_named_and_ignored(name: str, text: str) -> None:
     ],
 )
 def test_a_problem_says_what_to_do(link: dict[str, str], problem: str) -> None:
-    assert read_link(link)[1] == [problem]
+    assert open_link(link)[1] == [problem]
 
 
 @pytest.mark.parametrize("text", ["100000", "1e5", "1E+5", "100000.0", "100 000", "100,000", "100\u202f000"])
@@ -124,9 +126,10 @@ def test_a_link_counts_in_a_box() -> None:
 
 
 def test_an_invalid_potential_drops_what_belongs_to_it() -> None:
-    values, problems = read_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "112"})
-    assert values == {"resolution": 112}
+    state, problems = open_link({"V": "x²", "box": "0,1,0,1", "window": "0,1,0,1", "h": "0.3", "resolution": "112"})
+    assert (state.case, state.box, state.window, state.energy, state.resolution) == ("I", None, None, 0.19, 112)
     assert len(problems) == 1
+    assert problems[0].startswith("Ignored the potential in the link: ")
 
 
 def test_messages_contain_no_markup_of_the_link() -> None:
@@ -146,7 +149,13 @@ def test_an_invalid_value_does_not_affect_the_others() -> None:
 
 
 def test_a_case_without_an_energy_has_its_initial_energy() -> None:
-    assert read_link({"case": "III"})[0]["energy"] == 0.35
+    assert open_link({"case": "III"})[0].energy == 0.35
+
+
+def test_a_link_is_read_without_a_review() -> None:
+    values, problems = read_link({"V": "no formula", "h": "-5", "t_max": "1e3"})
+    assert (values, problems) == ({"formula": "no formula", "energy": -5.0, "t_max": 1e3}, [])
+    assert linked_system(values) == System(TYPED, "no formula")
 
 
 def test_unknown_parameters_are_ignored() -> None:

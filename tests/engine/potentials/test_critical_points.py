@@ -9,8 +9,9 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from engine.polynomials import derivative
+from engine.potentials import critical_points
 from engine.potentials.catalogue import channel_family
-from engine.potentials.critical_points import NotIsolatedError, find_critical_points, winding_number
+from engine.potentials.critical_points import NotIsolatedError, UndecidedError, find_critical_points, winding_number
 from engine.potentials.potential import Potential
 
 X, Y = sympy.symbols("x y")
@@ -129,3 +130,28 @@ def test_inaccurate_roots_that_refine_to_one_root_are_returned_once() -> None:
     value = (X**2 + Y**2) / 2 + 1.95 * X**4 * Y**6
     points = find_critical_points(terms_of(sympy.diff(value, X)), terms_of(sympy.diff(value, Y)))
     np.testing.assert_array_equal(points, [[0.0, 0.0]])
+
+
+@pytest.mark.parametrize("last", [1.01, 1.0173, 1.3, 2.7])
+def test_circles_of_roots_are_refused_before_any_root_is_refined(last: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(critical_points, "_MOST_EXACT_STEPS", 0)
+    squared = X**2 + Y**2
+    value = sympy.expand(squared / 2 - squared**2 + squared**3 - squared**4 + squared**5 - last * squared**6)
+    with pytest.raises(NotIsolatedError):
+        find_critical_points(terms_of(sympy.diff(value, X)), terms_of(sympy.diff(value, Y)))
+
+
+def test_isolated_roots_beside_a_complex_common_curve_are_found() -> None:
+    # V = h + 2h³ of the Hénon–Heiles potential h: ∇V = (1 + 6h²) ∇h vanishes at the critical points of h alone.
+    h = (X**2 + Y**2) / 2 + X**2 * Y - Y**3 / 3
+    value = sympy.expand(h + 2 * h**3)
+    points = find_critical_points(terms_of(sympy.diff(value, X)), terms_of(sympy.diff(value, Y)))
+    root = 3**0.5 / 2
+    expected = np.array([[0.0, 0.0], [0.0, 1.0], [root, -0.5], [-root, -0.5]])
+    np.testing.assert_allclose(sorted_rows(points), sorted_rows(expected), atol=1e-9)
+
+
+def test_the_steps_in_exact_arithmetic_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(critical_points, "_MOST_EXACT_STEPS", 100)
+    with pytest.raises(UndecidedError, match="cannot be decided"):
+        find_critical_points(terms_of(X**11), terms_of(Y**11))

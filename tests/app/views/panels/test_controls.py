@@ -5,6 +5,7 @@ from __future__ import annotations
 import panel as pn
 import pytest
 
+from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.panels.controls import ControlActions, Controls
 from engine import Plane
@@ -137,9 +138,9 @@ def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:
 
 
 def test_other_potentials_leave_no_case_selected(page: Page) -> None:
-    page.state.epsilon = 0.5
+    page.state.show_system(review_system(System("I", epsilon=0.5)))
     assert page.controls.case.value == "I"
-    page.state.show_system(System(TYPED, "½(x² + y²) − x²y"))
+    page.state.show_system(review_system(System(TYPED, "½(x² + y²) − x²y")))
     assert page.controls.case.value is None
     assert page.controls.other.color == "primary"
     assert page.state.case == TYPED

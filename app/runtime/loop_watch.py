@@ -1,0 +1,97 @@
+"""Names what delays the event loop: while its tick is overdue, a thread looks at the stack of the loop's thread."""
+
+from __future__ import annotations
+
+import logging
+import sys
+import threading
+import traceback
+from collections import Counter
+from pathlib import Path
+from types import FrameType
+
+from prometheus_client import Histogram
+
+from app.runtime.load_monitor import TICK_SECONDS, LoadMonitor
+
+SLOW_SECONDS = 0.05
+"""A turn of the event loop that takes longer is logged and counted."""
+
+# A tick comes up to one interval after the begin of the turn that delays it.
+_REPORTED = SLOW_SECONDS - TICK_SECONDS
+_SAMPLE_SECONDS = 0.5 * TICK_SECONDS
+_APP = Path(__file__).parents[1]
+# Modules of the app that only pass calls on.
+_PLUMBING = ("runtime", "server", "bokeh_patches")
+# Modules outside the app that run the loop; a stack of nothing else is a loop that waits for events or for a processor.
+_LOOP = (
+    "asyncio",
+    "selectors",
+    "tornado.platform",
+    "tornado.ioloop",
+    "threading",
+    "panel.command",
+    "bokeh.command",
+    "bokeh.server.util",
+)
+
+WAITING = "none: the thread waited for the interpreter lock or a processor"
+"""Cause of a delay in which the loop ran no callback when it was looked at."""
+
+log = logging.getLogger(f"bokeh.{__name__}")
+
+
+class LoopWatch:
+    """Logs and counts the turns of the event loop that take longer than `SLOW_SECONDS`; create it on the loop's thread.
+
+    Every such turn is reported; of those that take at least `SLOW_SECONDS` − `TICK_SECONDS`, some are reported, too.
+
+    Parameters
+    ----------
+    load
+        Measures the delay of the ticks.
+    delays
+        Counts the delays by cause, in seconds.
+    """
+
+    def __init__(self, load: LoadMonitor, delays: Histogram) -> None:
+        self._load, self._delays = load, delays
+        self._thread = threading.get_ident()
+        self._samples: list[str] = []
+
+    def tick(self) -> None:
+        """Measure the delay and report a long one; call every `TICK_SECONDS` on the event loop."""
+        late = self._load.tick()
+        samples, self._samples = self._samples, []
+        if late > _REPORTED:
+            cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
+            self._delays.labels(cause).observe(late)
+            log.info("the event loop was %.0f ms late; cause: %s", 1000.0 * late, cause)
+
+    def watch(self, stopping: threading.Event) -> None:
+        """Look at the loop's stack whenever its tick is overdue, until the server stops; runs on a thread of its own."""
+        while not stopping.wait(_SAMPLE_SECONDS):
+            frame = sys._current_frames().get(self._thread) if self._load.overdue_seconds() > _SAMPLE_SECONDS else None
+            if frame is not None:
+                self._samples.append(find_cause(frame))
+
+
+def find_cause(innermost: FrameType) -> str:
+    """The outermost function of the app on a stack, apart from those that pass calls on; else the innermost of a library."""
+    frames = [frame for frame, _ in traceback.walk_stack(innermost)]
+    own = [place for frame in reversed(frames) if (place := _place_in_app(frame)) is not None]
+    named = next((place for place in own if not place.startswith(_PLUMBING)), None)
+    return named or next(iter(own), None) or next(filter(None, map(_place_in_library, frames)), WAITING)
+
+
+def _place_in_app(frame: FrameType) -> str | None:
+    path = Path(frame.f_code.co_filename)
+    return f"{path.relative_to(_APP).with_suffix('')}: {frame.f_code.co_qualname}" if path.is_relative_to(_APP) else None
+
+
+def _place_in_library(frame: FrameType) -> str | None:
+    module = frame.f_globals.get("__name__", "")
+    top = module.partition(".")[0]
+    if top in sys.stdlib_module_names or top in ("__main__", "") or module.startswith(_LOOP):
+        return None
+    return f"{module}: {frame.f_code.co_qualname}"

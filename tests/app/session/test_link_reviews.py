@@ -1,0 +1,151 @@
+"""The potential of a link, of a preset or of the browser's history is reviewed on another thread than the event loop's."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from typing import Any
+from urllib.parse import urlencode
+
+import pytest
+from bokeh.application import Application
+from bokeh.application.handlers import FunctionHandler
+from bokeh.document import Document
+from bokeh.server.contexts import ApplicationContext
+from panel.io.state import set_curdoc
+from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
+
+from app.session.explorer import Explorer
+from app.session.page import explorer_page
+from app.state import system as system_module
+from app.state.system_review import review_system
+from engine import CASES, Plane, Window
+from engine.potentials import potential as potential_module
+from engine.service import TYPED, Answer, System
+from tests.app.other_loop import run_on_new_loop
+
+CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
+LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
+# Whatever takes time; a potential has no other costly quantities.
+SLOW = [
+    (system_module, "parse_formula"),
+    (system_module, "review_potential"),
+    (potential_module, "find_critical_points"),
+    (potential_module, "leads_out_of_well"),
+    (potential_module, "find_maxima_beside"),
+]
+
+
+@pytest.fixture
+def threads(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[int]]:
+    """The threads that call each slow function."""
+    called: dict[str, set[int]] = {}
+    # As when the server starts.
+    for case in CASES:
+        system_module.review_catalogue_entry(case)
+
+    def recording(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*arguments: Any) -> Any:
+            called.setdefault(name, set()).add(threading.get_ident())
+            return function(*arguments)
+
+        return call
+
+    monkeypatch.setattr(potential_module, "stored_points", lambda kind, terms, find: find())
+    for module, name in SLOW:
+        monkeypatch.setattr(module, name, recording(name, getattr(module, name)))
+    return called
+
+
+async def wait_for(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + 20.0
+    while not condition() and time.monotonic() < end:
+        await asyncio.sleep(0.01)
+    assert condition()
+
+
+def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> int:
+    """Open a page with a link on a new event loop and check it; returns the loop's thread."""
+
+    async def run() -> int:
+        built: list[Explorer] = []
+
+        def build(document: Document) -> None:
+            with set_curdoc(document):
+                built.append(Explorer())
+                explorer_page(built[0]).server_doc(document)
+
+        context = ApplicationContext(Application(FunctionHandler(build)))
+        context._can_initialize_document_in_worker = lambda: False  # type: ignore[method-assign]
+        line = RequestStartLine("GET", f"/app?{urlencode(parameters)}", "HTTP/1.1")
+        request = HTTPServerRequest(start_line=line, headers=HTTPHeaders({"Host": "localhost"}))
+        session = await context.create_session_if_needed("session", request)  # type: ignore[arg-type]
+        try:
+            with set_curdoc(session.document):
+                built[0]._begin()
+                await check(built[0])
+        finally:
+            built[0].close()
+        return threading.get_ident()
+
+    return run_on_new_loop(run)
+
+
+def test_a_circular_potential_in_a_link_is_refused_on_another_thread(threads: dict[str, set[int]]) -> None:
+    async def check(explorer: Explorer) -> None:
+        assert "Reviewing" in explorer.progress.text.object
+        await wait_for(lambda: "Ignored the potential in the link" in explorer.notice._pane.object)
+        assert "circular potential" in explorer.notice._pane.object
+        assert (explorer.state.case, explorer.state.t_max) == ("I", 1e3)
+
+    loop = with_page(CIRCULAR | {"t_max": "1e3", "h": "0.7"}, check)
+    assert threads.keys() >= {"parse_formula", "review_potential", "find_critical_points"}
+    assert all(loop not in found for found in threads.values())
+
+
+def test_a_link_is_shown_whole_when_its_potential_has_passed(threads: dict[str, set[int]]) -> None:
+    asked = {"plane": "x_y", "h": "0.4", "window": "-1,1,-0.5,0.5", "orbits": "0.1,0.2", "resolution": "112", "t_max": "100"}
+
+    async def check(explorer: Explorer) -> None:
+        state = explorer.state
+        assert (state.case, state.resolution, state.starts) == ("I", 112, ())
+        await wait_for(lambda: state.case == TYPED)
+        assert (state.plane, state.energy, state.starts) == (Plane.X_Y, 0.4, ((0.1, 0.2),))
+        assert state.window == Window(-1.0, 1.0, -0.5, 0.5)
+        assert explorer.potential.panel.section.is_open
+        assert not explorer.history.can_go_back
+
+    loop = with_page(LEGAL | asked, check)
+    assert all(loop not in found for found in threads.values())
+
+
+def test_a_typed_potential_is_reviewed_on_another_thread(threads: dict[str, set[int]]) -> None:
+    async def check(explorer: Explorer) -> None:
+        explorer.potential.panel.formula.value = "½(x² + y²) − 0.79x²y²"
+        await wait_for(lambda: explorer.state.case == TYPED)
+        assert explorer.state.potential.channels == 4
+
+    loop = with_page({}, check)
+    assert all(loop not in found for found in threads.values())
+
+
+def test_an_entry_of_the_browsers_history_is_reviewed_on_another_thread(threads: dict[str, set[int]]) -> None:
+    async def check(explorer: Explorer) -> None:
+        explorer._navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
+        assert explorer.state.case == "I"
+        await wait_for(lambda: explorer.state.case == TYPED)
+        assert explorer.state.energy == 0.5
+
+    loop = with_page({}, check)
+    assert all(loop not in found for found in threads.values())
+
+
+def test_a_choice_made_during_a_review_is_kept() -> None:
+    async def check(explorer: Explorer) -> None:
+        explorer.controls.case.value = "III"
+        explorer.potential._on_review(Answer(review_system(System(TYPED, LEGAL["V"]))))
+        assert explorer.state.system == System("III")
+
+    with_page(LEGAL, check)

@@ -1,0 +1,25 @@
+"""A link as the page opens it, without the page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from app.state.permalink import fit_to_system, linked_system, read_link, refused_link, without_system
+from app.state.system_review import review_system
+from app.state.view_state import ViewState
+
+
+def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
+    """The view of a link once its system is reviewed, and the messages about the link."""
+    values, problems = read_link(parameters)
+    try:
+        reviewed = review_system(linked_system(values))
+        refusal = reviewed.problem
+    except ValueError as error:
+        refusal = str(error)
+    if refusal is not None:
+        return ViewState(**without_system(values)), [*problems, refused_link(refusal)]
+    fitting, more = fit_to_system(values, reviewed)
+    state = ViewState()
+    state.show(reviewed, **fitting)
+    return state, [*problems, *more]
