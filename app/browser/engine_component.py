@@ -11,8 +11,8 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from app.browser.browser_system import BrowserSystem
 from app.browser.module_files import ADDRESS
-from app.browser.system_request import BrowserSystem
 
 
 class EngineComponent(JSComponent):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.browser.system_request import system_key
+from app.browser.browser_system import system_key
 from app.state.view_state import ViewState
 from plots.image_columns import pixel_coding
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.state.view_state import ViewState
-from engine import DivergentStart
-from engine.service import Answer, DivergentStartRequest, JobSubmitter, describe_fate
+from app.state.view_state import Start, ViewState
+from engine import DivergentStart, find_divergent_start
+from engine.service import Job, JobSubmitter, describe_fate
 
 
 class DivergentStartRequests:
@@ -16,8 +16,8 @@ class DivergentStartRequests:
 
     def __init__(self, state: ViewState, jobs: JobSubmitter, notify: Callable[[str], None], locked: Locked) -> None:
         self._state, self._notify = state, notify
-        self._spec: DivergentStartRequest | None = None
-        self._request = LatestRequest(jobs, self._on_answer, notify, locked)
+        self._searched: Start | None = None
+        self._request = LatestRequest(jobs, self._on_result, notify, locked)
 
     def search(self) -> None:
         """Search around the chosen start."""
@@ -27,16 +27,16 @@ class DivergentStartRequests:
             self._notify("Click a start first: its twin is the nearest start that escapes elsewhere.")
             return
         self._notify("Searching for the nearest start that escapes elsewhere …")
-        self._spec = DivergentStartRequest(state.potential, state.plane, state.energy, *start, state.t_max)
-        self._request.submit(self._spec)
+        self._searched = start
+        arguments = (state.potential, state.plane, state.energy, *start, state.t_max)
+        self._request.submit(Job(find_divergent_start, arguments))
 
     def close(self) -> None:
         """Cancel the search."""
         self._request.cancel()
 
-    def _on_answer(self, answer: Answer[DivergentStart | None]) -> None:
-        spec, twin = self._spec, answer.value
-        if spec is None or self._state.chosen_start != (spec.x, spec.ordinate):
+    def _on_result(self, twin: DivergentStart | None) -> None:
+        if self._searched is None or self._state.chosen_start != self._searched:
             return
         if twin is None:
             self._notify("No start near this one escapes elsewhere.")

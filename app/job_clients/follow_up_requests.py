@@ -11,7 +11,7 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.view_state import ViewState
 from engine import EscapeMap
-from engine.service import JobRequest, JobSubmitter
+from engine.service import Job, JobSubmitter
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,15 +20,15 @@ class FollowUp:
 
     Attributes
     ----------
-    request
-        Returns the request for a complete map; None if the analysis is not wanted.
+    job
+        Returns the job for a complete map; None if the analysis is not wanted.
     show
         Called with the map and each result, partial results included.
     watched
-        Attributes of the view state that the request depends on.
+        Attributes of the view state that the job depends on.
     """
 
-    request: Callable[[EscapeMap], JobRequest[Any] | None]
+    job: Callable[[EscapeMap], Job[Any] | None]
     show: Callable[[EscapeMap, Any], None]
     watched: Sequence[str] = ()
 
@@ -53,11 +53,11 @@ class FollowUpRequests:
             self._update(follow_up, request)
 
     def _update(self, follow_up: FollowUp, request: LatestRequest, *_: Any) -> None:
-        spec = follow_up.request(self._frame) if self._frame is not None else None
-        if spec is None:
+        job = follow_up.job(self._frame) if self._frame is not None else None
+        if job is None:
             request.cancel()
         else:
-            request.submit(spec)
+            request.submit(job)
 
     def _show(self, follow_up: FollowUp, result: Any) -> None:
         # Requests are cancelled together with their map.

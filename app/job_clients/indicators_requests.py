@@ -10,8 +10,8 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, Fate, Orbit
-from engine.service import BirkhoffDigitsRequest, IndicatorVerdict, JobSubmitter, Subscription, evaluate_indicators
+from engine import BirkhoffDigits, Fate, Orbit, compute_birkhoff_digits
+from engine.service import IndicatorVerdict, Job, JobSubmitter, Queue, Subscription, evaluate_indicators
 
 
 class IndicatorsRequests:
@@ -53,12 +53,13 @@ class IndicatorsRequests:
             self._cancel(orbit)
 
     def _request(self, orbit: Orbit, one: ChosenOrbit) -> None:
-        spec = self._state.orbit_spec(one.start)
-        assert spec is not None
+        orbit_job = self._state.orbit_job(one.start)
+        assert orbit_job is not None
+        job = Job(compute_birkhoff_digits, orbit_job.arguments, queue=Queue.LONG_CALL)
         # Cached digits are delivered before `request` returns.
         self._subscriptions[orbit] = None
         deliver = partial(self._deliver, orbit)
-        subscription = self._jobs.request(BirkhoffDigitsRequest(spec.potential, spec.state, spec.t_max), deliver, deliver)
+        subscription = self._jobs.request(job, deliver, deliver)
         if orbit in self._subscriptions:
             self._subscriptions[orbit] = subscription
 

@@ -8,25 +8,25 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
-from engine.service import JobRequest, JobSubmitter, Subscription
+from engine.service import Job, JobSubmitter, Subscription
 
 
 class LatestRequest:
-    """Submits requests; calls `show(result)` for each result and `fail(sentence)` for errors, under the session's lock."""
+    """Requests results of jobs; calls `show(result)` and, for errors, `fail(sentence)`, under the lock of the session."""
 
     def __init__(self, jobs: JobSubmitter, show: Callable[[Any], None], fail: Callable[[str], None], locked: Locked) -> None:
         self._jobs, self._show, self._fail = jobs, show, fail
-        self._wanted: JobRequest[Any] | None = None
+        self._wanted: Job[Any] | None = None
         self._subscription: Subscription | None = None
         self._deliver = locked(self._on_result)
 
-    def submit(self, spec: JobRequest[Any]) -> None:
-        """Submit a request, unless it is the current one."""
-        if spec == self._wanted:
+    def submit(self, job: Job[Any]) -> None:
+        """Request the result of a job, unless it is the current one."""
+        if job == self._wanted:
             return
         self.cancel()
-        self._wanted = spec
-        self._subscription = self._jobs.request(spec, partial(self._deliver, spec), partial(self._deliver, spec))
+        self._wanted = job
+        self._subscription = self._jobs.request(job, partial(self._deliver, job), partial(self._deliver, job))
 
     def cancel(self) -> None:
         """Cancel the current request, if any."""
@@ -35,8 +35,8 @@ class LatestRequest:
             self._subscription.cancel()
             self._subscription = None
 
-    def _on_result(self, spec: JobRequest[Any], result: Any) -> None:
-        if spec != self._wanted:
+    def _on_result(self, job: Job[Any], result: Any) -> None:
+        if job != self._wanted:
             return
         if isinstance(result, Exception):
             # Allow the same request again.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Protocol
 
 from app.job_clients.error_messages import sentence
@@ -11,7 +12,7 @@ from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.locking import Locked
 from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
-from engine.service import JobSubmitter, Subscription, WarmupRequest, is_ready_for_maps
+from engine.service import Job, JobSubmitter, Queue, Subscription, is_ready_for_maps, map_job, prepare_for_maps
 from plots.image_columns import map_columns
 
 
@@ -67,9 +68,8 @@ class MapRequests:
         self._generation_lock = threading.RLock()
         # Generation of which a frame has been delivered.
         self._delivered = -1
-        self._compiling = False
         self._is_overloaded = is_overloaded
-        self._continue = locked(self._on_prepared)
+        self._continue = locked(self._on_compiled)
         self._show_frame = locked(self._on_frame)
         self._show_error = locked(self._on_error)
         self._follow_ups = FollowUpRequests(state, jobs, follow_ups, listener.map_failed, locked)
@@ -79,25 +79,26 @@ class MapRequests:
         """Request the map of the view state and cancel the session's earlier map."""
         self.cancel_map()
         generation = self._start_generation()
-        self._compiling = not is_ready_for_maps(self._state.potential)
-        self._listener.map_requested(compiling=self._compiling)
-        # Even the window of a map depends on the exits, which need a compiled integrator: prepare it in a job.
-        self._subscription = self._jobs.request(
-            WarmupRequest(self._state.map_spec()),
-            lambda prepared: self._deliver(self._continue, generation, prepared.value),
-            lambda error: self._deliver(self._show_error, generation, error),
-        )
+        potential, spec = self._state.potential, self._state.map_spec()
+        compiling = not is_ready_for_maps(potential)
+        self._listener.map_requested(compiling=compiling)
+        if compiling:
+            compilation = Job(prepare_for_maps, (potential,), queue=Queue.COMPILATION)
+            self._request(compilation, generation, lambda _: self._deliver(self._continue, generation, spec))
+        else:
+            self._request_frames(generation, spec)
 
-    def _on_prepared(self, generation: int, spec: MapSpec) -> None:
-        if generation != self._generation:
-            return
-        if self._compiling:
+    def _on_compiled(self, generation: int, spec: MapSpec) -> None:
+        if generation == self._generation:
             self._listener.map_requested()
-        self._subscription = self._jobs.request_map(
-            spec,
-            lambda frame: self._deliver_frame(generation, frame),
-            lambda error: self._deliver(self._show_error, generation, error),
-        )
+            self._request_frames(generation, spec)
+
+    def _request_frames(self, generation: int, spec: MapSpec) -> None:
+        self._request(map_job(spec), generation, lambda frame: self._deliver_frame(generation, frame))
+
+    def _request(self, job: Job[Any], generation: int, on_result: Callable[[Any], None]) -> None:
+        on_error = partial(self._deliver, self._show_error, generation)
+        self._subscription = self._jobs.request(job, on_result, on_error)
 
     def _deliver_frame(self, generation: int, frame: EscapeMap) -> None:
         """Deliver a frame; under overload only the first and the last one."""

@@ -11,7 +11,7 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
 from app.state.view_state import SYSTEM, Start, ViewState
 from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
-from engine.service import JobSubmitter, OrbitRequest, Subscription, describe_fate
+from engine.service import Job, JobSubmitter, Subscription, describe_fate
 from plots.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
@@ -52,23 +52,23 @@ class OrbitRequests:
         self, state: ViewState, jobs: JobSubmitter, show: Callable[[tuple[ChosenOrbit, ...]], None], latest: Locked
     ) -> None:
         self._state, self._jobs, self._show = state, jobs, show
-        self._subscriptions: dict[OrbitRequest, Subscription | None] = {}
-        self._results: dict[OrbitRequest, OrbitCurves | str] = {}
+        self._subscriptions: dict[Job[Orbit], Subscription | None] = {}
+        self._results: dict[Job[Orbit], OrbitCurves | str] = {}
         self._shown: tuple[ChosenOrbit, ...] = ()
         # Results that are not shown yet; threads append to it.
-        self._arrived: deque[tuple[OrbitRequest, OrbitCurves | str]] = deque()
+        self._arrived: deque[tuple[Job[Orbit], OrbitCurves | str]] = deque()
         self._show_arrived = latest(self._take_arrived)
         state.param.watch(lambda *events: self.follow(), ["starts", *SYSTEM, "plane", "energy", "t_max"])
 
     def follow(self) -> None:
         """Request the orbits of new starts and cancel those of removed ones."""
-        wanted = [spec for spec in map(self._state.orbit_spec, self._state.starts) if spec is not None]
-        for spec in [spec for spec in self._subscriptions if spec not in wanted]:
-            _cancel(self._subscriptions.pop(spec))
-        self._results = {spec: result for spec, result in self._results.items() if spec in wanted}
-        for spec in wanted:
-            if spec not in self._results and spec not in self._subscriptions:
-                self._request(spec)
+        wanted = [job for job in map(self._state.orbit_job, self._state.starts) if job is not None]
+        for job in [job for job in self._subscriptions if job not in wanted]:
+            _cancel(self._subscriptions.pop(job))
+        self._results = {job: result for job, result in self._results.items() if job in wanted}
+        for job in wanted:
+            if job not in self._results and job not in self._subscriptions:
+                self._request(job)
         self._notify()
 
     def close(self) -> None:
@@ -78,27 +78,27 @@ class OrbitRequests:
         self._subscriptions.clear()
         self._results.clear()
 
-    def _request(self, spec: OrbitRequest) -> None:
+    def _request(self, job: Job[Orbit]) -> None:
         # A cached orbit is delivered before `request` returns.
-        self._subscriptions[spec] = None
+        self._subscriptions[job] = None
         subscription = self._jobs.request(
-            spec,
-            lambda orbit: self._deliver(spec, compute_orbit_curves(spec.potential, orbit)),
-            lambda error: self._deliver(spec, sentence(error)),
+            job,
+            lambda orbit: self._deliver(job, compute_orbit_curves(job.arguments[0], orbit)),
+            lambda error: self._deliver(job, sentence(error)),
         )
-        if spec in self._subscriptions:
-            self._subscriptions[spec] = subscription
+        if job in self._subscriptions:
+            self._subscriptions[job] = subscription
 
-    def _deliver(self, spec: OrbitRequest, result: OrbitCurves | str) -> None:
-        self._arrived.append((spec, result))
+    def _deliver(self, job: Job[Orbit], result: OrbitCurves | str) -> None:
+        self._arrived.append((job, result))
         self._show_arrived()
 
     def _take_arrived(self) -> None:
         while self._arrived:
-            spec, result = self._arrived.popleft()
-            if spec in self._subscriptions:
-                del self._subscriptions[spec]
-                self._results[spec] = result
+            job, result = self._arrived.popleft()
+            if job in self._subscriptions:
+                del self._subscriptions[job]
+                self._results[job] = result
         self._notify()
 
     def _notify(self) -> None:
@@ -109,8 +109,8 @@ class OrbitRequests:
             self._show(orbits)
 
     def _orbit_of(self, start: Start) -> ChosenOrbit:
-        spec = self._state.orbit_spec(start)
-        result: Any = describe_fate(Fate.FORBIDDEN) if spec is None else self._results.get(spec)
+        job = self._state.orbit_job(start)
+        result: Any = describe_fate(Fate.FORBIDDEN) if job is None else self._results.get(job)
         return ChosenOrbit(start, problem=result) if isinstance(result, str) else ChosenOrbit(start, result)
 
 

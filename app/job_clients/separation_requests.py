@@ -8,8 +8,8 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import Orbit, Separation
-from engine.service import JobSubmitter, SeparationRequest
+from engine import Orbit, Separation, compute_separation
+from engine.service import Job, JobSubmitter, Queue
 from plots.orbit_curves import initial_state
 
 Pair = tuple[int, int]
@@ -33,9 +33,9 @@ class SeparationRequests:
     def follow(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Compare the chosen orbit with its neighbour."""
         self._compared = self._pair(orbits)
-        spec = self._spec(*(orbits[place].orbit for place in self._compared)) if self._compared is not None else None
-        if spec is not None:
-            self._request.submit(spec)
+        job = self._job(*(orbits[place].orbit for place in self._compared)) if self._compared is not None else None
+        if job is not None:
+            self._request.submit(job)
         else:
             self._request.cancel()
             self._show(None, None)
@@ -51,10 +51,9 @@ class SeparationRequests:
         computed = pair[1] < len(orbits) and all(orbits[place].orbit is not None for place in pair)
         return pair if computed else None
 
-    def _spec(self, first: Orbit | None, second: Orbit | None) -> SeparationRequest | None:
+    def _job(self, first: Orbit | None, second: Orbit | None) -> Job[Separation] | None:
         assert first is not None
         assert second is not None
         t_end = float(min(first.t[-1], second.t[-1]))
-        return (
-            SeparationRequest(self._state.potential, initial_state(first), initial_state(second), t_end) if t_end > 0.0 else None
-        )
+        arguments = (self._state.potential, initial_state(first), initial_state(second), t_end)
+        return Job(compute_separation, arguments, queue=Queue.LONG_CALL) if t_end > 0.0 else None

@@ -27,20 +27,20 @@ from engine import (
     StableManifolds,
     TrustMap,
     UncertaintyExponent,
+    compute_uncertainty_exponent,
+    find_stable_manifolds,
 )
 from engine.service import (
     SECTION,
-    BasinMeasuresRequest,
-    DecayLawsRequest,
-    EnergyCurvesRequest,
-    JobRequest,
+    Job,
     JobSubmitter,
-    OriginFateRequest,
-    RegularityRequest,
-    StableManifoldsRequest,
-    TrustRequest,
-    UncertaintyExponentRequest,
+    basin_measures_job,
+    decay_laws_job,
+    energy_curves_job,
     is_ready_for_maps,
+    origin_fate_job,
+    regularity_job,
+    trust_job,
 )
 from plots.manifold_strokes import select_image
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
@@ -83,12 +83,12 @@ class AnalysisPresenter:
     def follow_ups(self) -> list[FollowUp]:
         """Analyses of each complete map."""
         return [
-            self._layer("judge", lambda frame: RegularityRequest(frame.spec), self._show_regularity),
-            self._layer("trust", lambda frame: TrustRequest(frame.spec), self._show_trust),
-            self._layer("origins", lambda frame: OriginFateRequest(frame.spec), self._show_origins),
-            self._layer("manifolds", _manifolds_request, self._show_manifolds),
-            self._measure_of_basins(lambda frame: BasinMeasuresRequest(frame.spec), self.measures.show_basins),
-            self._measure_of_basins(lambda frame: DecayLawsRequest(frame.spec, self._state.box), self.measures.show_laws, "box"),
+            self._layer("judge", lambda frame: regularity_job(frame.spec), self._show_regularity),
+            self._layer("trust", lambda frame: trust_job(frame.spec), self._show_trust),
+            self._layer("origins", lambda frame: origin_fate_job(frame.spec), self._show_origins),
+            self._layer("manifolds", _manifolds_job, self._show_manifolds),
+            self._measure_of_basins(lambda frame: basin_measures_job(frame.spec), self.measures.show_basins),
+            self._measure_of_basins(lambda frame: decay_laws_job(frame.spec, self._state.box), self.measures.show_laws, "box"),
         ]
 
     def begin(self, spec: MapSpec) -> None:
@@ -128,12 +128,12 @@ class AnalysisPresenter:
         self.curves.follow_energy(state.energy)
 
     def _layer(
-        self, name: str, request: Callable[[EscapeMap], JobRequest[Any] | None], show: Callable[[EscapeMap, Any], None]
+        self, name: str, request: Callable[[EscapeMap], Job[Any] | None], show: Callable[[EscapeMap, Any], None]
     ) -> FollowUp:
         return FollowUp(lambda frame: request(frame) if getattr(self._state, name) else None, show, (name,))
 
     def _measure_of_basins(
-        self, request: Callable[[EscapeMap], JobRequest[Any]], show: Callable[[Any], None], *watched: str
+        self, request: Callable[[EscapeMap], Job[Any]], show: Callable[[Any], None], *watched: str
     ) -> FollowUp:
         return FollowUp(
             lambda frame: request(frame) if self._state.analysis is Analysis.MEASURES else None,
@@ -216,13 +216,8 @@ class AnalysisPresenter:
         if not is_ready_for_maps(self._state.potential):
             self.measures.say("The window is not known before the integrator is compiled.")
             return
-        try:
-            spec = UncertaintyExponentRequest(self._state.map_spec())
-        except ValueError as error:
-            self.measures.say(str(error))
-            return
         self.measures.wait_for_exponent()
-        self._exponent.submit(spec)
+        self._exponent.submit(Job(compute_uncertainty_exponent, (self._state.map_spec(),)))
 
     def _show_exponent(self, exponent: UncertaintyExponent) -> None:
         self._exponent.cancel()
@@ -236,7 +231,7 @@ class AnalysisPresenter:
         plane = state.plane if state.plane.energy_axis is None else SECTION.plane
         swept = np.round(np.linspace(energies.low, energies.high, SWEPT_ENERGIES), 4).tolist()
         self.curves.show_running(True)
-        self._sweeping.submit(EnergyCurvesRequest(EnergyCurvesSpec(state.potential, plane, tuple(swept), t_max=state.t_max)))
+        self._sweeping.submit(energy_curves_job(EnergyCurvesSpec(state.potential, plane, tuple(swept), t_max=state.t_max)))
 
     def _stop_sweep(self) -> None:
         self._sweeping.cancel()
@@ -259,12 +254,13 @@ class AnalysisPresenter:
             self._state.param.update(energy=energy, plane=curves.spec.plane)
 
 
-def _manifolds_request(frame: EscapeMap) -> StableManifoldsRequest | None:
-    """Request for the stable manifolds in the plane of a map; None if it is not the section."""
+def _manifolds_job(frame: EscapeMap) -> Job[StableManifolds] | None:
+    """The job of the stable manifolds in the plane of a map; None if it is not the section."""
     spec = frame.spec
     if spec.common_energy is None or spec.plane != SECTION.plane:
         return None
-    return StableManifoldsRequest(spec.potential, spec.common_energy, IMAGES, spec.given_window)
+    options = ("images", IMAGES), ("window", spec.given_window)
+    return Job(find_stable_manifolds, (spec.potential, spec.common_energy), options)
 
 
 def _describe_manifolds(manifolds: StableManifolds, image: int) -> str:

@@ -10,8 +10,8 @@ from urllib.parse import parse_qsl
 
 import panel as pn
 
+from app.browser.browser_system import make_browser_system
 from app.browser.engine_component import BrowserEngine
-from app.browser.system_request import BrowserSystemRequest
 from app.browser.views import describe_view
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.map_requests import MapRequests
@@ -44,7 +44,7 @@ from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.tour import Act, Tour
 from engine import EscapeMap, Fate, Potential, Window
-from engine.service import JobClient, System, describe_fate, is_ready_for_maps, seconds_until_ready_for_maps
+from engine.service import Job, JobClient, Queue, System, describe_fate, is_ready_for_maps, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
 
 
@@ -419,8 +419,8 @@ class Explorer:
     def _request_browser_system(self, potential: Potential) -> None:
         """Request the system of the maps for the engine in the browser, which needs the compiled kernels, once."""
         if potential == self.state.potential:
-            energies = self.state.system.energies
-            self._browser_systems.submit(BrowserSystemRequest(potential, energies.low, energies.high))
+            arguments = potential, self.state.energies.low, self.state.energies.high
+            self._browser_systems.submit(Job(make_browser_system, arguments, queue=Queue.LONG_CALL))
 
     def map_stopped(self) -> None:
         """The map is cancelled."""

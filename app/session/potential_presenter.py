@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.job_clients.system_reviews import SystemReviewRequest
-from app.state.system_review import SystemReview, is_known, review_catalogue_entry
+from app.state.system_review import SystemReview, is_known, review_catalogue_entry, review_system
 from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import PotentialPanel
-from engine.service import Answer, JobSubmitter, System
+from engine.service import Job, JobSubmitter, Queue, System
 
 
 @dataclass(frozen=True)
@@ -80,16 +79,16 @@ class PotentialPresenter:
             self._show(known)
         else:
             self.panel.wait()
-            self._request.submit(SystemReviewRequest(proposal.system))
+            self._request.submit(Job(review_system, (proposal.system,), queue=Queue.LONG_CALL))
 
     def _known_review(self, system: System) -> SystemReview | None:
         if is_known(system):
             return review_catalogue_entry(system.case)
         return next((known for known in (self._state.reviewed, self._last) if known is not None and known.system == system), None)
 
-    def _on_review(self, answer: Answer[SystemReview]) -> None:
-        self._last = answer.value
-        self._show(answer.value)
+    def _on_review(self, reviewed: SystemReview) -> None:
+        self._last = reviewed
+        self._show(reviewed)
 
     def _on_failure(self, sentence: str) -> None:
         proposal, self._proposal = self._proposal, None

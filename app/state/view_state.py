@@ -12,8 +12,8 @@ import param
 
 from app.runtime.process_state import process_state
 from app.state.system_review import SystemReview, review_catalogue_entry
-from engine import POTENTIALS, MapSpec, Plane, Potential, Window, start_states
-from engine.service import FREQUENCIES, LARGEST_NUMBER, PAPER_ENERGIES, STRENGTHS, TYPED, EnergyRange, OrbitRequest, System
+from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Window, integrate_orbit, start_states
+from engine.service import FREQUENCIES, LARGEST_NUMBER, PAPER_ENERGIES, STRENGTHS, TYPED, EnergyRange, Job, Queue, System
 from plots.palette import MOST_ORBITS, PALETTES, Palette
 
 
@@ -165,11 +165,12 @@ class ViewState(param.Parameterized):
             energy = (self.potential.escape_energy, self.energies.high)
         return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
-    def orbit_spec(self, start: Start) -> OrbitRequest | None:
-        """Request for the orbit of a start; None if the start is forbidden at this energy."""
+    def orbit_job(self, start: Start) -> Job[Orbit] | None:
+        """The job of the orbit of a start; None if the start is forbidden at this energy."""
         x, ordinate = (np.array([value]) for value in start)
-        x0, y, px, py = state = start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist()
-        return OrbitRequest(self.potential, (x0, y, px, py), self.t_max) if np.isfinite(state).all() else None
+        state = tuple(start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist())
+        arguments = (self.potential, state, self.t_max)
+        return Job(integrate_orbit, arguments, queue=Queue.LONG_CALL) if np.isfinite(state).all() else None
 
     def add_start(self, start: Start) -> bool:
         """Add a start and choose it; returns False if there are `MOST_ORBITS` others already."""

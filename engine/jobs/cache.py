@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Hashable, Iterator
-from typing import Any, Protocol
+from typing import Any
 
 from cachetools import LRUCache
 
+_SMALL_RESULT = 1024
 
-class SupportsNbytes(Protocol):
-    """A result that reports its size in memory, as NumPy arrays do."""
-
-    @property
-    def nbytes(self) -> int:
-        """Size in bytes."""
+ABSENT: Any = object()
+"""Stands for no result where None can be one."""
 
 
 class ResultCache:
@@ -23,11 +20,12 @@ class ResultCache:
     Parameters
     ----------
     limit
-        Largest total size in bytes, 0 or more; larger results are not stored.
+        Largest total size in bytes, 0 or more; larger results are not stored. The size of a result is its attribute ``nbytes``;
+        without one it is small.
     """
 
     def __init__(self, limit: int) -> None:
-        self._results: LRUCache[Hashable, Any] = LRUCache(limit, getsizeof=lambda result: result.nbytes)
+        self._results: LRUCache[Hashable, Any] = LRUCache(limit, getsizeof=_size)
         self._lock = threading.Lock()
 
     @property
@@ -40,19 +38,24 @@ class ResultCache:
         """Total size of the stored results in bytes."""
         return int(self._results.currsize)
 
-    def get(self, key: Hashable) -> Any:
-        """Return the result stored under a key, or None."""
+    def get(self, key: Hashable, default: Any = None) -> Any:
+        """Return the result stored under a key, or the default."""
         with self._lock:
-            return self._results.get(key)
+            return self._results.get(key, default)
 
-    def put(self, key: Hashable, result: SupportsNbytes) -> None:
+    def put(self, key: Hashable, result: Any) -> None:
         """Store a result, evicting the least recently used ones where space is needed."""
         with self._lock:
             self._results.pop(key, None)
-            if result.nbytes <= self.limit:
+            if _size(result) <= self.limit:
                 self._results[key] = result
 
     def __iter__(self) -> Iterator[Hashable]:
         """Iterate over a snapshot of the keys, without marking the results as used."""
         with self._lock:
             return iter(list(self._results))
+
+
+def _size(result: Any) -> int:
+    """Size of a result in bytes, with that of its key."""
+    return int(getattr(result, "nbytes", _SMALL_RESULT))

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from engine.jobs.cache import SupportsNbytes
-from engine.jobs.context import JobRequest
+from engine.jobs.job import Job
 from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
-from engine.maps.result import EscapeMap
-from engine.maps.spec import MapSpec
 from engine.validation import checked_count
 
 MOST_REQUESTS = 32
@@ -22,15 +19,10 @@ _LARGEST_LIMIT = 1000
 class JobSubmitter(Protocol):
     """Accepts requests: `Jobs` itself, or a `JobClient` of it."""
 
-    def request_map(
-        self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
+    def request[Result](
+        self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
-        """Request a map; see `Jobs.request_map`."""
-
-    def request[Result: SupportsNbytes](
-        self, spec: JobRequest[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
-    ) -> Subscription:
-        """Request any other result; see `Jobs.request`."""
+        """Request the result of a job; see `Jobs.request`."""
 
 
 class JobClient:
@@ -49,17 +41,11 @@ class JobClient:
         self._most_requests = checked_count("most_requests", most_requests, 1, _LARGEST_LIMIT)
         self._subscriptions: list[Subscription] = []
 
-    def request_map(
-        self, spec: MapSpec, on_frame: Callable[[EscapeMap], None], on_error: Callable[[Exception], None]
-    ) -> Subscription:
-        """Request a map as `Jobs.request_map` does; `on_error` receives a ValueError when too many requests are open."""
-        return self._refuse(on_error) or self._add(self._jobs.request_map(spec, on_frame, on_error, client=self))
-
-    def request[Result: SupportsNbytes](
-        self, spec: JobRequest[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
+    def request[Result](
+        self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
         """Request a result as `Jobs.request` does; `on_error` receives a ValueError when too many requests are open."""
-        return self._refuse(on_error) or self._add(self._jobs.request(spec, on_result, on_error, client=self))
+        return self._refuse(on_error) or self._add(self._jobs.request(job, on_result, on_error, client=self))
 
     def close(self) -> None:
         """Cancel all subscriptions."""

@@ -5,23 +5,19 @@ from __future__ import annotations
 import logging
 import threading
 from collections import Counter
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 from engine.execution import count_workers, create_thread_pool, is_cancelled, raise_if_cancelled
-from engine.jobs.cache import ResultCache, SupportsNbytes
-from engine.jobs.context import JobContext, JobRequest
+from engine.jobs.cache import ABSENT, ResultCache
+from engine.jobs.job import Job, Queue
 from engine.jobs.orbit_semaphore import OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
-from engine.maps.compute import LARGEST_RUN, compute_map
-from engine.maps.result import EscapeMap
-from engine.maps.spec import MapSpec
-from engine.sweeps.complete_map import require_complete
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""
@@ -36,30 +32,32 @@ log = logging.getLogger(__name__)
 
 
 @dataclass(eq=False)
-class _Job:
-    key: Hashable
+class _Run:
+    """A job under way."""
+
+    job: Job[Any]
     subscriptions: list[Subscription]
     client: Hashable
-    interactive: bool
-    """Whether the calls up to its first result have the highest priority."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
     """The last partial result."""
-    executors: list[QueueExecutor] = field(default_factory=list)
+    executors: Mapping[Queue, QueueExecutor] = field(default_factory=dict)
 
     def stop(self) -> None:
         """Cancel the job and its queued calls."""
         self.cancel.set()
-        for executor in self.executors:
+        for executor in self.executors.values():
             executor.cancel_futures()
 
     def release(self) -> list[Subscription]:
         """Drop all references, so that reference counting alone frees the memory, and return the subscriptions."""
-        subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], [], None
+        subscriptions, self.subscriptions, self.executors, self.latest = self.subscriptions, [], {}, None
         return subscriptions
 
     def priority(self) -> Priority:
-        return Priority.FIRST_FRAME if self.interactive and self.latest is None else Priority.BACKGROUND
+        """Of short calls: the highest up to the first result, where the queue says so."""
+        is_first = self.job.queue is Queue.FIRST_FRAME and self.latest is None
+        return Priority.FIRST_FRAME if is_first else Priority.BACKGROUND
 
 
 class Jobs:
@@ -95,60 +93,47 @@ class Jobs:
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
         self._lock = threading.RLock()
-        self._in_flight: dict[Hashable, _Job] = {}
+        self._in_flight: dict[Job[Any], _Run] = {}
         self.cache = ResultCache(cache_bytes)
 
-    def request_map(
+    def request[Result](
         self,
-        spec: MapSpec,
-        on_frame: Callable[[EscapeMap], None],
+        job: Job[Result],
+        on_result: Callable[[Result], None],
         on_error: Callable[[Exception], None],
         *,
         client: Hashable = None,
     ) -> Subscription:
-        """Request a map.
+        """Request the result of a job.
 
-        A cached map is delivered at once, a map in flight is shared, and an interrupted map, or one with a shorter t_max, is
-        resumed.
+        A cached result is delivered at once, and an equal job that is under way is shared.
 
         Parameters
         ----------
-        spec
-            The map.
-        on_frame
-            Called from another thread with each frame; the last one has ``complete`` True.
+        job
+            The job.
+        on_result
+            Called from another thread with the result; if it has an attribute ``complete``, partial results come before.
         on_error
             Called from another thread with the exception if the computation fails.
         client
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any.
         """
-
-        def run(context: JobContext) -> EscapeMap:
-            return self._compute_map(spec, context, context.publish)
-
-        return self._request(spec, on_frame, on_error, run, client, interactive=True)
-
-    def request[Result: SupportsNbytes](
-        self,
-        spec: JobRequest[Result],
-        on_result: Callable[[Result], None],
-        on_error: Callable[[Exception], None],
-        *,
-        client: Hashable = None,
-    ) -> Subscription:
-        """Request any other result; see `engine.jobs.requests`.
-
-        Parameters
-        ----------
-        spec
-            The request.
-        on_result
-            Called from another thread with the result; if it has an attribute ``complete``, partial results come before.
-        on_error, client
-            As in `request_map`.
-        """
-        return self._request(spec, on_result, on_error, spec.run, client, interactive=False)
+        subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
+        with self._lock:
+            latest = self.cache.get(job, ABSENT)
+            complete = _is_complete(latest)
+            if not complete and job in self._in_flight:
+                self._in_flight[job].subscriptions.append(subscription)
+                latest = self._in_flight[job].latest
+            elif not complete:
+                latest = None
+                run = self._in_flight[job] = _Run(job, [subscription], client)
+                self._coordinators.submit(self._run_job, run)
+        if complete or latest is not None:
+            subscription.deliver(latest, last=complete)
+        return subscription
 
     @property
     def in_flight(self) -> int:
@@ -178,130 +163,97 @@ class Jobs:
     def stop(self) -> None:
         """Cancel all jobs and subscriptions; the computations end within about 0.2 s."""
         with self._lock:
-            subscriptions = [subscription for job in self._in_flight.values() for subscription in job.subscriptions]
+            subscriptions = [subscription for run in self._in_flight.values() for subscription in run.subscriptions]
         for subscription in subscriptions:
             subscription.cancel()
 
-    def _request(
-        self,
-        key: Hashable,
-        on_result: Callable[[Any], None],
-        on_error: Callable[[Exception], None],
-        run: Callable[[JobContext], SupportsNbytes],
-        client: Hashable,
-        interactive: bool,
-    ) -> Subscription:
-        subscription = Subscription(partial(self._unsubscribe, key), on_result, on_error)
+    def _unsubscribe(self, job: Job[Any], subscription: Subscription) -> None:
         with self._lock:
-            cached = self.cache.get(key)
-            complete = _is_complete(cached)
-            if complete:
-                latest = cached
-            elif key in self._in_flight:
-                self._in_flight[key].subscriptions.append(subscription)
-                latest = self._in_flight[key].latest
-            else:
-                latest = None
-                job = self._in_flight[key] = _Job(key, [subscription], client, interactive)
-                self._coordinators.submit(self._run_job, job, run)
-        if latest is not None:
-            subscription.deliver(latest, last=complete)
-        return subscription
-
-    def _unsubscribe(self, key: Hashable, subscription: Subscription) -> None:
-        with self._lock:
-            job = self._in_flight.get(key)
-            if job is None or subscription not in job.subscriptions:
+            run = self._in_flight.get(job)
+            if run is None or subscription not in run.subscriptions:
                 return
-            job.subscriptions.remove(subscription)
-            if not job.subscriptions:
-                job.stop()
-                del self._in_flight[key]
+            run.subscriptions.remove(subscription)
+            if not run.subscriptions:
+                run.stop()
+                del self._in_flight[job]
 
-    def _run_job(self, job: _Job, run: Callable[[JobContext], SupportsNbytes]) -> None:
+    def _run_job(self, run: _Run) -> None:
         error: Exception | None = None
-        result: SupportsNbytes | None = None
+        result: Any = ABSENT
         try:
-            with self._semaphore.acquire(_count_orbits(job.key), job.cancel):
-                raise_if_cancelled(job.cancel)
-                result = run(self._context(job))
+            with self._semaphore.acquire(run.job.orbits_held, run.cancel):
+                raise_if_cancelled(run.cancel)
+                run.executors = self._create_executors(run)
+                result = self._compute(run.job, run, partial(self._publish, run))
         except CancelledError:
             pass
         except Exception as raised:
-            log.info("job %s ended with %r", job.key, raised)
+            log.info("job %s ended with %r", run.job, raised)
             error = raised
-        for subscription in self._finish(job, result, error):
+        for subscription in self._finish(run, result, error):
             if error is not None:
                 subscription.fail(error)
-            elif result is not None:
+            elif result is not ABSENT:
                 subscription.deliver(result, last=True)
 
-    def _finish(self, job: _Job, result: SupportsNbytes | None, error: Exception | None) -> list[Subscription]:
+    def _compute(self, job: Job[Any], run: _Run, publish: Callable[[Any], None] | None) -> Any:
+        """Call the function of a job, which `run` has started or needs."""
+        arguments = [self._find_result(run, each) if isinstance(each, Job) else each for each in job.arguments]
+        executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
+        offered = {
+            "executor": executors[Queue.BACKGROUND],
+            "cancel": run.cancel,
+            "on_frame": publish,
+            "find_result": partial(self._find_result, run),
+            "resume": job.find_earlier(job, self.cache) if job.find_earlier is not None else None,
+        }
+        call = partial(job.function, *arguments, **job.keywords(offered))
+        if job.queue in (Queue.LONG_CALL, Queue.COMPILATION):
+            return executors[job.queue].submit(call).result()
+        return call()
+
+    def _find_result[Result](self, run: _Run, job: Job[Result]) -> Result:
+        """The complete result of a job that another one needs, from the cache or computed now and cached."""
+        result: Any = self.cache.get(job, ABSENT)
+        if not _is_complete(result):
+            result = self._compute(job, run, None)
+            self.cache.put(job, result)
+        if not _is_complete(result):
+            raise CancelledError
+        found: Result = result
+        return found
+
+    def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
+        calls = self._scheduler.executor(run.client, run.priority)
+        return {
+            Queue.FIRST_FRAME: calls,
+            Queue.BACKGROUND: calls,
+            Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
+            Queue.COMPILATION: self._compilations.executor(run.client, lambda: Priority.LONG_CALL),
+        }
+
+    def _finish(self, run: _Run, result: Any, error: Exception | None) -> list[Subscription]:
         """Cache the result, remove the job and return its subscriptions."""
         with self._lock:
             # An interrupted result must not replace a complete one.
-            if result is not None and (_is_complete(result) or not _is_complete(self.cache.get(job.key))):
-                self.cache.put(job.key, result)
-            if self._in_flight.get(job.key) is job:
-                del self._in_flight[job.key]
-            self._ended["failed" if error else "cancelled" if is_cancelled(job.cancel) else "done"] += 1
-            return job.release()
+            if result is not ABSENT and (_is_complete(result) or not _is_complete(self.cache.get(run.job, ABSENT))):
+                self.cache.put(run.job, result)
+            if self._in_flight.get(run.job) is run:
+                del self._in_flight[run.job]
+            self._ended["failed" if error else "cancelled" if is_cancelled(run.cancel) else "done"] += 1
+            return run.release()
 
-    def _context(self, job: _Job) -> JobContext:
-        job.executors = [
-            self._scheduler.executor(job.client, job.priority),
-            self._scheduler.executor(job.client, lambda: Priority.LONG_CALL),
-            self._compilations.executor(job.client, lambda: Priority.LONG_CALL),
-        ]
-        calls, long_calls, compilations = (self._executor or executor for executor in job.executors)
-        publish = partial(self._publish, job)
-        return JobContext(calls, long_calls, compilations, job.cancel, publish, self._find_map, self._find_result)
-
-    def _find_result(self, context: JobContext, request: JobRequest[Any]) -> Any:
-        result = self.cache.get(request)
-        if not _is_complete(result):
-            result = request.run(context)
-            self.cache.put(request, result)
-        return result
-
-    def _find_map(self, context: JobContext, spec: MapSpec) -> EscapeMap:
-        cached: EscapeMap | None = self.cache.get(spec)
-        if cached is not None and cached.complete:
-            return cached
-        return require_complete(self._compute_map(spec, context, on_frame=None))
-
-    def _compute_map(self, spec: MapSpec, context: JobContext, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
-        return compute_map(spec, on_frame, context.cancel, context.executor, resume=self._find_resumable(spec))
-
-    def _publish(self, job: _Job, result: Any) -> None:
+    def _publish(self, run: _Run, result: Any) -> None:
         """Deliver a partial result. A complete one is left to `_run_job`, which delivers it with all its data."""
         if result.complete:
             return
         with self._lock:
-            job.latest = result
-            subscriptions = list(job.subscriptions)
+            run.latest = result
+            subscriptions = list(run.subscriptions)
         for subscription in subscriptions:
             subscription.deliver(result, last=False)
-
-    def _find_resumable(self, spec: MapSpec) -> EscapeMap | None:
-        """Return the cached map that differs from `spec` by the smallest reduction of t_max and can be resumed, or None."""
-        with self._lock:
-            # Compare energies first: cheap, and there may be thousands of maps.
-            same_energy = [key for key in self.cache if isinstance(key, MapSpec) and key.energy == spec.energy]
-            shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
-            cached = self.cache.get(max(shorter, key=lambda key: key.t_max)) if shorter else None
-            return cached if cached is not None and cached.batch is not None else None
 
 
 def _is_complete(result: Any) -> bool:
     """Whether there is a result and it is final; only results that grow have an attribute ``complete``."""
-    return result is not None and getattr(result, "complete", True)
-
-
-def _count_orbits(spec: Any) -> int:
-    """Number of orbits that a job holds in memory: those of its map, or 0 without one."""
-    map_spec = getattr(spec, "map_spec", spec)
-    if not isinstance(map_spec, MapSpec):
-        return 0
-    columns, rows = map_spec.resolution
-    return min(columns * rows, LARGEST_RUN)
+    return result is not ABSENT and getattr(result, "complete", True)

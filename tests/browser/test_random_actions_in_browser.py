@@ -17,7 +17,7 @@ from app.state.view_state import Analysis, ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
 from app.views.components.numbers import grouped, percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
-from engine.service import OrbitRequest
+from engine.service import Job
 from plots.image_columns import longest_typical_time, map_columns
 from tests.app.state.opened_link import open_link
 from tests.browser.explorer_page import ExplorerPage
@@ -91,8 +91,8 @@ class Shown:
 
 def shown_in(state: ViewState) -> Shown:
     """What the page has to show; a state without a map leaves the last one on the page."""
-    request = None if state.chosen_start is None else state.orbit_spec(state.chosen_start)
-    orbit = None if request is None else computed_orbit(request)
+    job = None if state.chosen_start is None else state.orbit_job(state.chosen_start)
+    orbit = None if job is None else computed_orbit(job)
     try:
         return Shown(computed_map(state.map_spec()), orbit)
     except ValueError:
@@ -105,8 +105,8 @@ def computed_map(spec: MapSpec) -> EscapeMap:
 
 
 @lru_cache(maxsize=100)
-def computed_orbit(request: OrbitRequest) -> Orbit:
-    return integrate_orbit(request.potential, request.state, request.t_max)
+def computed_orbit(job: Job[Orbit]) -> Orbit:
+    return integrate_orbit(*job.arguments)
 
 
 def expected_page(address: str) -> dict[str, Any]:
@@ -119,8 +119,8 @@ def expected_page(address: str) -> dict[str, Any]:
     analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}
     cases = {case: state.case == case for case in CASES}
     planes = {plane.title: state.plane is plane for plane in Plane}
-    energy = {} if state.plane is Plane.X_H else {"Exact h": state.energy}
-    orbits = [state.orbit_spec(start) for start in state.starts]
+    energy = {} if state.plane.energy_axis is not None else {"Exact h": state.energy}
+    orbits = [state.orbit_job(start) for start in state.starts]
     return {
         "address": f"?{query}",
         "widgets": cases | planes | layers | analyses | energy,

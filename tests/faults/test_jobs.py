@@ -12,7 +12,7 @@ import pytest
 
 from app.job_clients.error_messages import sentence
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.service import Jobs, OrbitRequest
+from engine.service import Job, Jobs, Queue, map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 
 MAP = MapSpec(CASES["I"], Plane.X_PX, 0.3, (48, 48), t_max=100.0)
@@ -45,13 +45,13 @@ class FaultyPool(ThreadPoolExecutor):
 def test_failing_kernel_ends_only_its_job(error: Exception, good_calls: int) -> None:
     with FaultyPool(error, good_calls) as pool:
         jobs, first, second, third = Jobs(pool), Inbox(), Inbox(), Inbox()
-        jobs.request_map(MAP, first.result, first.error)
+        jobs.request(map_job(MAP), first.result, first.error)
         assert first.done.wait(60)
         assert pool.failed
         assert first.errors == [error]
         wait_until_idle(jobs, 30.0)
-        jobs.request_map(OTHER, second.result, second.error)
-        jobs.request_map(MAP, third.result, third.error)
+        jobs.request(map_job(OTHER), second.result, second.error)
+        jobs.request(map_job(MAP), third.result, third.error)
         for inbox in (second, third):
             assert inbox.done.wait(60)
             assert not inbox.errors
@@ -74,8 +74,8 @@ def test_error_reaches_all_subscribers_although_one_callback_fails(caplog: pytes
 
         released = threading.Event()
         pool.submit = _delayed(pool.submit, released)  # type: ignore[method-assign]
-        jobs.request_map(MAP, fail, fail)
-        jobs.request_map(MAP, inbox.result, inbox.error)
+        jobs.request(map_job(MAP), fail, fail)
+        jobs.request(map_job(MAP), inbox.result, inbox.error)
         released.set()
         assert inbox.done.wait(60)
         assert [type(error) for error in inbox.errors] == [RuntimeError]
@@ -92,18 +92,18 @@ def test_failing_callback_still_receives_the_last_frame() -> None:
             done.set()
         raise LookupError("closed page")
 
-    Jobs().request_map(MAP, fail, lambda error: None)
+    Jobs().request(map_job(MAP), fail, lambda error: None)
     assert done.wait(60)
     assert received[-1].complete
 
 
-def test_failing_orbit_delivers_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*arguments: Any, **named: Any) -> None:
+@pytest.mark.parametrize("queue", Queue)
+def test_failing_function_delivers_its_error(queue: Queue) -> None:
+    def fail() -> None:
         raise MemoryError
 
-    monkeypatch.setattr("engine.jobs.requests.integrate_orbit", fail)
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(OrbitRequest(CASES["I"], (0.1, 0.0, 0.0, 0.5), 50.0), inbox.result, inbox.error)
+    jobs.request(Job(fail, (), queue=queue), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert [type(error) for error in inbox.errors] == [MemoryError]
     wait_until_idle(jobs, 30.0)

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine import CASES, MapSpec, Plane
-from engine.service import JobClient, Jobs, OrbitRequest, Subscription
+from engine import CASES, MapSpec, Plane, integrate_orbit
+from engine.service import Job, JobClient, Jobs, Queue, Subscription, map_job
 from tests.fuzz.hostile import anything
 
-ORBITS = [OrbitRequest(CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0) for k in range(4)]
-BROKEN = OrbitRequest(CASES["I"], (float("nan"), 0.0, 0.1, 0.5), 20.0)
-MAPS = [MapSpec(CASES["I"], Plane.X_PX, 0.19 + 0.001 * k, (6, 6), t_max=20.0) for k in range(3)]
+ORBITS = [Job(integrate_orbit, (CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0), queue=Queue.LONG_CALL) for k in range(4)]
+BROKEN = Job(integrate_orbit, (CASES["I"], (float("nan"), 0.0, 0.1, 0.5), 20.0), queue=Queue.LONG_CALL)
+MAPS = [map_job(MapSpec(CASES["I"], Plane.X_PX, 0.19 + 0.001 * k, (6, 6), t_max=20.0)) for k in range(3)]
 actions = st.sampled_from(["cancel", "close", BROKEN, *ORBITS, *MAPS])
 
 
@@ -56,9 +56,8 @@ def test_concurrent_jobs_stay_within_the_limit(most: int, actions: list[Any]) ->
             assert not any(subscription.open for subscription in subscriptions)
         else:
             inbox = Inbox()
-            submit = client.request_map if isinstance(action, MapSpec) else client.request
             before = sum(subscription.open for subscription in subscriptions)
-            subscription = submit(action, inbox.result, inbox.error)
+            subscription = client.request(action, inbox.result, inbox.error)
             subscriptions.append(subscription)
             inboxes.append((action, subscription, inbox))
             if before < most:

@@ -52,7 +52,7 @@ def check(parameters: dict[str, str]) -> None:
     if state.case in CASES and not state.system.changed:
         result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     for start in state.starts:
-        spec = result_or_error(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
+        spec = result_or_error(partial(state.orbit_job, start), ["energy", "x", "ordinate", "start", "starts"])
         assert spec is None or len(spec.state) == 4
     assert open_link(dict(parse_qsl(write_link(state)[1:])))[1] == []
 
@@ -95,5 +95,5 @@ def test_view_state_accepts_only_valid_values(name: str, value: Any) -> None:
         return
     result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     for start in state.starts:
-        result_or_error(partial(state.orbit_spec, start), ["energy", "x", "ordinate", "start", "starts"])
+        result_or_error(partial(state.orbit_job, start), ["energy", "x", "ordinate", "start", "starts"])
     write_link(state)

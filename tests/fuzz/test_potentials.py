@@ -45,7 +45,7 @@ def check_display(system: System, review: PotentialReview) -> None:
     energies = state.energies
     assert energies.low < energies.first < energies.high
     assert review.escape_energy < energies.first < review.highest_energy
-    assert state.orbit_spec((0.0, 0.0)) is not None
+    assert state.orbit_job((0.0, 0.0)) is not None
     again, problems = open_link(dict(parse_qsl(write_link(state)[1:])))
     assert problems == []
     assert again.potential == system.potential

@@ -12,7 +12,7 @@ import pytest
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map
-from engine.service import Jobs, RegularityRequest
+from engine.service import Jobs, regularity_job
 
 
 class Session:
@@ -23,7 +23,7 @@ class Session:
         self.results: list[tuple[EscapeMap, RegularityMap]] = []
         self.problems: list[str] = []
         self.changed = threading.Condition()
-        self.request: Callable[[EscapeMap], Any] = lambda frame: RegularityRequest(frame.spec)
+        self.request: Callable[[EscapeMap], Any] = lambda frame: regularity_job(frame.spec)
         follow_up = FollowUp(lambda frame: self.request(frame) if self.state.judge else None, self.show, ("judge",))
         self.requests = FollowUpRequests(self.state, self.jobs, [follow_up], self.problems.append, lambda function: function)
 
@@ -87,7 +87,7 @@ def test_an_analysis_is_cancelled_when_it_is_no_longer_wanted(session: Session) 
 
 def test_a_late_result_is_not_shown(session: Session) -> None:
     held: list[Callable[[], None]] = []
-    follow_up = FollowUp(lambda frame: RegularityRequest(frame.spec), session.show)
+    follow_up = FollowUp(lambda frame: regularity_job(frame.spec), session.show)
     arrived = threading.Event()
 
     def lock(function: Callable[..., None]) -> Callable[..., None]:
@@ -108,8 +108,8 @@ def test_a_late_result_is_not_shown(session: Session) -> None:
 
 def test_an_error_gives_a_message(session: Session) -> None:
     frame = bounded_map(0.2)
-    bad = MapSpec(CASES["I"], Plane.X_PX, 50.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))  # type: ignore[arg-type]
-    session.request = lambda frame: RegularityRequest(bad)
+    bad = MapSpec(CASES["I"], Plane.X_PX, 50.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))
+    session.request = lambda frame: regularity_job(bad)
     session.requests.follow(frame)
     for _ in range(200):
         if session.problems:

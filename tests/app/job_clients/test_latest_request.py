@@ -10,10 +10,11 @@ from typing import Any
 import pytest
 
 from app.job_clients.latest_request import LatestRequest
-from engine import CASES, Orbit
-from engine.service import Jobs, OrbitRequest
+from engine import CASES, Orbit, integrate_orbit
+from engine.service import Job, Jobs, Queue
 
-SPEC = OrbitRequest(CASES["I"], (0.1, 0.0, 0.05, 0.5), 50.0)
+ORBIT = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, 0.5), 50.0), queue=Queue.LONG_CALL)
+LONG_ORBIT = replace(ORBIT, arguments=(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e7))
 
 
 class Client:
@@ -45,35 +46,35 @@ def client() -> Iterator[Client]:
 
 
 def test_the_result_is_delivered(client: Client) -> None:
-    client.request.submit(SPEC)
+    client.request.submit(ORBIT)
     client.wait()
     assert isinstance(client.results[0], Orbit)
 
 
 def test_the_same_request_is_not_submitted_twice(client: Client) -> None:
-    client.request.submit(SPEC)
+    client.request.submit(ORBIT)
     client.wait()
-    client.request.submit(SPEC)
+    client.request.submit(ORBIT)
     assert len(client.results) == 1
 
 
 def test_a_new_request_cancels_the_last(client: Client) -> None:
-    client.request.submit(replace(SPEC, potential=CASES["III"], state=(0.0, 0.0, 0.1, 0.5), t_max=1e7))
-    client.request.submit(SPEC)
+    client.request.submit(LONG_ORBIT)
+    client.request.submit(ORBIT)
     assert client.jobs.in_flight == 1
     client.wait()
     assert client.results[0].t[-1] <= 50.0
 
 
 def test_nothing_is_delivered_after_a_cancel(client: Client) -> None:
-    client.request.submit(replace(SPEC, potential=CASES["III"], state=(0.0, 0.0, 0.1, 0.5), t_max=1e7))
+    client.request.submit(LONG_ORBIT)
     client.request.cancel()
     assert client.jobs.in_flight == 0
     assert not client.called.wait(0.5)
 
 
 def test_an_error_gives_a_message_and_allows_the_same_request_again(client: Client) -> None:
-    bad = replace(SPEC, t_max=-1.0)
+    bad = replace(ORBIT, arguments=(*ORBIT.arguments[:2], -1.0))
     for _ in range(2):
         client.request.submit(bad)
         client.wait()

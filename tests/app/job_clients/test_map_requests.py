@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -12,7 +11,6 @@ import pytest
 from app.job_clients.map_requests import MapRequests
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.jobs.requests import Answer
 from engine.service import Jobs, Subscription
 
 
@@ -46,9 +44,6 @@ class Recorder:
 
     def map_failed(self, sentence: str) -> None:
         self.record("map failed", sentence)
-
-    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        self.record("preview arrived", frame)
 
     def last_frame(self) -> EscapeMap | None:
         frames = [value for what, value in self.calls if what == "map arrived"]
@@ -109,23 +104,24 @@ class ManualJobs:
     def __init__(self) -> None:
         self.listeners: list[Callable[[Any], None]] = []
 
-    def request_map(self, spec: MapSpec, on_frame: Callable[[Any], None], on_error: Callable[[Exception], None]) -> Subscription:
-        return self.request(spec, on_frame, on_error)
-
-    def request(self, spec: Any, on_result: Callable[[Any], None], on_error: Callable[[Exception], None]) -> Subscription:
+    def request(self, job: Any, on_result: Callable[[Any], None], on_error: Callable[[Exception], None]) -> Subscription:
         self.listeners.append(on_result)
         return Subscription(lambda subscription: None, on_result, on_error)
 
 
+@pytest.fixture
+def compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.job_clients.map_requests.is_ready_for_maps", lambda potential: True)
+
+
+@pytest.mark.usefixtures("compiled")
 def test_a_late_frame_does_not_replace_the_current_map() -> None:
     state, recorder, jobs, session = ViewState(case="I"), Recorder(), ManualJobs(), LatestCalls()
     requests = MapRequests(state, jobs, recorder, session.locked)
     specs = [MapSpec(CASES["I"], Plane.X_PX, energy, (8, 8), t_max=10.0) for energy in (0.3, 0.31)]
-    for spec in specs:
+    for _ in specs:
         requests.request_map()
-        jobs.listeners[-1](Answer(spec))
-        session.run()
-    _, late, _, wanted = jobs.listeners
+    late, wanted = jobs.listeners
     wanted(compute_map(specs[1]))
     late(compute_map(specs[0]))
     session.run()
@@ -149,27 +145,30 @@ def manual() -> tuple[MapRequests, Recorder, ManualJobs, LatestCalls]:
     return MapRequests(ViewState(case="I"), jobs, recorder, session.locked), recorder, jobs, session
 
 
+@pytest.mark.usefixtures("compiled")
 def test_a_frame_after_a_stop_is_dropped(manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls]) -> None:
     requests, recorder, jobs, session = manual
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=10.0)
     requests.request_map()
-    jobs.listeners[0](Answer(spec))
-    session.run()
     requests.stop_map()
-    jobs.listeners[1](compute_map(spec))
+    jobs.listeners[0](compute_map(spec))
     session.run()
     assert recorder.names() == ["map requested", "map stopped"]
 
 
-def test_a_request_that_is_replaced_while_it_is_prepared_starts_no_map(
-    manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls],
+def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_map(
+    manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("app.job_clients.map_requests.is_ready_for_maps", lambda potential: False)
     requests, _, jobs, session = manual
     requests.request_map()
-    jobs.listeners[0](Answer(MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=10.0)))
+    jobs.listeners[0](None)
     requests.request_map()
     session.run()
     assert len(jobs.listeners) == 2
+    jobs.listeners[1](None)
+    session.run()
+    assert len(jobs.listeners) == 3
 
 
 def test_a_complete_map_is_not_stopped(session: Session) -> None:
@@ -186,49 +185,6 @@ def test_an_invalid_energy_gives_a_message(session: Session) -> None:
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.calls if what == "map failed")
     assert "energy=50.0" in sentence
-
-
-def previews(recorder: Recorder) -> list[EscapeMap]:
-    return [value for what, value in recorder.calls if what == "preview arrived"]
-
-
-def test_the_last_preview_is_at_the_last_energy(session: Session) -> None:
-    _, requests, recorder, jobs = session
-    for energy in (0.31, 0.32, 0.33, 0.34):
-        requests.request_preview(energy)
-    recorder.wait_for(lambda: bool(previews(recorder)) and previews(recorder)[-1].spec.energy == 0.34)
-    assert jobs.in_flight == 0
-    assert not requests.previews.under_way
-
-
-def test_a_preview_cancels_the_map(session: Session) -> None:
-    state, requests, recorder, _ = session
-    state.param.update(case="III", energy=0.26, t_max=1e5)
-    recorder.wait_for(lambda: recorder.last_frame() is not None)
-    requests.request_preview(0.5)
-    frames = recorder.names().count("map arrived")
-    recorder.wait_for(lambda: bool(previews(recorder)))
-    assert recorder.names().count("map arrived") == frames
-
-
-def test_a_map_request_cancels_previews(session: Session) -> None:
-    state, requests, recorder, _ = session
-    for energy in (0.31, 0.32, 0.33):
-        requests.request_preview(energy)
-    state.energy = 0.35
-    recorder.wait_for(recorder.complete)
-    names = recorder.names()
-    assert "preview arrived" not in names[names.index("map requested") :]
-
-
-def test_a_failed_preview_changes_nothing(session: Session) -> None:
-    _, requests, recorder, _ = session
-    requests.request_preview(50.0)
-    end = time.monotonic() + 30.0
-    while requests.previews.under_way and time.monotonic() < end:
-        time.sleep(0.01)
-    assert not requests.previews.under_way
-    assert recorder.names() == []
 
 
 def test_closing_cancels_all_jobs(session: Session) -> None:

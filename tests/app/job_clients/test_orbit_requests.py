@@ -73,9 +73,9 @@ def test_a_start_gets_its_orbit(session: Session) -> None:
     state, _, recorder, _ = session
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
-    spec = state.orbit_spec((0.1, 0.05))
-    assert spec is not None
-    expected = integrate_orbit(spec.potential, spec.state, 1e3)
+    job = state.orbit_job((0.1, 0.05))
+    assert job is not None
+    expected = integrate_orbit(*job.arguments)
     orbit = recorder.orbits[0].orbit
     assert orbit is not None
     assert (orbit.fate, orbit.escape_time) == (expected.fate, expected.escape_time)

@@ -23,7 +23,7 @@ from app.state import system as system_module
 from app.state.system_review import review_system
 from engine import CASES, Plane, Window
 from engine.potentials import potential as potential_module
-from engine.service import TYPED, Answer, System
+from engine.service import TYPED, System
 from tests.app.other_loop import run_on_new_loop
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
@@ -145,7 +145,7 @@ def test_an_entry_of_the_browsers_history_is_reviewed_on_another_thread(threads:
 def test_a_choice_made_during_a_review_is_kept() -> None:
     async def check(explorer: Explorer) -> None:
         explorer.controls.case.value = "III"
-        explorer.potential._on_review(Answer(review_system(System(TYPED, LEGAL["V"]))))
+        explorer.potential._on_review(review_system(System(TYPED, LEGAL["V"])))
         assert explorer.state.system == System("III")
 
     with_page(LEGAL, check)

@@ -29,21 +29,21 @@ def test_the_energy_plane_spans_from_the_escape_energy_to_the_end_of_the_slider(
 
 
 def test_a_start_gets_its_py_from_the_energy() -> None:
-    spec = ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_spec((0.1, 0.05))
-    assert spec is not None
-    state = spec.state
+    job = ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_job((0.1, 0.05))
+    assert job is not None
+    _, state, _ = job.arguments
     assert state[:3] == (0.1, 0.0, 0.05)
     assert CASES["I"].energy(np.array(state)) == pytest.approx(0.2, abs=1e-15)
 
 
 def test_on_the_energy_plane_the_ordinate_is_the_energy() -> None:
-    spec = ViewState(case="II", plane=Plane.X_H).orbit_spec((0.1, 0.3))
-    assert spec is not None
-    assert CASES["II"].energy(np.array(spec.state)) == pytest.approx(0.3, abs=1e-15)
+    job = ViewState(case="II", plane=Plane.X_H).orbit_job((0.1, 0.3))
+    assert job is not None
+    assert CASES["II"].energy(np.array(job.arguments[1])) == pytest.approx(0.3, abs=1e-15)
 
 
 def test_a_forbidden_start_has_no_orbit() -> None:
-    assert ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_spec((0.0, 2.0)) is None
+    assert ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_job((0.0, 2.0)) is None
 
 
 def starts_of(count: int) -> list[tuple[float, float]]:

@@ -6,18 +6,18 @@ import time
 
 import pytest
 
-from engine import CASES, MapSpec, Plane
-from engine.service import JobClient, Jobs, OrbitRequest
+from engine import CASES, MapSpec, Plane, integrate_orbit
+from engine.service import Job, JobClient, Jobs, Queue, map_job
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
 SLOW = [MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=t_max) for t_max in (1e6, 2e6, 3e6)]
-ORBIT = OrbitRequest(CASES["I"], (0.1, 0.0, 0.05, 0.6), 10.0)
+ORBIT = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, 0.6), 10.0), queue=Queue.LONG_CALL)
 
 
 def test_request_above_the_limit_is_refused() -> None:
     client, inbox, refused = JobClient(Jobs(), most_requests=1), Inbox(), Inbox()
-    client.request_map(SLOW[0], inbox.result, inbox.error)
-    subscription = client.request_map(SLOW[1], refused.result, refused.error)
+    client.request(map_job(SLOW[0]), inbox.result, inbox.error)
+    subscription = client.request(map_job(SLOW[1]), refused.result, refused.error)
     assert not subscription.open
     assert "1 are under way" in str(refused.errors[0])
     client.close()
@@ -37,8 +37,8 @@ def test_close_stops_the_jobs_that_no_other_client_shares() -> None:
     jobs = Jobs()
     client, other, inbox = JobClient(jobs), JobClient(jobs), Inbox()
     for spec in SLOW:
-        client.request_map(spec, inbox.result, inbox.error)
-    other.request_map(SLOW[0], inbox.result, inbox.error)
+        client.request(map_job(spec), inbox.result, inbox.error)
+    other.request(map_job(SLOW[0]), inbox.result, inbox.error)
     assert jobs.in_flight == len(SLOW)
     client.close()
     assert jobs.in_flight == 1
@@ -56,11 +56,11 @@ def test_first_frame_does_not_wait_for_the_maps_of_other_clients() -> None:
     early, late = JobClient(jobs), JobClient(jobs)
     inboxes = [Inbox() for _ in SLOW]
     for spec, inbox in zip(SLOW, inboxes, strict=True):
-        early.request_map(spec, inbox.result, inbox.error)
+        early.request(map_job(spec), inbox.result, inbox.error)
         assert inbox.first.wait(20)
     frame = Inbox()
     begun = time.monotonic()
-    late.request_map(MapSpec(CASES["III"], Plane.X_PX, 0.5, (64, 64)), frame.result, frame.error)
+    late.request(map_job(MapSpec(CASES["III"], Plane.X_PX, 0.5, (64, 64))), frame.result, frame.error)
     assert frame.first.wait(20)
     assert jobs.in_flight >= len(SLOW), f"the other maps finished first, after {time.monotonic() - begun} s"
     for client in (early, late):
@@ -72,7 +72,7 @@ def test_stats_count_jobs_and_cache() -> None:
     jobs, inbox = Jobs(), Inbox()
     client = JobClient(jobs)
     client.request(ORBIT, inbox.result, inbox.error)
-    client.request_map(SLOW[0], inbox.result, inbox.error)
+    client.request(map_job(SLOW[0]), inbox.result, inbox.error)
     assert jobs.stats().in_flight >= 1
     client.close()
     wait_until_idle(jobs)

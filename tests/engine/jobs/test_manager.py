@@ -6,7 +6,7 @@ import gc
 import threading
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from weakref import ref
 
 import numpy as np
@@ -17,36 +17,25 @@ from engine import (
     EscapeMap,
     MapSpec,
     Plane,
+    Potential,
     compute_map,
     compute_regularity,
     compute_separation,
     find_divergent_start,
     integrate_orbit,
 )
-from engine.jobs.context import JobContext
-from engine.service import (
-    Answer,
-    DivergentStartRequest,
-    Jobs,
-    OrbitRequest,
-    PreviewRequest,
-    RegularityRequest,
-    SeparationRequest,
-    UnresolvedMapSpec,
-    WarmupRequest,
-    preview_spec,
-)
+from engine.service import Job, Jobs, Queue, map_job, regularity_job
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)
-REQUEST = DivergentStartRequest(CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0)
+SEARCH = Job(find_divergent_start, (CASES["I"], Plane.X_PX, 0.2, -0.2, 0.1, 500.0))
 LONG = MapSpec(CASES["III"], Plane.X_PX, 0.26, (128, 128), t_max=1e6)
 
 
 def compute_cached_map(jobs: Jobs) -> EscapeMap:
     """Compute the map of `QUICK`, so that it is in the cache."""
     inbox = Inbox()
-    jobs.request_map(QUICK, inbox.result, inbox.error)
+    jobs.request(map_job(QUICK), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     wait_until_idle(jobs)
     result = inbox.results[-1]
@@ -56,7 +45,7 @@ def compute_cached_map(jobs: Jobs) -> EscapeMap:
 
 def test_last_frame_is_the_map() -> None:
     inbox, jobs = Inbox(), Jobs()
-    jobs.request_map(QUICK, inbox.result, inbox.error)
+    jobs.request(map_job(QUICK), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     expected = compute_map(QUICK)
     np.testing.assert_array_equal(inbox.results[-1].fate, expected.fate)
@@ -66,7 +55,7 @@ def test_last_frame_is_the_map() -> None:
 def test_regularity_uses_the_cached_map() -> None:
     jobs, second = Jobs(), Inbox()
     first = compute_cached_map(jobs)
-    jobs.request(RegularityRequest(QUICK), second.result, second.error)
+    jobs.request(regularity_job(QUICK), second.result, second.error)
     assert second.done.wait(30)
     expected = compute_regularity(first)
     np.testing.assert_array_equal(second.results[-1].character, expected.character)
@@ -74,7 +63,7 @@ def test_regularity_uses_the_cached_map() -> None:
 
 def test_regularity_computes_a_map_that_is_not_cached() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(RegularityRequest(QUICK), inbox.result, inbox.error)
+    jobs.request(regularity_job(QUICK), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert inbox.results[-1].complete
 
@@ -82,15 +71,15 @@ def test_regularity_computes_a_map_that_is_not_cached() -> None:
 def test_complete_map_is_cached() -> None:
     jobs, second = Jobs(), Inbox()
     first = compute_cached_map(jobs)
-    jobs.request_map(QUICK, second.result, second.error)
+    jobs.request(map_job(QUICK), second.result, second.error)
     assert second.results == [first]
     assert jobs.in_flight == 0
 
 
 def test_shared_job_continues_until_its_last_subscription_is_cancelled() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
-    one = jobs.request_map(LONG, first.result, first.error)
-    two = jobs.request_map(LONG, second.result, second.error)
+    one = jobs.request(map_job(LONG), first.result, first.error)
+    two = jobs.request(map_job(LONG), second.result, second.error)
     assert jobs.in_flight == 1
     assert first.first.wait(30)
     one.cancel()
@@ -104,79 +93,68 @@ def test_shared_job_continues_until_its_last_subscription_is_cancelled() -> None
 def test_cancelled_map_is_resumed() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
     spec = MapSpec(CASES["III"], Plane.X_PX, 0.3, (64, 64), t_max=5e3)
-    subscription = jobs.request_map(spec, first.result, first.error)
+    subscription = jobs.request(map_job(spec), first.result, first.error)
     assert first.first.wait(30)
     subscription.cancel()
-    wait_until(lambda: jobs.cache.get(spec) is not None)
-    assert jobs.cache.get(spec).complete is False
-    jobs.request_map(spec, second.result, second.error)
+    wait_until(lambda: jobs.cache.get(map_job(spec)) is not None)
+    assert jobs.cache.get(map_job(spec)).complete is False
+    jobs.request(map_job(spec), second.result, second.error)
     assert second.done.wait(60)
     np.testing.assert_array_equal(second.results[-1].crossings, compute_map(spec).crossings)
 
 
-def test_longer_t_max_resumes_the_cached_map(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_longer_t_max_resumes_the_cached_map() -> None:
     jobs, second = Jobs(), Inbox()
     compute_cached_map(jobs)
-    resumed = []
-
-    def spy(spec, *args, resume=None, **kwargs):  # type: ignore[no-untyped-def]
-        resumed.append(resume)
-        return compute_map(spec, *args, resume=resume, **kwargs)
-
-    monkeypatch.setattr("engine.jobs.manager.compute_map", spy)
-    longer = MapSpec(QUICK.potential, QUICK.plane, QUICK.energy, QUICK.resolution, QUICK.window, 2e3)
-    jobs.request_map(longer, second.result, second.error)
+    longer = replace(QUICK, t_max=2e3)
+    job = map_job(longer)
+    assert job.find_earlier is not None
+    assert job.find_earlier(job, jobs.cache) is jobs.cache.get(map_job(QUICK))
+    jobs.request(job, second.result, second.error)
     assert second.done.wait(60)
-    assert resumed[0] is jobs.cache.get(QUICK)
     np.testing.assert_array_equal(second.results[-1].fate, compute_map(longer).fate)
 
 
 def test_orbit_equals_integrate_orbit() -> None:
     jobs, inbox = Jobs(), Inbox()
-    spec = OrbitRequest(CASES["I"], (0.1, 0.0, 0.05, 0.5), 500.0)
-    jobs.request(spec, inbox.result, inbox.error)
+    arguments = (CASES["I"], (0.1, 0.0, 0.05, 0.5), 500.0)
+    jobs.request(Job(integrate_orbit, arguments, queue=Queue.LONG_CALL), inbox.result, inbox.error)
     assert inbox.done.wait(30)
-    np.testing.assert_array_equal(inbox.results[0].sali, integrate_orbit(spec.potential, spec.state, spec.t_max).sali)
+    np.testing.assert_array_equal(inbox.results[0].sali, integrate_orbit(*arguments).sali)
 
 
 def test_divergent_start_equals_find_divergent_start() -> None:
     # With one thread, the search would deadlock if it ran on a worker.
     with ThreadPoolExecutor(1) as executor:
         jobs, inbox = Jobs(executor), Inbox()
-        jobs.request(REQUEST, inbox.result, inbox.error)
+        jobs.request(SEARCH, inbox.result, inbox.error)
         assert inbox.done.wait(30)
-    expected = find_divergent_start(
-        REQUEST.potential,
-        REQUEST.plane,
-        REQUEST.energy,
-        REQUEST.x,
-        REQUEST.ordinate,
-        REQUEST.t_max,
-    )
-    assert [answer.value for answer in inbox.results] == [expected]
+    assert inbox.results == [find_divergent_start(*SEARCH.arguments)]
 
 
 def test_missing_divergent_start_is_cached() -> None:
     jobs, first, second = Jobs(), Inbox(), Inbox()
-    spec = replace(REQUEST, energy=0.1)
-    jobs.request(spec, first.result, first.error)
+    without = Job(find_divergent_start, (CASES["I"], Plane.X_PX, 0.1, -0.2, 0.1, 500.0))
+    jobs.request(without, first.result, first.error)
     assert first.done.wait(30)
     wait_until_idle(jobs)
-    jobs.request(spec, second.result, second.error)
-    assert first.results == second.results == [Answer(None)]
+    jobs.request(without, second.result, second.error)
+    assert first.results == second.results == [None]
     assert jobs.in_flight == 0
 
 
 def test_divergent_start_of_a_forbidden_start_fails() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(replace(REQUEST, ordinate=2.0), inbox.result, inbox.error)
+    forbidden = Job(find_divergent_start, (CASES["I"], Plane.X_PX, 0.2, -0.2, 2.0, 500.0))
+    jobs.request(forbidden, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert isinstance(inbox.errors[0], ValueError)
 
 
 def test_cancelled_orbit_is_not_delivered() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(OrbitRequest(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e6), inbox.result, inbox.error).cancel()
+    job = Job(integrate_orbit, (CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e6), queue=Queue.LONG_CALL)
+    jobs.request(job, inbox.result, inbox.error).cancel()
     wait_until(lambda: jobs.stats().cancelled == 1)
     assert not inbox.results
     assert not inbox.errors
@@ -184,7 +162,8 @@ def test_cancelled_orbit_is_not_delivered() -> None:
 
 def test_invalid_request_delivers_its_error() -> None:
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(OrbitRequest(CASES["I"], (0.1, 0.0, 0.05, float("nan")), 500.0), inbox.result, inbox.error)
+    job = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, float("nan")), 500.0), queue=Queue.LONG_CALL)
+    jobs.request(job, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert isinstance(inbox.errors[0], ValueError)
 
@@ -195,8 +174,8 @@ def test_failing_callback_does_not_affect_other_subscriptions() -> None:
     def fail(_result: object) -> None:
         raise RuntimeError("closed")
 
-    jobs.request_map(QUICK, fail, fail)
-    jobs.request_map(QUICK, inbox.result, inbox.error)
+    jobs.request(map_job(QUICK), fail, fail)
+    jobs.request(map_job(QUICK), inbox.result, inbox.error)
     assert inbox.done.wait(30)
     assert inbox.results[-1].complete
 
@@ -204,26 +183,16 @@ def test_failing_callback_does_not_affect_other_subscriptions() -> None:
 def test_other_executors_can_be_used() -> None:
     with ThreadPoolExecutor(1) as executor:
         jobs, inbox = Jobs(executor), Inbox()
-        jobs.request_map(QUICK, inbox.result, inbox.error)
+        jobs.request(map_job(QUICK), inbox.result, inbox.error)
         assert inbox.done.wait(30)
     np.testing.assert_array_equal(inbox.results[-1].fate, compute_map(QUICK).fate)
-
-
-def test_preview_is_delivered_once_and_cached() -> None:
-    jobs, first, second = Jobs(), Inbox(), Inbox()
-    unresolved = UnresolvedMapSpec(CASES["I"], Plane.X_PX, 0.3, (224, 224), None, 1e5)
-    jobs.request(PreviewRequest(unresolved), first.result, first.error)
-    assert first.first.wait(30)
-    wait_until_idle(jobs)
-    jobs.request(PreviewRequest(unresolved), second.result, second.error)
-    assert second.results == first.results
-    assert first.results[0].value.spec == preview_spec(unresolved.spec())
 
 
 def test_separation_equals_compute_separation() -> None:
     jobs, inbox = Jobs(), Inbox()
     first, second = (0.1, 0.0, 0.05, 0.6), (0.1001, 0.0, 0.05, 0.6)
-    jobs.request(SeparationRequest(CASES["I"], first, second, 3.0), inbox.result, inbox.error)
+    job = Job(compute_separation, (CASES["I"], first, second, 3.0), queue=Queue.LONG_CALL)
+    jobs.request(job, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     expected = compute_separation(CASES["I"], first, second, 3.0)
     np.testing.assert_array_equal(inbox.results[0].distance, expected.distance)
@@ -231,7 +200,7 @@ def test_separation_equals_compute_separation() -> None:
 
 def test_stop_ends_all_jobs_without_callbacks() -> None:
     inbox, jobs = Inbox(), Jobs()
-    jobs.request_map(LONG, inbox.result, inbox.error)
+    jobs.request(map_job(LONG), inbox.result, inbox.error)
     assert inbox.first.wait(30)
     jobs.stop()
     delivered = len(inbox.results)
@@ -239,54 +208,59 @@ def test_stop_ends_all_jobs_without_callbacks() -> None:
     assert (len(inbox.results), inbox.errors) == (delivered, [])
 
 
-def test_warmup_resolves_the_spec() -> None:
+def test_a_map_without_exits_fails_with_the_reason() -> None:
     jobs, inbox = Jobs(), Inbox()
-    unresolved = UnresolvedMapSpec(CASES["I"], Plane.X_Y, 0.3, (40, 40), None, 1e3)
-    jobs.request(WarmupRequest(unresolved), inbox.result, inbox.error)
+    jobs.request(map_job(replace(QUICK, energy=50.0)), inbox.result, inbox.error)
     assert inbox.done.wait(30)
-    assert inbox.results[-1].value == MapSpec(CASES["I"], Plane.X_Y, 0.3, (40, 40), t_max=1e3)
+    assert "energy=50.0" in str(inbox.errors[0])
 
 
-def test_warmup_of_an_invalid_spec_fails() -> None:
+def test_making_a_job_computes_nothing() -> None:
+    potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.3579)))
+    assert regularity_job(MapSpec(potential, Plane.X_PX, 0.1)).orbits_held == 224 * 224
+    assert set(vars(potential)) == {"name", "terms"}
+
+
+def test_jobs_of_jobs_are_computed_once() -> None:
+    calls = []
+
+    def first() -> int:
+        calls.append("first")
+        return 2
+
+    def second(number: int, *, power: int) -> int:
+        return number**power
+
     jobs, inbox = Jobs(), Inbox()
-    jobs.request(WarmupRequest(UnresolvedMapSpec(CASES["I"], Plane.X_Y, -1.0, (0, 40), None, 1e3)), inbox.result, inbox.error)
-    assert inbox.done.wait(30)
-    assert isinstance(inbox.errors[0], ValueError)
+    for power in (3, 4):
+        jobs.request(Job(second, (Job(first, ()),), (("power", power),)), inbox.result, inbox.error)
+        wait_until_idle(jobs)
+    assert inbox.results == [8, 16]
+    assert calls == ["first"]
 
 
-@dataclass(frozen=True)
-class Compilation:
+def compile_kernels(begun: threading.Event, end: threading.Event) -> None:
     """A compilation that lasts until `end` is set."""
-
-    end: threading.Event
-    begun: threading.Event = field(default_factory=threading.Event)
-
-    def run(self, context: JobContext) -> Answer[None]:
-        def compile_kernels() -> None:
-            self.begun.set()
-            self.end.wait(30)
-
-        context.compilation_executor.submit(compile_kernels).result()
-        return Answer(None)
+    begun.set()
+    end.wait(30)
 
 
 def test_orbits_do_not_wait_for_a_compilation() -> None:
-    jobs, inbox, end = Jobs(threads=1), Inbox(), threading.Event()
-    compilation = Compilation(end)
-    jobs.request(compilation, Inbox().result, Inbox().error)
-    assert compilation.begun.wait(30)
-    jobs.request(REQUEST, inbox.result, inbox.error)
+    jobs, inbox, begun, end = Jobs(threads=1), Inbox(), threading.Event(), threading.Event()
+    jobs.request(Job(compile_kernels, (begun, end), queue=Queue.COMPILATION), Inbox().result, Inbox().error)
+    assert begun.wait(30)
+    jobs.request(SEARCH, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     end.set()
 
 
 def test_one_compilation_runs_at_a_time() -> None:
     jobs, end = Jobs(threads=4), threading.Event()
-    compilations, inboxes = [Compilation(end), Compilation(end)], [Inbox(), Inbox()]
-    for compilation, inbox in zip(compilations, inboxes, strict=True):
-        jobs.request(compilation, inbox.result, inbox.error, client=inbox)
+    begun, inboxes = [threading.Event(), threading.Event()], [Inbox(), Inbox()]
+    for event, inbox in zip(begun, inboxes, strict=True):
+        jobs.request(Job(compile_kernels, (event, end), queue=Queue.COMPILATION), inbox.result, inbox.error, client=inbox)
     wait_until(lambda: jobs._compilations.pending_calls == 1)
-    assert sum(compilation.begun.is_set() for compilation in compilations) <= 1
+    assert sum(event.is_set() for event in begun) <= 1
     end.set()
     assert all(inbox.done.wait(30) for inbox in inboxes)
     assert [inbox.errors for inbox in inboxes] == [[], []]
@@ -303,7 +277,7 @@ def paused() -> Iterator[Jobs]:
 
 def test_first_frames_are_computed_while_background_is_paused(paused: Jobs) -> None:
     jobs, inbox = paused, Inbox()
-    jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
+    jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
     assert inbox.first.wait(30)
     assert not inbox.done.wait(0.5)
     jobs.pause_background(False)
@@ -312,7 +286,7 @@ def test_first_frames_are_computed_while_background_is_paused(paused: Jobs) -> N
 
 def test_cancelled_map_ends_while_background_is_paused(paused: Jobs) -> None:
     jobs, inbox = paused, Inbox()
-    subscription = jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
+    subscription = jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
     assert inbox.first.wait(30)
     subscription.cancel()
     wait_until_idle(jobs)
@@ -324,7 +298,7 @@ def test_finished_job_leaves_no_reference_cycles() -> None:
     gc.collect()
     gc.disable()
     try:
-        jobs.request_map(replace(LONG, t_max=1e3), inbox.result, inbox.error)
+        jobs.request(map_job(replace(LONG, t_max=1e3)), inbox.result, inbox.error)
         assert inbox.done.wait(60)
         wait_until_idle(jobs)
         frames = [ref(frame) for frame in inbox.results]

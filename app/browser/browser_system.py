@@ -1,4 +1,4 @@
-"""Request for a system as data for the engine in the browser."""
+"""A system as data for the engine in the browser."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from engine import Plane, Potential, Slice, default_window
-from engine.service import JobContext, PortableSystem, make_portable_system, raise_if_cancelled
+from engine.service import PortableSystem, make_portable_system, raise_if_cancelled
 
 # Energies at which default windows are tabulated: below the escape energy, where they change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
@@ -49,40 +49,28 @@ def system_key(potential: Potential) -> str:
     return hashlib.sha256(repr(potential.terms).encode()).hexdigest()[:16]
 
 
-@dataclass(frozen=True)
-class BrowserSystemRequest:
-    """Request for a system, for energies between `low` and `high`."""
-
-    potential: Potential
-    low: float
-    high: float
-
-    def run(self, context: JobContext) -> BrowserSystem:
-        """Compile the module, and tabulate exits and windows."""
-        return context.run_long_call(_make_system, self)
-
-
-def _make_system(request: BrowserSystemRequest, cancel: threading.Event) -> BrowserSystem:
-    potential = request.potential
+def make_browser_system(potential: Potential, low: float, high: float, *, cancel: threading.Event) -> BrowserSystem:
+    """Compile the module, and tabulate exits and windows for energies between `low` and `high`."""
     planes = [plane for plane in Plane if plane.energy_axis is None]
-    windows = {plane.key: _tabulate_windows(request, plane, cancel) for plane in planes}
-    return BrowserSystem(system_key(potential), make_portable_system(potential, request.high), windows)
+    windows = {plane.key: _tabulate_windows(potential, plane, (low, high), cancel) for plane in planes}
+    return BrowserSystem(system_key(potential), make_portable_system(potential, high), windows)
 
 
-def _tabulate_windows(request: BrowserSystemRequest, plane: Slice, cancel: threading.Event) -> dict[str, Any]:
+def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], cancel: threading.Event) -> dict[str, Any]:
     """Default windows up to the highest energy that has one."""
-    escape = min(max(request.potential.escape_energy, request.low), request.high)
+    low, high = ends
+    escape = min(max(potential.escape_energy, low), high)
     energies = np.unique(
         [
-            *np.linspace(request.low, escape, _ENERGIES_BELOW),
-            *(escape + (request.high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2),
+            *np.linspace(low, escape, _ENERGIES_BELOW),
+            *(escape + (high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2),
         ]
     ).tolist()
     windows: list[list[float]] = []
     for energy in energies:
         raise_if_cancelled(cancel)
         try:
-            window = default_window(request.potential, plane, energy)
+            window = default_window(potential, plane, energy)
         except ValueError:
             break
         windows.append([window.x_low, window.x_high, window.ordinate_low, window.ordinate_high])

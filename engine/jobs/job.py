@@ -1,0 +1,74 @@
+"""A job: a computation as data, which is also the key of its result."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+from engine.jobs.cache import ResultCache
+
+
+class Queue(Enum):
+    """How the calls of a job wait for a thread."""
+
+    FIRST_FRAME = "first frame"
+    """The function makes many short calls, which come before all others up to its first result."""
+
+    BACKGROUND = "background"
+    """The function makes many short calls."""
+
+    LONG_CALL = "long call"
+    """The function is one call of up to seconds."""
+
+    COMPILATION = "compilation"
+    """The function compiles kernels; one at a time runs in the process."""
+
+
+@dataclass(frozen=True)
+class Job[Result]:
+    """A function and its arguments, hashable; equal jobs are computed once.
+
+    The manager adds those of these options that the function has parameters for: ``executor``, ``cancel``, ``on_frame`` for
+    partial results, ``resume``, and ``find_result``, which returns the result of another job.
+
+    Attributes
+    ----------
+    function
+        Computes the result; raises CancelledError, or returns a result whose ``complete`` is False, when it is cancelled.
+    arguments
+        Its positional arguments. A job is replaced by its result, which must be complete.
+    options
+        ((name, value), …): keyword arguments.
+    queue
+        How its calls wait for a thread.
+    orbits
+        Number of orbits that the function holds in memory.
+    find_earlier
+        Called with the job and the cache: the cached result that the function continues as ``resume``, or None.
+    """
+
+    function: Callable[..., Result]
+    arguments: tuple[Any, ...]
+    options: tuple[tuple[str, Any], ...] = ()
+    queue: Queue = Queue.BACKGROUND
+    orbits: int = field(default=0, compare=False)
+    find_earlier: Callable[[Job[Any], ResultCache], Result | None] | None = field(default=None, compare=False)
+
+    @property
+    def orbits_held(self) -> int:
+        """Number of orbits held by the function and by the jobs among its arguments."""
+        return self.orbits + sum(argument.orbits_held for argument in self.arguments if isinstance(argument, Job))
+
+    def keywords(self, offered: Mapping[str, Any]) -> dict[str, Any]:
+        """The keyword arguments of a call: the options, and those offered that the function has parameters for."""
+        names = _parameters(self.function)
+        return {**{name: value for name, value in offered.items() if name in names}, **dict(self.options)}
+
+
+@functools.cache
+def _parameters(function: Callable[..., Any]) -> frozenset[str]:
+    return frozenset(inspect.signature(function).parameters)

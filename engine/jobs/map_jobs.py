@@ -1,0 +1,131 @@
+"""Jobs of maps, and of the analyses that need a complete map."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.basins.wada import WadaTest, compute_wada_test
+from engine.jobs.cache import ResultCache
+from engine.jobs.job import Job, Queue
+from engine.maps.compute import LARGEST_RUN, compute_map
+from engine.maps.origin_fates import OriginFateMap, join_origin_fates
+from engine.maps.regularity import RegularityMap, compute_regularity
+from engine.maps.result import EscapeMap
+from engine.maps.spec import MapSpec
+from engine.maps.trust import TrustMap, compute_trust
+from engine.slices.window import Window
+from engine.statistics.decay_law_fits import fit_decay_laws
+from engine.statistics.decay_laws import DecayLaws
+from engine.statistics.escape_statistics import compute_statistics
+from engine.sweeps.energy_curves import (
+    EnergyCurves,
+    EnergyCurvesSpec,
+    EnergyPoint,
+    EnergyPointSpec,
+    compute_energy_curves,
+    compute_energy_point,
+)
+
+
+@dataclass(frozen=True)
+class BasinMeasures:
+    """Measures of the basins of escape that need only the pixels of a map.
+
+    Attributes
+    ----------
+    entropy
+        Basin entropy.
+    merging
+        Merging test for Wada basins.
+    """
+
+    entropy: BasinEntropy
+    merging: WadaTest
+
+    @property
+    def nbytes(self) -> int:
+        """Approximate size in bytes."""
+        return self.merging.shares.nbytes + 1024
+
+
+def map_job(spec: MapSpec) -> Job[EscapeMap]:
+    """The job of a map; it continues an interrupted map, or one with a shorter t_max."""
+    columns, rows = spec.resolution
+    orbits = min(columns * rows, LARGEST_RUN)
+    return Job(compute_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
+
+
+def regularity_job(spec: MapSpec) -> Job[RegularityMap]:
+    """The job of the regularity of a map's bounded orbits."""
+    return Job(compute_regularity, (map_job(spec),))
+
+
+def trust_job(spec: MapSpec) -> Job[TrustMap]:
+    """The job of the trust in a map's pixels."""
+    return Job(compute_trust, (map_job(spec),))
+
+
+def origin_fate_job(spec: MapSpec) -> Job[OriginFateMap]:
+    """The job of the exits of a map's orbits in the past and the future; `spec` is the map forward in time."""
+    return Job(join_origin_fates, tuple(map_job(replace(spec, backward=backward)) for backward in (False, True)))
+
+
+def basin_measures_job(spec: MapSpec) -> Job[BasinMeasures]:
+    """The job of the basin entropy and the Wada test of a map."""
+    return Job(_measure_basins, (map_job(spec),))
+
+
+def decay_laws_job(spec: MapSpec, box: Window | None = None) -> Job[DecayLaws]:
+    """The job of the decay laws of a map's escape times, or of those in a box."""
+    return Job(_fit_laws, (map_job(spec), box), queue=Queue.LONG_CALL)
+
+
+def energy_point_job(point_spec: EnergyPointSpec) -> Job[EnergyPoint]:
+    """The job of the measures at one energy."""
+    return Job(_measure_point, (point_spec, map_job(point_spec.map_spec)))
+
+
+def energy_curves_job(spec: EnergyCurvesSpec) -> Job[EnergyCurves]:
+    """The job of measures against energy; the measures at each energy are cached separately."""
+    return Job(_compute_curves, (spec,))
+
+
+def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
+    """The cached map that differs by the smallest reduction of t_max and can be resumed."""
+    (spec,) = job.arguments
+    maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
+    # Compare energies first: cheap, and there may be thousands of maps.
+    same_energy = (key for key in maps if key.energy == spec.energy)
+    shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
+    found: EscapeMap | None = cache.get(map_job(max(shorter, key=lambda key: key.t_max))) if shorter else None
+    return found if found is not None and found.batch is not None else None
+
+
+def _measure_basins(escape_map: EscapeMap) -> BasinMeasures:
+    return BasinMeasures(compute_basin_entropy(escape_map), compute_wada_test(escape_map))
+
+
+def _fit_laws(escape_map: EscapeMap, box: Window | None, *, cancel: threading.Event) -> DecayLaws:
+    return fit_decay_laws(compute_statistics(escape_map, box), escape_map.spec.t_max, cancel=cancel)
+
+
+def _measure_point(spec: EnergyPointSpec, frame: EscapeMap, *, cancel: threading.Event, executor: Executor) -> EnergyPoint:
+    return compute_energy_point(spec, cancel=cancel, executor=executor, frame=frame)
+
+
+def _compute_curves(
+    spec: EnergyCurvesSpec,
+    *,
+    on_frame: Callable[[EnergyCurves], None],
+    cancel: threading.Event,
+    executor: Executor,
+    find_result: Callable[[Job[EnergyPoint]], EnergyPoint],
+) -> EnergyCurves:
+    def measure(point_spec: EnergyPointSpec) -> EnergyPoint:
+        return find_result(energy_point_job(point_spec))
+
+    return compute_energy_curves(spec, on_frame=on_frame, cancel=cancel, executor=executor, measure=measure)
