@@ -195,6 +195,7 @@ class TestStore:
             np.testing.assert_array_equal(found["fate"][0, rows], whole["fate"][0, rows])
             assert (found["fate"].drop_isel(px=rows) == Fate.NOT_COMPUTED).all()
             assert (found["fate"][1:] == Fate.NOT_COMPUTED).all()
+            assert found["escape_time"][1:].isnull().all()
 
     def test_chunks_have_the_height_of_row_blocks(self, tmp_path: Path, finished: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         limit_block_size(monkeypatch, 48)
