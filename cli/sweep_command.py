@@ -53,7 +53,7 @@ def sweep_energies(
 ) -> None:
     """Compute maps at many energies into one labelled Zarr store; an interrupted run is resumed by the same command.
 
-    Without --window all maps use the window of the highest energy. With xarray: open_zarr(FOLDER, consolidated=False).
+    Without --window all maps use the window of the highest energy. With xarray: open_zarr(FOLDER).
     """
     from cli.arguments import find_plane, read_resolution, space_energies
     from cli.clusters import cluster_executor

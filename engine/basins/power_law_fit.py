@@ -37,9 +37,8 @@ MIN_PROBABILITY = 1e-4
 
 _CONFIDENCE = 0.95
 _ROUNDING = 1e-9
-_MAX_ITERATIONS, _MAX_HALVINGS = 60, 40
-# Squared distance from the maximum of the likelihood, in standard errors, at which the iteration stops.
-_CONVERGED = 1e-8
+# Slope of the log-likelihood per pair at which its maximisation stops.
+_TOLERANCE = 1e-12
 
 
 def _empty_counts() -> np.ndarray:
@@ -292,23 +291,21 @@ def _powers(x: np.ndarray, degree: int) -> np.ndarray:
 
 
 def _maximise_likelihood(design: np.ndarray, n: np.ndarray, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients of log f and their covariance, by Fisher scoring; the log-likelihood is concave in the coefficients."""
+    """Coefficients of log f and their covariance; the log-likelihood is concave in the coefficients."""
+    from scipy import optimize
 
-    def log_likelihood(coefficients: np.ndarray) -> float:
+    def loss(coefficients: np.ndarray) -> float:
         log_share = design @ coefficients
-        return float(k @ log_share + (n - k) @ np.log(-np.expm1(log_share))) if np.all(log_share < 0.0) else -np.inf
+        return float(-k @ log_share - (n - k) @ np.log(-np.expm1(log_share))) / n.sum() if np.all(log_share < 0.0) else np.inf
 
-    coefficients = np.zeros(design.shape[1])
-    coefficients[0] = np.log(k.sum() / n.sum())
-    for _ in range(_MAX_ITERATIONS):
+    def gradient(coefficients: np.ndarray) -> Any:
         share = np.exp(design @ coefficients)
-        information = design.T @ (design * (n * share / (1.0 - share))[:, None])
-        slope = design.T @ ((k - n * share) / (1.0 - share))
-        step = np.linalg.solve(information, slope)
-        if slope @ step < _CONVERGED:
-            break
-        current = log_likelihood(coefficients)
-        trials = (j for j in range(_MAX_HALVINGS) if log_likelihood(coefficients + 0.5**j * step) >= current)
-        halvings = next(trials, _MAX_HALVINGS)
-        coefficients = coefficients + 0.5**halvings * step
-    return coefficients, np.linalg.inv(information)
+        return design.T @ ((n * share - k) / (1.0 - share)) / n.sum()
+
+    def information(coefficients: np.ndarray) -> Any:
+        share = np.exp(design @ coefficients)
+        return design.T @ (design * (n * share / (1.0 - share))[:, None]) / n.sum()
+
+    guess = np.eye(1, design.shape[1])[0] * np.log(k.sum() / n.sum())
+    found = optimize.minimize(loss, guess, method="trust-exact", jac=gradient, hess=information, options={"gtol": _TOLERANCE}).x
+    return found, np.linalg.inv(information(found)) / n.sum()

@@ -140,20 +140,18 @@ class _Fitter:
         while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
             sample, later = self.latest(remaining), self.latest(int(remaining * _SETTLED_SHARE))
             for law in DecayLaw:
-                distance = fit_steepness_and_distance(sample.unit_times(law))[1]
-                if self.may_hold(law, sample) and self.may_hold(law, later):
+                fit = fit_steepness_and_distance(sample.unit_times(law))
+                if self.may_hold(fit, sample) and self.may_hold(fit_steepness_and_distance(later.unit_times(law)), later):
                     return later.t_low, True
-                if distance < smallest:
-                    smallest, t_low = distance, sample.t_low
+                if fit[1] < smallest:
+                    smallest, t_low = fit[1], sample.t_low
             remaining = int(remaining * _WINDOW_RATIO)
         return t_low, False
 
-    def may_hold(self, law: DecayLaw, sample: _Sample) -> bool:
-        """Whether the sample does not rule a law out."""
-        (steepness, distance), count = fit_steepness_and_distance(sample.unit_times(law)), sample.times.size
-        if scaled_distance(distance, count) > _MAX_TESTED_DISTANCE:
-            return False
-        return self.find_p_value(steepness, distance, count) >= MIN_P_VALUE
+    def may_hold(self, fit: tuple[float, float], sample: _Sample) -> bool:
+        """Whether the sample does not rule out the law with this steepness and distance."""
+        tested = scaled_distance(fit[1], sample.times.size) <= _MAX_TESTED_DISTANCE
+        return tested and self.find_p_value(*fit, sample.times.size) >= MIN_P_VALUE
 
     def latest(self, count: int) -> _Sample:
         """The latest `count` escapes; the window begins at the escape before them."""
@@ -204,7 +202,7 @@ class _Fitter:
         raise_if_cancelled(self.cancel)
         size = min(count, _MAX_SAMPLE_SIZE)
         shares = np.random.default_rng(self.seed).random((self.resamples, size))
-        samples = np.sort(quantile(steepness, shares), axis=1)
+        samples = np.sort(quantile(abs(steepness), shares), axis=1)
         fitted = solve_steepness(samples.mean(axis=1))
         scaled = scaled_distance(kolmogorov_smirnov_distance(fitted[:, None], samples), size)
         return float(np.mean(scaled >= scaled_distance(distance, count)))

@@ -132,8 +132,7 @@ class EscapeStatistics(Result):
         if high <= low * (1.0 + _EQUAL_TIMES):
             low, high = low * _LOWER_EDGE, high / _LOWER_EDGE
         edges = np.geomspace(low, high, bins + 1)
-        place = np.clip(np.searchsorted(edges, self.escape_times, side="right") - 1, 0, bins - 1)
-        return read_only(edges), read_only(np.bincount(place, minlength=bins))
+        return read_only(edges), read_only(np.histogram(np.maximum(self.escape_times, low), edges)[0])
 
 
 def compute_statistics(frame: EscapeMap, window: Window | None = None) -> EscapeStatistics:

@@ -139,26 +139,12 @@ def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
     >>> [round(end, 1) for end in fit.intervals["a"]]
     [15.8, 24.7]
     """
-    from scipy import optimize
-
     energies, shares = _checked_shares(h, "escaped", escaped, starts, parameters=2)
     if np.count_nonzero((shares > 0.0) & (shares < 1.0)) < _MIN_UNSATURATED:
         return _build_fit(HyperbolicTangent(np.nan, np.nan), np.full(2, np.nan), energies, shares)
-    middle, width = energies.mean(), np.ptp(energies)
-    design = np.column_stack([(energies - middle) / width, np.full(energies.size, -1.0)])
-
-    def residuals(parameters: np.ndarray) -> Any:
-        return 0.5 * (1.0 + np.tanh(design @ parameters)) - shares
-
-    def jacobian(parameters: np.ndarray) -> Any:
-        return 0.5 * (1.0 - np.tanh(design @ parameters)[:, None] ** 2) * design
-
-    guess = np.linalg.lstsq(design, np.arctanh(2.0 * np.clip(shares, _SATURATED, 1.0 - _SATURATED) - 1.0))[0]
-    found = optimize.least_squares(residuals, guess, jacobian, method="lm", xtol=_TOLERANCE, ftol=_TOLERANCE, gtol=_TOLERANCE).x
-    # From parameters for (h − middle) / width to those for h.
-    to_energy = np.array([[1.0 / width, 0.0], [middle / width, 1.0]])
-    half_widths = _find_half_widths(jacobian(found), residuals(found), to_energy)
-    return _build_fit(HyperbolicTangent(*(to_energy @ found).tolist()), half_widths, energies, shares)
+    guess = np.arctanh(2.0 * np.clip(shares, _SATURATED, 1.0 - _SATURATED) - 1.0)
+    (constant, slope), half_widths = _fit(lambda line: 0.5 * (1.0 + np.tanh(line)), guess, 1, energies, shares)
+    return _build_fit(HyperbolicTangent(slope, -constant), half_widths[::-1], energies, shares)
 
 
 def fit_direct_shares(h: Any, direct: Any, starts: Any, *, degree: int = 3) -> ShareFit:
@@ -197,12 +183,8 @@ def fit_direct_shares(h: Any, direct: Any, starts: Any, *, degree: int = 3) -> S
     """
     degree = checked_count("degree", degree, 1, MAX_DEGREE)
     energies, shares = _checked_shares(h, "direct", direct, starts, parameters=degree + 1)
-    middle, width = energies.mean(), np.ptp(energies)
-    powers = np.vander((energies - middle) / width, degree + 1, increasing=True)
-    found = np.linalg.lstsq(powers, shares)[0]
-    to_energy = _shift_matrix(middle, width, degree)
-    half_widths = _find_half_widths(powers, shares - powers @ found, to_energy)
-    return _build_fit(Polynomial(tuple((to_energy @ found).tolist())), half_widths, energies, shares)
+    coefficients, half_widths = _fit(lambda polynomial: polynomial, shares, degree, energies, shares)
+    return _build_fit(Polynomial(tuple(coefficients)), half_widths, energies, shares)
 
 
 def measure_deviation(curve: Callable[[Any], Any], h: Any, counts: Any, starts: Any) -> Deviation:
@@ -241,6 +223,29 @@ def _find_deviation(curve: Callable[[Any], Any], energies: np.ndarray, shares: n
     return Deviation(float(difference[largest]), float(energies[largest]), float(np.sqrt(np.mean(difference**2))))
 
 
+def _fit(
+    curve: Callable[[np.ndarray], np.ndarray], guess: np.ndarray, degree: int, energies: np.ndarray, shares: np.ndarray
+) -> tuple[list[float], np.ndarray]:
+    """Fit `curve` of a polynomial in h to the shares: coefficients, lowest power first, and half widths of their intervals.
+
+    It starts from the polynomial closest to `guess` (m,).
+    """
+    from scipy import optimize
+
+    # Powers of h itself are nearly dependent, so the parameters are those of powers of u, which runs from −1 to 1.
+    domain = [energies.min(), energies.max()]
+    u = np.polynomial.polyutils.mapdomain(energies, domain, (-1.0, 1.0))
+    powers = np.vander(u, degree + 1, increasing=True)
+    found = optimize.least_squares(
+        lambda parameters: curve(powers @ parameters) - shares, np.linalg.lstsq(powers, guess)[0], "3-point", method="lm",
+        xtol=_TOLERANCE, ftol=_TOLERANCE, gtol=_TOLERANCE,
+    )  # fmt: skip
+    to_energy = np.zeros((degree + 1, degree + 1))
+    for power in range(degree + 1):
+        to_energy[: power + 1, power] = np.polynomial.Polynomial.basis(power, domain).convert().coef
+    return (to_energy @ found.x).tolist(), _find_half_widths(found.jac, found.fun, to_energy)
+
+
 def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray, transform: np.ndarray) -> np.ndarray:
     """(p,) half widths of the intervals of `transform` @ the parameters with Jacobian J (m, p).
 
@@ -248,24 +253,15 @@ def _find_half_widths(jacobian: np.ndarray, residuals: np.ndarray, transform: np
     """
     from scipy import special
 
-    (count, parameters), (q, r) = jacobian.shape, np.linalg.qr(jacobian)
-    leverage = np.sum(q * q, axis=1)
+    count, parameters = jacobian.shape
+    inverse = np.linalg.pinv(jacobian)
+    leverage = np.sum(jacobian.T * inverse, axis=0)
     if leverage.max() > _MAX_LEVERAGE or np.linalg.matrix_rank(jacobian) < parameters:
         return np.full(parameters, np.inf)
-    root = transform @ np.linalg.inv(r) @ (q * (residuals / (1.0 - leverage))[:, None]).T
+    root = transform @ inverse * (residuals / (1.0 - leverage))
     quantile = special.stdtrit(count - parameters, 0.5 * (1.0 + _CONFIDENCE))
-    half_widths: np.ndarray = quantile * np.sqrt(np.sum(root * root, axis=1))
+    half_widths: np.ndarray = quantile * np.linalg.norm(root, axis=1)
     return half_widths
-
-
-def _shift_matrix(middle: float, width: float, degree: int) -> np.ndarray:
-    """Matrix from polynomial coefficients in (h − middle) / width to coefficients in h."""
-    matrix = np.zeros((degree + 1, degree + 1))
-    power = np.ones(1)
-    for column in range(degree + 1):
-        matrix[: column + 1, column] = power
-        power = np.convolve(power, [-middle / width, 1.0 / width])
-    return matrix
 
 
 def _build_fit(curve: ShareCurve, half_widths: np.ndarray, energies: np.ndarray, shares: np.ndarray) -> ShareFit:

@@ -1,6 +1,7 @@
 """Truncated exponential distribution with density ∝ exp(−k u) on 0 ≤ u ≤ 1: maximum-likelihood fit and goodness of fit.
 
-The steepness k can have either sign; k = 0 is the uniform distribution. Samples u have increasing values along their last axis.
+The steepness k can have either sign; k = 0 is the uniform distribution. u ↔ 1 − u changes the sign of k and nothing else. SciPy's
+`truncexpon` has only k > 0, and no estimate for many samples at once. Samples u have increasing values along their last axis.
 """
 
 from __future__ import annotations
@@ -8,12 +9,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-
-_NEWTON_STEPS = 12
-# Below this steepness the mean is computed from its series, which avoids cancellation.
-_SMALL_STEEPNESS = 1e-2
-# Smallest steepness in the formulas that divide by it; the difference from 0 is below their rounding.
-_MIN_STEEPNESS = 1e-9
 
 
 def fit_steepness_and_distance(u: np.ndarray) -> tuple[float, float]:
@@ -23,39 +18,37 @@ def fit_steepness_and_distance(u: np.ndarray) -> tuple[float, float]:
 
 
 def solve_steepness(means: np.ndarray) -> np.ndarray:
-    """Steepness k of the truncated exponentials with these means in (0, 1); negative for means above 1/2.
+    """Steepness k of the truncated exponentials with these means in (0, 1), which is the maximum-likelihood estimate.
 
-    This is the maximum-likelihood estimate. Newton's method solves 1/k − 1/(exp k − 1) = mean from below; for k > 0 the left side
-    is convex and decreases from 1/2. Means m and 1 − m have opposite k.
+    It solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean; the left form is accurate for small k too.
     """
+    from scipy import special
+    from scipy.optimize import elementwise
+
     lower = np.minimum(means, 1.0 - means)
-    k = 1.0 / lower - 2.0
-    with np.errstate(over="ignore"):
-        for _ in range(_NEWTON_STEPS):
-            small = k < _SMALL_STEEPNESS
-            large = np.where(small, 1.0, k)
-            power = np.expm1(large)
-            mean = np.where(small, 0.5 - k / 12.0 + k**3 / 720.0, 1.0 / large - 1.0 / power)
-            slope = np.where(small, -1.0 / 12.0 + k**2 / 240.0, (1.0 / power) * (1.0 + 1.0 / power) - 1.0 / large**2)
-            k = k - (mean - lower) / slope
-    signed: np.ndarray = np.where(means < 0.5, k, -k)
-    return signed
+    found = elementwise.find_root(
+        lambda k, mean: 0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k) - mean,
+        (np.zeros_like(lower), 2.0 / lower),
+        args=(lower,),
+    ).x
+    steepness: np.ndarray = np.where(means < 0.5, found, -found)
+    return steepness
 
 
 def cumulative_share(steepness: Any, u: np.ndarray) -> np.ndarray:
     """Cumulative distribution function at u; arguments broadcast."""
-    k = np.maximum(np.abs(steepness), _MIN_STEEPNESS)
-    mirrored = steepness < 0.0
-    share = np.expm1(-k * np.where(mirrored, 1.0 - u, u)) / np.expm1(-k)
-    cumulative: np.ndarray = np.where(mirrored, 1.0 - share, share)
-    return cumulative
+    from scipy import special
+
+    k = np.abs(steepness)
+    share: np.ndarray = u * special.exprel(-k * u) / special.exprel(-k)
+    # With exp k divided out, which overflows.
+    return np.where(steepness < 0.0, np.exp(-k * (1.0 - u)) * share, share)
 
 
 def quantile(steepness: float, share: np.ndarray) -> np.ndarray:
-    """Inverse of `cumulative_share`."""
-    k = max(abs(steepness), _MIN_STEEPNESS)
-    u: np.ndarray = -np.log1p(share * np.expm1(-k)) / k
-    return 1.0 - u if steepness < 0.0 else u
+    """Inverse of `cumulative_share` for k ≥ 0."""
+    u: np.ndarray = -np.log1p(share * np.expm1(-steepness)) / steepness if steepness > 0.0 else share
+    return u
 
 
 def kolmogorov_smirnov_distance(steepness: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -74,6 +67,8 @@ def scaled_distance(distance: Any, count: int) -> Any:
 
 def max_log_likelihood(means: np.ndarray) -> np.ndarray:
     """Largest log-likelihood per sample point of a truncated exponential, for samples with these means."""
-    k = np.maximum(np.abs(solve_steepness(means)), _MIN_STEEPNESS)
-    likelihood: np.ndarray = np.log(-k / np.expm1(-k)) - k * np.minimum(means, 1.0 - means)
+    from scipy import special
+
+    k = np.abs(solve_steepness(means))
+    likelihood: np.ndarray = -np.log(special.exprel(-k)) - k * np.minimum(means, 1.0 - means)
     return likelihood

@@ -102,7 +102,6 @@ def run_sweep(
         with hold_lock(path):
             sweep = _find_store(spec, path) or _create_store(spec, path)
             _compute_pending(spec, sweep, on_progress, cancel, executor)
-    sweep.delete_obsolete_checkpoints()
     if on_progress is not None:
         on_progress(1.0)
     return sweep.open_dataset()
@@ -117,8 +116,7 @@ def _compute_pending(
 ) -> None:
     """Compute the unfinished energies, one after the other."""
     pending, count = sweep.pending(), len(spec.energies)
-    sweep.check_writable()
-    sweep.delete_obsolete_checkpoints()
+    sweep.prepare_writing()
     for finished, index in enumerate(pending, start=count - len(pending)):
         _compute_energy(spec, sweep, index, _start_progress(on_progress, finished, count), cancel, executor)
 
@@ -131,25 +129,21 @@ def _compute_energy(
     cancel: threading.Event | None,
     executor: Executor | None,
 ) -> None:
-    """Compute the map at one energy, or its missing row blocks, into the store."""
+    """Compute the missing row blocks of the map at one energy into the store."""
     map_spec = spec.map_spec(spec.energies[index])
     blocks = list(row_blocks(map_spec, spec.piece or LARGEST_RUN))
-    if len(blocks) == 1:
-        on_frame = None if report is None else lambda frame: report(frame.progress)
-        images = require_complete(compute_map(map_spec, on_frame, cancel, executor)).to_xarray()
+    for number in sweep.unfinished_blocks(index, blocks):
+        if len(blocks) == 1:
+            on_frame = None if report is None else lambda frame: report(frame.progress)
+            block = require_complete(compute_map(map_spec, on_frame, cancel, executor))
+        else:
+            block = _compute_block(map_spec, blocks[number], cancel, executor)
         with _name_in_errors(sweep.path):
-            sweep.write(index, images)
-        return
-    checkpoint = sweep.checkpoint(index)
-    for number, rows in enumerate(blocks):
-        if number not in checkpoint:
-            block = _compute_block(map_spec, rows, cancel, executor)
-            with _name_in_errors(sweep.path):
-                checkpoint.write(number, {name: getattr(block, name) for name in sweep.image_names})
+            sweep.write(index, blocks[number], block)
         if report is not None:
             report((number + 1) / len(blocks))
     with _name_in_errors(sweep.path):
-        sweep.write_blocks(index, blocks)
+        sweep.mark_done(index)
 
 
 @contextmanager

@@ -1,8 +1,4 @@
-"""The store of a sweep: one Zarr group on disk, filled energy by energy.
-
-Row blocks of an unfinished energy are kept in separate files, because a chunk of an array cannot hold a block together with its
-mirror image.
-"""
+"""The store of a sweep: one Zarr group on disk, filled row block by row block."""
 
 from __future__ import annotations
 
@@ -10,13 +6,14 @@ import json
 import os
 import shutil
 import tempfile
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from engine.sweeps.checkpoint_blocks import CheckpointBlocks
+from engine.maps.result import EscapeMap
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,14 +21,13 @@ if TYPE_CHECKING:
 DONE = "done"
 """Array (h,) of bool: the finished energies. An element is written after all other arrays of its energy."""
 
-CHECKPOINTS = "under_way"
-"""Group whose folder holds the checkpoints of unfinished energies; it is empty to Zarr."""
-
 _FORMAT: Final = 3
 # Name of the temporary files of Zarr.
 _UNFINISHED = "*.partial"
 # Arrays of a map are (h, ordinate, x); all others have fewer axes.
 _IMAGE_AXES = 3
+# Array of a map that is written last. A row block is finished if none of its elements has the fill value.
+_LAST = "fate"
 
 
 class SweepStore:
@@ -51,7 +47,9 @@ class SweepStore:
         group = zarr.open_group(path, mode="r+", zarr_format=_FORMAT)
         self.attributes = dict(group.attrs)
         self._arrays = dict(group.arrays())
-        self.image_names = [name for name, array in self._arrays.items() if array.ndim == _IMAGE_AXES]
+        images = (name for name, array in self._arrays.items() if array.ndim == _IMAGE_AXES)
+        self._images = sorted(images, key=lambda name: name == _LAST)
+        self._chunk_rows = self._arrays[_LAST].chunks[1]
 
     def check_request(self, attributes: dict[str, Any], coordinates: dict[str, np.ndarray]) -> None:
         """Raise a ValueError that names the difference if the store belongs to another request."""
@@ -63,53 +61,38 @@ class SweepStore:
             if name not in self._arrays or not np.array_equal(self._arrays[name][...], values):
                 raise ValueError(f"store={self.path}: holds another sweep, with other values of {name}; they must be equal")
 
-    def check_writable(self) -> None:
-        """Raise an OSError if no file can be created in the store."""
+    def prepare_writing(self) -> None:
+        """Delete the temporary files of a killed run. Raises an OSError if no file can be created in the store."""
         with tempfile.TemporaryFile(dir=self.path):
             pass
+        for unfinished in self.path.rglob(_UNFINISHED):
+            unfinished.unlink()
 
     def pending(self) -> list[int]:
         """Return the indices of the unfinished energies, ascending."""
-        indices: list[int] = np.flatnonzero(~self._done()).tolist()
+        indices: list[int] = np.flatnonzero(~np.asarray(self._arrays[DONE][...], bool)).tolist()
         return indices
 
-    def write(self, index: int, images: xr.Dataset) -> None:
-        """Write all arrays of one energy, and mark it as finished once they are on the disk."""
-        self._clear(index)
-        for name in images.data_vars:
-            self._arrays[str(name)][index] = images[name].to_numpy()
-            self._sync_to_disk(str(name), index)
-        self._arrays[DONE][index] = True
+    def unfinished_blocks(self, index: int, blocks: Sequence[np.ndarray]) -> list[int]:
+        """Return the numbers of the row blocks of an energy that are not finished, ascending."""
+        chunks = range(self._arrays[_LAST].cdata_shape[1])
+        missing = np.concatenate([self._missing_rows(index, chunk) for chunk in chunks])
+        return [number for number, rows in enumerate(blocks) if missing[rows].any()]
 
-    def checkpoint(self, index: int) -> CheckpointBlocks:
-        """Return the finished row blocks of an unfinished energy."""
-        return CheckpointBlocks(self.path / CHECKPOINTS / str(index))
+    def write(self, index: int, rows: np.ndarray, block: EscapeMap) -> None:
+        """Write the given rows of one energy.
 
-    def write_blocks(self, index: int, blocks: Sequence[np.ndarray]) -> None:
-        """Write one energy as `write` does, from its checkpoint, and delete the checkpoint.
-
-        At most one chunk of an array and one array of a block are in memory at a time.
-
-        Parameters
-        ----------
-        index
-            Index of the energy.
-        blocks
-            Row indices of each block.
+        Chunks are replaced atomically, and each array is on the disk before the next one is written: against power cuts, and to
+        detect a full disk in time.
         """
-        self._clear(index)
-        checkpoint = self.checkpoint(index)
-        for name in self.image_names:
-            for low in range(0, self._arrays[name].shape[1], self._arrays[name].chunks[1]):
-                self._write_chunk(name, index, low, blocks, checkpoint)
-            self._sync_to_disk(name, index)
-        self._arrays[DONE][index] = True
-        checkpoint.delete()
+        for name in self._images:
+            self._arrays[name].oindex[index, rows] = getattr(block, name)
+            for chunk in np.unique(rows // self._chunk_rows).tolist():
+                _sync_to_disk(self._chunk_file(name, index, chunk))
 
-    def delete_obsolete_checkpoints(self) -> None:
-        """Delete the checkpoints of finished energies, which a run leaves if it is killed before it deletes them."""
-        for index in np.flatnonzero(self._done()).tolist():
-            self.checkpoint(index).delete()
+    def mark_done(self, index: int) -> None:
+        """Mark an energy as finished."""
+        self._arrays[DONE][index] = True
 
     def open_dataset(self) -> xr.Dataset:
         """Open the arrays, without the flags; they are read from the disk on access."""
@@ -119,32 +102,27 @@ class SweepStore:
         dataset: xr.Dataset = xr.open_zarr(self.path, chunks=None, consolidated=False, zarr_format=_FORMAT)
         return dataset.drop_vars(DONE)
 
-    def _done(self) -> np.ndarray:
-        return np.asarray(self._arrays[DONE][...], bool)
+    def _missing_rows(self, index: int, chunk: int) -> np.ndarray:
+        """Which rows of a chunk are not finished. If it cannot be read, as after a power cut, it is deleted."""
+        rows = slice(chunk * self._chunk_rows, (chunk + 1) * self._chunk_rows)
+        try:
+            images = [self._arrays[name][index, rows] for name in self._images]
+        except RuntimeError:
+            for name in self._images:
+                self._chunk_file(name, index, chunk).unlink(missing_ok=True)
+            return self._missing_rows(index, chunk)
+        missing: np.ndarray = np.any(images[-1] == self._arrays[_LAST].fill_value, axis=1)
+        return missing
 
-    def _write_chunk(self, name: str, index: int, low: int, blocks: Sequence[np.ndarray], checkpoint: CheckpointBlocks) -> None:
-        array = self._arrays[name]
-        high = min(low + array.chunks[1], array.shape[1])
-        chunk = np.empty((high - low, array.shape[2]), array.dtype)
-        for number, rows in enumerate(blocks):
-            inside = (rows >= low) & (rows < high)
-            if inside.any():
-                chunk[rows[inside] - low] = checkpoint.read(number, name)[inside]
-        array[index, low:high] = chunk
+    def _chunk_file(self, name: str, index: int, chunk: int) -> Path:
+        return self.path / name / "c" / str(index) / str(chunk) / "0"
 
-    def _clear(self, index: int) -> None:
-        """Delete the arrays of an energy that a killed run left, including temporary files of Zarr."""
-        for name in self.image_names:
-            shutil.rmtree(self.path / name / "c" / str(index), ignore_errors=True)
-        for unfinished in (self.path / DONE / "c").glob(_UNFINISHED):
-            unfinished.unlink()
 
-    def _sync_to_disk(self, name: str, index: int) -> None:
-        """Flush the chunks of an energy before it is marked: against power cuts, and to detect a full disk in time."""
-        for chunk in (self.path / name / "c" / str(index)).rglob("*"):
-            if chunk.is_file():
-                with chunk.open("rb+") as file:
-                    os.fsync(file.fileno())
+def _sync_to_disk(path: Path) -> None:
+    """Flush a chunk; chunks that hold only the fill value have no file."""
+    if path.exists():
+        with path.open("rb+") as file:
+            os.fsync(file.fileno())
 
 
 def create_store(
@@ -204,9 +182,12 @@ def _create_group(
         )  # fmt: skip
     for name, values in coordinates.items():
         group.create_array(name, data=values, dimension_names=[name], attributes={"units": "1"})
-    group.create_group(CHECKPOINTS)
     # One chunk, and thus one file, per energy: a flag is written atomically.
     group.create_array(DONE, shape=shape[:1], chunks=(1,), dtype=bool, fill_value=False, dimension_names=["h"])
+    with warnings.catch_warnings():
+        # All metadata in one file are an extension of format 3, without which xarray warns and opens more slowly.
+        warnings.filterwarnings("ignore", "Consolidated metadata", zarr.errors.ZarrUserWarning)
+        zarr.consolidate_metadata(path, zarr_format=_FORMAT)
 
 
 def _as_stored(attributes: dict[Any, Any]) -> dict[str, Any]:

@@ -65,7 +65,7 @@ def test_sweep_can_be_resumed_after_a_full_disk(tmp_path: Path, run_limited: Cal
 
 
 def _arrays(store: Path) -> dict[str, bytes]:
-    with xr.open_zarr(store, consolidated=False) as dataset:
+    with xr.open_zarr(store) as dataset:
         return {str(name): dataset[name].to_numpy().tobytes() for name in dataset.data_vars}
 
 
