@@ -99,6 +99,6 @@ def _place_in_app(frame: FrameType) -> str | None:
 def _place_in_library(frame: FrameType) -> str | None:
     module = frame.f_globals.get("__name__", "")
     top = module.partition(".")[0]
-    if top in sys.stdlib_module_names or top in ("__main__", "") or module.startswith(_LOOP):
+    if top in sys.stdlib_module_names or top in ("__main__", "app", "") or module.startswith(_LOOP):
         return None
     return f"{module}: {frame.f_code.co_qualname}"

@@ -232,7 +232,8 @@ class Explorer:
         shown = ViewState(**fitting)
         self._navigating = True
         try:
-            with pn.io.hold():
+            # A link can add figures and buttons: Bokeh searches the models of the page once for all of them.
+            with pn.io.hold(), self._document.models.freeze():
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
             self._navigating = False
