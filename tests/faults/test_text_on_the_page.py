@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.state.system import review_catalogue_entry
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.analysis.potential_panel import PotentialPanel
@@ -56,7 +57,7 @@ def _measures() -> tuple[Callable[[str], None], pn.pane.HTML]:
 
 
 def _potential() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    panel = PotentialPanel(lambda _: None, lambda _: None)
+    panel = PotentialPanel(review_catalogue_entry("I"), lambda _: None, lambda _: None)
     return panel.say, panel.message
 
 
