@@ -90,5 +90,7 @@ def _start_state() -> ProcessState:
 
 
 def _monitor_load(state: ProcessState, watch: LoopWatch) -> None:
-    watch.tick()
+    # The log of a server that stops ends with that it does.
+    if not state.stopping.is_set():
+        watch.tick()
     state.jobs.pause_background(state.load.is_high())

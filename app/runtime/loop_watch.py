@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import sys
 import threading
+import time
 import traceback
 from collections import Counter
 from pathlib import Path
@@ -32,7 +33,7 @@ _LOOP = (
     "threading",
     "panel.command",
     "bokeh.command",
-    "bokeh.server.util",
+    "bokeh.server.server",
 )
 
 WAITING = "none: the thread waited for the interpreter lock or a processor"
@@ -58,15 +59,18 @@ class LoopWatch:
         self._load, self._delays = load, delays
         self._thread = threading.get_ident()
         self._samples: list[str] = []
+        self._busy = time.thread_time()
 
     def tick(self) -> None:
         """Measure the delay and report a long one; call every `TICK_SECONDS` on the event loop."""
         late = self._load.tick()
+        busy, self._busy = time.thread_time() - self._busy, time.thread_time()
         samples, self._samples = self._samples, []
         if late > _REPORTED:
             cause = Counter(samples).most_common(1)[0][0] if samples else WAITING
             self._delays.labels(cause).observe(late)
-            log.info("the event loop was %.0f ms late; cause: %s", 1000.0 * late, cause)
+            # Other threads and processes delay the loop, too: beside its delay stands the processor time that it took itself.
+            log.info("event loop %.0f ms late, %.0f ms of its own; cause: %s", 1000.0 * late, 1000.0 * busy, cause)
 
     def watch(self, stopping: threading.Event) -> None:
         """Look at the loop's stack whenever its tick is overdue, until the server stops; runs on a thread of its own."""
@@ -77,11 +81,14 @@ class LoopWatch:
 
 
 def find_cause(innermost: FrameType) -> str:
-    """The outermost function of the app on a stack, apart from those that pass calls on; else the innermost of a library."""
-    frames = [frame for frame, _ in traceback.walk_stack(innermost)]
-    own = [place for frame in reversed(frames) if (place := _place_in_app(frame)) is not None]
+    """The outermost function of the app on a stack, apart from those that pass calls on; else the outermost of a library."""
+    frames = [frame for frame, _ in traceback.walk_stack(innermost)][::-1]
+    own = [place for place in map(_place_in_app, frames) if place is not None]
+    theirs = [place for place in map(_place_in_library, frames) if place is not None]
     named = next((place for place in own if not place.startswith(_PLUMBING)), None)
-    return named or next(iter(own), None) or next(filter(None, map(_place_in_library, frames)), WAITING)
+    if named is not None or not own:
+        return named or next(iter(theirs), WAITING)
+    return f"{own[0]}, {theirs[-1]}" if theirs else own[0]
 
 
 def _place_in_app(frame: FrameType) -> str | None:
@@ -92,6 +99,6 @@ def _place_in_app(frame: FrameType) -> str | None:
 def _place_in_library(frame: FrameType) -> str | None:
     module = frame.f_globals.get("__name__", "")
     top = module.partition(".")[0]
-    if top in sys.stdlib_module_names or top in ("__main__", "") or module.startswith(_LOOP):
+    if top in sys.stdlib_module_names or top in ("__main__", "app", "") or module.startswith(_LOOP):
         return None
     return f"{module}: {frame.f_code.co_qualname}"

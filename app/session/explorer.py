@@ -178,8 +178,12 @@ class Explorer:
         if is_known(system):
             self._begin_view()
         else:
+            self._open(system, self._begin_with, self._begin_without)
+
+    def _open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
+        """Use a system once it is reviewed, and say so meanwhile."""
+        if self.potential.open(system, use, refuse):
             self.progress.show_reviewing()
-            self.potential.open(system, self._begin_with, self._begin_without)
 
     def _begin_with(self, reviewed: SystemReview) -> None:
         """Show the view of a link with the system that it names."""
@@ -217,9 +221,10 @@ class Explorer:
         self.browser.follow_steps(steps)
         values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
-        self.potential.open(linked_system(values), partial(self._show_linked, values), self._warn_of_link)
+        self._open(linked_system(values), partial(self._show_linked, values), self._warn_of_link)
 
     def _warn_of_link(self, problem: str) -> None:
+        self.progress.fail()
         self.notice.warn(refused_link(problem))
 
     def _show_linked(self, values: dict[str, Any], reviewed: SystemReview) -> list[str]:
@@ -228,7 +233,8 @@ class Explorer:
         shown = ViewState(**fitting)
         self._navigating = True
         try:
-            with pn.io.hold():
+            # A link can add figures and buttons: Bokeh searches the models of the page once for all of them.
+            with pn.io.hold(), self._document.models.freeze():
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
             self._navigating = False
@@ -326,7 +332,7 @@ class Explorer:
     def _show_preset(self, preset: Preset) -> None:
         self.engine.stop()
         show = partial(self.state.show, chosen=0, **preset.values())
-        self.potential.open(System(preset.case), show, self.notice.warn)
+        self._open(System(preset.case), show, self._warn_of_link)
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

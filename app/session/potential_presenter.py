@@ -50,9 +50,21 @@ class PotentialPresenter:
         if self.panel.section.is_open:
             self._preview(self.panel.shown)
 
-    def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
-        """Review the system of a link, a preset or the browser's history, then use or refuse it; at once if it is known."""
+    def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
+        """Use the system of a link, a preset or the browser's history, or refuse it; returns whether it is under review."""
+        known = self._known_review(system)
+        if known is not None and known.problem is None:
+            self._drop_opened()
+            use(known)
+            return False
         self._propose(_Proposal(system, use, refuse))
+        return True
+
+    def _drop_opened(self) -> None:
+        """Cancel the review of an earlier link; that of a text that is being typed goes on."""
+        if self._proposal is not None and self._proposal.refuse is not None:
+            self._proposal = None
+            self._request.cancel()
 
     def close(self) -> None:
         """Cancel the request at the end of the session."""
@@ -78,7 +90,8 @@ class PotentialPresenter:
             self._request.cancel()
             self._show(known)
         else:
-            self.panel.wait()
+            if proposal.refuse is None:
+                self.panel.wait()
             self._request.submit(Job(review_system, (proposal.system,), queue=Queue.LONG_CALL))
 
     def _known_review(self, system: System) -> SystemReview | None:

@@ -10,6 +10,7 @@ from html import escape
 
 import panel as pn
 import pytest
+from app.state.system import review_catalogue_entry
 from playwright.sync_api import Browser
 
 from app.job_clients.orbit_requests import ChosenOrbit
@@ -56,7 +57,7 @@ def _measures() -> tuple[Callable[[str], None], pn.pane.HTML]:
 
 
 def _potential() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    panel = PotentialPanel(lambda _: None, lambda _: None)
+    panel = PotentialPanel(review_catalogue_entry("I"), lambda _: None, lambda _: None)
     return panel.say, panel.message
 
 

@@ -149,3 +149,14 @@ def test_a_choice_made_during_a_review_is_kept() -> None:
         assert explorer.state.system == System("III")
 
     with_page(LEGAL, check)
+
+
+def test_a_refused_entry_of_the_history_leaves_the_view_with_a_reason() -> None:
+    async def check(explorer: Explorer) -> None:
+        explorer._navigate("?" + urlencode(CIRCULAR | {"h": "0.5", "resolution": "112"}), 0, 0)
+        assert "Reviewing" in explorer.progress.text.object
+        await wait_for(lambda: "Ignored the potential in the link" in explorer.notice._pane.object)
+        assert (explorer.state.case, explorer.state.energy, explorer.state.resolution) == ("I", 0.19, 224)
+        assert "Reviewing" not in explorer.progress.text.object
+
+    with_page({}, check)
