@@ -5,7 +5,7 @@ handlers there as well. They are the only public way to reach the handlers of ``
 option: lifecycle hooks get no reference to the web application, which already exists when they run.
 
 Not covered, because Bokeh and Panel add them elsewhere: the redirect from ``/``, ``/favicon.ico``, ``/app/static`` and
-Panel's ``/components`` and login pages.
+Panel's login pages. `app.server.routes` refuses what the page does not need.
 """
 
 from __future__ import annotations
@@ -14,13 +14,20 @@ from typing import Any
 
 from panel.io.server import DocHandler, RootHandler, WSHandler
 
-from app.server.endpoints import ROUTES, NotFound
+from app.server.endpoints import ROUTES
 from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
+from app.server.session_tokens import issue_token, use_token
 
 
 class PageHandler(SecurityHeaders, DocHandler):
-    """Serves the page with a nonce on its scripts."""
+    """Serves the page with a nonce on its scripts, and with a signed token of its session."""
+
+    async def get_session(self) -> Any:
+        """Create the session of a new token."""
+        extra = self.application_context.application.process_request(self.request)
+        use_token(self.request, issue_token(self.application, self.request, extra))
+        return await super().get_session()
 
     def write(self, chunk: Any) -> None:
         """Write a response; a page gets the nonce and the matching policy."""
@@ -41,7 +48,7 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     """
     for patterns in (per_app_patterns, toplevel_patterns):
         patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
-    toplevel_patterns += [route for route in (*ROUTES, ("/.*", NotFound)) if route not in toplevel_patterns]
+    toplevel_patterns += [route for route in ROUTES if route not in toplevel_patterns]
 
 
 def _secured(handler: type) -> type:
