@@ -24,8 +24,8 @@ LIMITS: Mapping[str, int] = {
     "body_timeout": 10,
     # There are no uploads.
     "max_body_size": 64 * 1024,
-    # A link, or the token of its session, and cookies.
-    "max_header_size": 2 * LONGEST_LINK,
+    # The request of a WebSocket has the link, its token, which can be longer, and cookies.
+    "max_header_size": 4 * LONGEST_LINK,
 }
 """Options of the HTTP server, in seconds and bytes."""
 
