@@ -1,6 +1,7 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
-Bokeh runs this file, more than once, before it builds its web application; it does nothing then but extend the URL patterns.
+Bokeh runs this file, more than once, before it builds its web application; it does nothing then but extend the
+URL patterns and choose the class of the HTTP server.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import Any
 
 from bokeh.server import urls
 from bokeh.settings import settings as bokeh_settings
+from tornado.httpserver import HTTPServer
 from tornado.ioloop import PeriodicCallback
 
 from app.bokeh_patches.batched_patches import batch_patches
@@ -24,6 +26,7 @@ from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.runtime.state_collector import StateCollector
 from app.server.admission import admit
+from app.server.limited_http_server import LimitedHTTPServer
 from app.server.log_format import set_up_logs
 from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
 from app.server.url_patterns import install_handlers
@@ -32,6 +35,7 @@ from app.state.system_review import review_catalogue_entry
 from engine import CASES
 
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
+HTTPServer.configure(LimitedHTTPServer)
 
 
 def on_server_loaded(server_context: Any) -> None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import json
 import os
 import re
 import socket
@@ -32,11 +31,12 @@ REST_SECONDS = 60.0
 
 SERVER_OPTIONS = (
     "--log-format=%(asctime)s %(levelname)s %(message)s",
-    "--rest-session-info",
-    "--session-history=-1",
     "--unused-session-lifetime=2000",
     "--check-unused-sessions=1000",
 )
+ONE_ADDRESS = {"ESCAPE_EXPLORER_PAGES_PER_ADDRESS": "1000"}
+"""All simulated visitors have the address of this machine."""
+
 START_SECONDS = 240.0
 WARM_SESSIONS = 6
 """The memory of a page is counted from this session on: the first ones load what all of them share."""
@@ -55,14 +55,15 @@ class Server:
 
     def sessions(self) -> int:
         """Number of open sessions."""
-        with urllib.request.urlopen(self.address.removesuffix("/app") + "/session_info", timeout=30) as answer:
-            sessions = json.load(answer)["sessions"]
-        return sum(session["ended"] is None for session in sessions.values())
+        return self._count("sessions_open")
 
     def delayed_messages(self) -> int:
         """Number of messages that waited because their page took more than its share."""
+        return self._count("messages_delayed_total")
+
+    def _count(self, metric: str) -> int:
         with urllib.request.urlopen(self.address.removesuffix("/app") + "/metrics", timeout=30) as answer:
-            [count] = re.findall(r"^escape_explorer_messages_delayed_total (\S+)$", answer.read().decode(), re.MULTILINE)
+            [count] = re.findall(rf"^escape_explorer_{metric} (\S+)$", answer.read().decode(), re.MULTILINE)
         return int(float(count))
 
     def cpu_seconds(self) -> float:
@@ -98,7 +99,9 @@ def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={host.split(':')[1]}"]
     command += [f"--allow-websocket-origin={host}", *SERVER_OPTIONS]
     with log.open("w") as output:
-        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **environment})
+        process = subprocess.Popen(
+            command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **ONE_ADDRESS, **environment}
+        )
     try:
         yield Server(f"http://{host}/app", process.pid, log), process
     finally:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -31,6 +32,8 @@ class ProcessState:
         Settings of the process.
     sessions
         Returns the open Bokeh sessions; none until the server sets it.
+    sockets
+        Number of open WebSockets by address.
     jobs
         Background jobs of all sessions.
     load
@@ -47,6 +50,7 @@ class ProcessState:
 
     settings: Settings = field(default_factory=Settings)
     sessions: Callable[[], Iterable[Any]] = tuple
+    sockets: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)

@@ -77,7 +77,11 @@ class Settings:
     jobs_per_session
         Maximum number of concurrent jobs of a session.
     most_sessions
-        Maximum number of sessions; further requests for the page get status 503.
+        Maximum number of sessions, and of WebSockets; further requests for the page get status 503.
+    pages_per_address
+        Maximum number of sessions, and of WebSockets, of one address (IPv6: of one network).
+    most_connections
+        Maximum number of open connections besides WebSockets; further ones are closed.
     compiled_operations
         Maximum number of compiled operations of the integrators of all potentials, about 4 kB each; code is never unloaded.
     cache_bytes
@@ -106,6 +110,8 @@ class Settings:
     most_orbits: int = _setting(4 * MIB, _integer(1000, 10**9))
     jobs_per_session: int = _setting(MOST_REQUESTS, _integer(1, 1000))
     most_sessions: int = _setting(200, _integer(1, 100_000))
+    pages_per_address: int = _setting(50, _integer(1, 100_000))
+    most_connections: int = _setting(500, _integer(1, 100_000))
     compiled_operations: int = _setting(250_000, _integer(50_000, 10**9))
     cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))

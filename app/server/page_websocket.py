@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import http.client
 import logging
 import time
 from collections.abc import Awaitable, Sequence
@@ -19,10 +20,11 @@ from panel.io.state import set_curdoc
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from app.runtime.process_state import process_state
-from app.server.admission import check_session
+from app.server.admission import check_session, count_socket, forget_socket
 from app.server.browser_rules import RefusedMessageError
 from app.server.message_guard import LARGEST_FRAGMENT, MessageGuard, UnacceptableConnectionError
 from app.server.security_headers import SecurityHeaders
+from app.server.session_tokens import brings_own_token
 from app.views.components.notice import PASSING_SECONDS, show_passing_notice
 
 DELAYED_NOTICE = "This page keeps the server busy: what you do next is delayed, so that others are served too."
@@ -48,6 +50,17 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     # Tornado closes the connection when a part of a message is longer.
     max_message_size = LARGEST_FRAGMENT
 
+    _is_counted = False
+
+    async def prepare(self) -> None:
+        """Refuse tokens that this server has not signed, before Bokeh or a login of Panel inflates them."""
+        if brings_own_token(self.application, self.request):
+            await WSHandler.prepare(self)
+            return
+        log.warning("connection refused: its token is not one of this server")
+        self.set_status(http.client.FORBIDDEN, "Reload the page.")
+        self.finish()
+
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
@@ -55,6 +68,8 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         self._writes: list[Awaitable[None]] = []
         self._told = -PASSING_SECONDS
         try:
+            count_socket(str(self.request.remote_ip))
+            self._is_counted = True
             check_session(self._token, self.application_context)
             return super().open(*args, **kwargs)
         except Exception as error:
@@ -121,6 +136,8 @@ class PageWebSocket(SecurityHeaders, WSHandler):
 
     def on_close(self) -> None:
         """Tell Bokeh, unless it has given up the connection before."""
+        if self._is_counted:
+            forget_socket(str(self.request.remote_ip))
         if self.connection is None or self._open_session() is not None:
             super().on_close()
         self._closed = True

@@ -5,7 +5,7 @@ handlers there as well. They are the only public way to reach the handlers of ``
 option: lifecycle hooks get no reference to the web application, which already exists when they run.
 
 Not covered, because Bokeh and Panel add them elsewhere: the redirect from ``/``, ``/favicon.ico``, ``/app/static`` and
-Panel's ``/components`` and login pages.
+Panel's login pages. `app.server.routes` refuses what the page does not need.
 """
 
 from __future__ import annotations
@@ -15,13 +15,20 @@ from typing import Any
 from panel.io.server import DocHandler, RootHandler, WSHandler
 
 from app.browser.module_files import ROUTE as MODULES
-from app.server.endpoints import ROUTES, NotFound
+from app.server.endpoints import ROUTES
 from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
+from app.server.session_tokens import issue_token, use_token
 
 
 class PageHandler(SecurityHeaders, DocHandler):
-    """Serves the page with a nonce on its scripts."""
+    """Serves the page with a nonce on its scripts, and with a signed token of its session."""
+
+    async def get_session(self) -> Any:
+        """Create the session of a new token."""
+        extra = self.application_context.application.process_request(self.request)
+        use_token(self.request, issue_token(self.application, self.request, extra))
+        return await super().get_session()
 
     def write(self, chunk: Any) -> None:
         """Write a response; a page gets the nonce and the matching policy."""
@@ -44,7 +51,7 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
         patterns[:] = [(path, _secured(handler), *rest) for path, handler, *rest in patterns]
     modules = (MODULES[0], _secured(MODULES[1]), MODULES[2])
     if all(path != modules[0] for path, *_ in toplevel_patterns):
-        toplevel_patterns += [*ROUTES, modules, ("/.*", NotFound)]
+        toplevel_patterns += [*ROUTES, modules]
 
 
 def _secured(handler: type) -> type:

@@ -234,5 +234,8 @@ def _limited_readers() -> dict[str, tuple[str, Callable[[str], Any], str]]:
     }
 
 
+PARAMETERS = (*_READERS, "t_max", "resolution")
+"""Names of the parameters of a link."""
+
 LINKED = (*(attribute for attribute, _, _ in _READERS.values()), "t_max", "resolution")
 """Attributes of the view state that a link contains."""

@@ -185,6 +185,18 @@ def test_operator_endpoints_are_not_public(proxy_before_two: Proxy) -> None:
     }
 
 
+@pytest.mark.parametrize(
+    "path", ["/components/cli.__main__/x/_css/x", "/app/autoload.js", "/app/metadata", "/app/", "/nothing", "/login"]
+)
+def test_other_routes_are_not_public(path: str, proxy_before_two: Proxy) -> None:
+    assert ask(proxy_before_two, path, authorization())[0] == 404
+
+
+@pytest.mark.parametrize("path", ["/static/js/bokeh.min.js", "/app/static/gallery/owl.png", "/favicon.ico"])
+def test_files_of_the_page_are_public(path: str, proxy_before_two: Proxy) -> None:
+    assert ask(proxy_before_two, path, authorization())[0] == 200
+
+
 def test_sessions_are_sticky_and_distributed(proxy_before_two: Proxy) -> None:
     backends = []
     for _ in range(16):

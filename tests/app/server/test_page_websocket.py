@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Any
 
 import panel as pn
@@ -129,6 +130,23 @@ def test_other_messages_do_not_wait(count: int, debt: float, state: ProcessState
 
     run(count, scenario)
     assert delayed_messages(state) == 0
+
+
+@pytest.mark.parametrize("limit", ["pages_per_address", "most_sessions"])
+def test_websockets_beyond_the_limits_are_closed(limit: str, state: ProcessState) -> None:
+    state.settings = replace(state.settings, **{limit: 2})
+
+    async def scenario(channel: Channel, document: Document) -> None:
+        address = channel._socket.request.url.replace("ws://", "http://").removesuffix("/ws")
+        page = await AsyncHTTPClient().fetch(address)
+        third = await Channel.connect(address, page.body.decode())
+        assert [kind async for kind, _ in third.messages()] == []
+        third.close()
+        assert state.sockets == {"127.0.0.1": 2}
+        await move_slider(channel, document)
+
+    run(2, scenario)
+    assert state.sockets == {}
 
 
 def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,6 +19,7 @@ from pathlib import Path
 from urllib.parse import urlencode
 
 import pytest
+from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
@@ -89,7 +90,7 @@ def test_server_answers_during_compilation_and_is_ready_afterwards(served: Serve
     assert served.metric("kernels_ready") == 1
 
 
-@pytest.mark.parametrize("path", ["/status", "/metrics", "/readiness", "/nothing", "/app/metadata", "/static/js/bokeh.min.js"])
+@pytest.mark.parametrize("path", ["/status", "/metrics", "/readiness", "/nothing", "/static/js/bokeh.min.js"])
 def test_responses_have_security_headers(served: Served, path: str) -> None:
     _, _, headers = served.get(path)
     assert headers["Content-Security-Policy"].startswith("default-src 'self'; ")
@@ -104,14 +105,22 @@ def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None
     assert "Open sessions" in served.get("/status")[1]
 
 
-def test_websocket_of_another_origin_is_refused(served: Served) -> None:
-    upgrade = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "x"}
-    protocol = {"Sec-WebSocket-Protocol": "bokeh, token"}
-    # urllib would send "Connection: close".
-    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=60)
-    connection.request("GET", "/app/ws", headers={"Origin": "https://elsewhere.example", **upgrade, **protocol})
-    assert connection.getresponse().status == 403
-    connection.close()
+@pytest.mark.parametrize("module", ["unittest.__main__", "venv.__main__", "cli.__main__", "antigravity"])
+def test_addresses_import_no_module(module: str, served: Served) -> None:
+    assert served.get(f"/components/{module}/x/_css/x")[0] == 404
+    assert served.get("/liveness")[0] == 200
+
+
+@pytest.mark.parametrize("path", ["/app/autoload.js?bokeh-autoload-element=x", "/app/metadata", "/app/", "/session_info"])
+def test_routes_that_the_page_does_not_need_are_refused(path: str, served: Served) -> None:
+    assert served.get(path)[0] == 404
+    assert served.metric("sessions_created_total") == 0
+
+
+def test_token_of_another_server_is_refused(served: Served) -> None:
+    token = generate_jwt_token(generate_session_id(), signed=False, extra_payload={"arguments": {"h": ["0" * 2**20]}})
+    assert upgrade(served, token, f"http://localhost:{served.port}") == 403
+    assert served.metric("sessions_created_total") == 0
 
 
 def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
@@ -128,6 +137,13 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     assert served.metric("pages_refused_total") == 1
 
 
+def test_websocket_of_another_origin_is_refused(served: Served) -> None:
+    token = re.search(r'"token":"([^"]+)"', served.pages[0])
+    assert token is not None
+    assert upgrade(served, token[1], "https://elsewhere.example") == 403
+    assert upgrade(served, token[1], f"http://localhost:{served.port}") == 101
+
+
 def test_server_stops_within_five_seconds_during_a_computation(served: Served) -> None:
     run_on_new_loop(lambda: stop_during_a_map(served))
     assert served.process.wait(30) == 0
@@ -139,6 +155,18 @@ def test_log_is_json_without_tracebacks(served: Served) -> None:
     records = [json.loads(line) for line in lines]
     assert records[-1]["message"] == "stopping"
     assert [record for record in records if "traceback" in record] == []
+
+
+def upgrade(served: Served, token: str, origin: str) -> int:
+    """Status of a request for a WebSocket."""
+    headers = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "x"}
+    # urllib would send "Connection: close".
+    connection = http.client.HTTPConnection("127.0.0.1", served.port, timeout=60)
+    try:
+        connection.request("GET", "/app/ws", headers={**headers, "Origin": origin, "Sec-WebSocket-Protocol": f"bokeh, {token}"})
+        return connection.getresponse().status
+    finally:
+        connection.close()
 
 
 def check_nonce(page: str, policy: str) -> None:

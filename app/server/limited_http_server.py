@@ -1,0 +1,73 @@
+"""Tornado's HTTP server with limits, and with the routes of this server only.
+
+`Configurable.configure` of Tornado replaces the class of all HTTP servers of the process. It is the only public way to the web
+application and to the options of the HTTP server of ``panel serve``.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+from bokeh.server.tornado import BokehTornado
+from tornado.httpserver import HTTPServer
+from tornado.iostream import IOStream
+
+from app.runtime.process_state import process_state
+from app.server.admission import LONGEST_LINK, network_of
+from app.server.routes import refuse_other_routes
+
+LIMITS: Mapping[str, int] = {
+    # Seconds until the next request of a connection, and until the end of its headers.
+    "idle_connection_timeout": 20,
+    "body_timeout": 10,
+    # There are no uploads.
+    "max_body_size": 64 * 1024,
+    # The request of a WebSocket has the link, its token, which can be longer, and cookies.
+    "max_header_size": 4 * LONGEST_LINK,
+}
+"""Options of the HTTP server, in seconds and bytes."""
+
+CONNECTIONS_PER_PAGE = 6
+"""Most connections that a browser opens to a host besides WebSockets."""
+
+
+class LimitedHTTPServer(HTTPServer):
+    """HTTP server that closes connections beyond the limits at once, and mounts no routes but its own.
+
+    WebSockets are counted elsewhere. Behind a proxy (``--use-xheaders``) all connections come from one address, and only their
+    total number is limited.
+    """
+
+    def initialize(self, *args: Any, **kwargs: Any) -> None:
+        """Apply the limits; called by Tornado instead of a constructor."""
+        super().initialize(*args, **{**LIMITS, **kwargs})
+        self._open: Counter[str] = Counter()
+        if isinstance(self.request_callback, BokehTornado):
+            refuse_other_routes(self.request_callback)
+
+    def handle_stream(self, stream: IOStream, address: Any) -> None:
+        """Serve a new connection, or close it."""
+        network = _network(address)
+        if self._is_full(network):
+            process_state().metrics.connections_refused.inc()
+            stream.close()
+            return
+        self._open[network] += 1
+        super().handle_stream(stream, address)
+
+    def on_close(self, server_conn: Any) -> None:
+        """Forget a connection that is closed or has become a WebSocket."""
+        super().on_close(server_conn)
+        self._open -= Counter([_network(server_conn.context.address)])
+
+    def _is_full(self, network: str) -> bool:
+        settings = process_state().settings
+        per_address = CONNECTIONS_PER_PAGE * settings.pages_per_address
+        return self._open.total() >= settings.most_connections or (not self.xheaders and self._open[network] >= per_address)
+
+
+def _network(address: Any) -> str:
+    # A Unix socket has no address.
+    return network_of(address[0]) if address else ""

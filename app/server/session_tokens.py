@@ -1,0 +1,71 @@
+"""Tokens of sessions, signed by this server: the page gets one, and the page's WebSocket must bring it back.
+
+A token has a compressed part. Bokeh signs tokens only when both of its settings are set before it is imported, and inflates
+those that are not signed, whatever their size. Here all are signed, with Bokeh's key or with a key of this server, and a token
+is inflated only when its signature is valid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from bokeh.server.tornado import BokehTornado
+from bokeh.util.token import check_token_signature, generate_jwt_token, generate_secret_key, generate_session_id
+from tornado.httputil import HTTPServerRequest
+
+from app.state.permalink import PARAMETERS
+
+_SUBPROTOCOL, _TOKEN = "bokeh", "bokeh-token"
+
+# Made when the server starts, before it forks: the processes of `--num-procs` share it.
+_own_key = generate_secret_key().encode()
+
+
+def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Mapping[str, Any]) -> str:
+    """Return a signed token of a new session.
+
+    Parameters
+    ----------
+    application
+        The server's web application.
+    request
+        The request for the page. The token contains the parameters of links, and cookies if there is a login; nothing else of
+        it, as the session needs nothing else.
+    extra
+        More entries of the token's payload.
+    """
+    arguments = {name: request.arguments[name][:1] for name in PARAMETERS if name in request.arguments}
+    has_login = bool(application.auth_provider.endpoints)
+    cookies = {name: morsel.value for name, morsel in request.cookies.items()} if has_login else {}
+    key = _signing_key(application)
+    token: str = generate_jwt_token(
+        generate_session_id(key, signed=True),
+        key,
+        signed=True,
+        extra_payload={"headers": {}, "cookies": cookies, "arguments": arguments, **extra},
+        expiration=application.session_token_expiration,
+    )
+    return token
+
+
+def use_token(request: HTTPServerRequest, token: str) -> None:
+    """Let Bokeh take the token for the session of a request, instead of one that the client may have sent."""
+    request.arguments[_TOKEN] = [token.encode()]
+
+
+def brings_own_token(application: BokehTornado, request: HTTPServerRequest) -> bool:
+    """Whether the request for a WebSocket has a token with a valid signature; inflates nothing."""
+    offered = [name.strip() for name in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
+    if len(offered) != 2 or offered[0] != _SUBPROTOCOL:
+        return False
+    try:
+        return bool(check_token_signature(offered[1], _signing_key(application), signed=True))
+    except (ValueError, TypeError, KeyError, AttributeError, AssertionError, RecursionError):
+        # Not a token at all.
+        return False
+
+
+def _signing_key(application: BokehTornado) -> bytes:
+    key: bytes | None = application.secret_key
+    return key or _own_key

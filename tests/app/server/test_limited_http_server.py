@@ -1,0 +1,134 @@
+"""Limits on connections, and their end when nothing arrives."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+from tornado.testing import bind_unused_port
+from tornado.web import Application, RequestHandler
+from tornado.websocket import WebSocketHandler, websocket_connect
+
+from app.runtime import process_state as process_state_module
+from app.runtime.process_state import ProcessState
+from app.runtime.settings import Settings
+from app.server.limited_http_server import CONNECTIONS_PER_PAGE, LIMITS, LimitedHTTPServer
+from tests.app.other_loop import run_on_new_loop
+
+REQUEST = b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"
+Scenario = Callable[[int], Awaitable[None]]
+
+
+class Answer(RequestHandler):
+    def get(self) -> None:
+        self.write("here")
+
+
+class Echo(WebSocketHandler):
+    pass
+
+
+@pytest.fixture
+def state(monkeypatch: pytest.MonkeyPatch) -> ProcessState:
+    settings = Settings(most_connections=CONNECTIONS_PER_PAGE + 1, pages_per_address=1)
+    monkeypatch.setattr(process_state_module, "_started", state := ProcessState(settings))
+    return state
+
+
+@asynccontextmanager
+async def served(**options: Any) -> AsyncIterator[int]:
+    """The port of a server."""
+    server = LimitedHTTPServer(Application([("/", Answer), ("/ws", Echo)]), **options)
+    listening, port = bind_unused_port()
+    server.add_socket(listening)
+    try:
+        yield port
+    finally:
+        server.stop()
+        await server.close_all_connections()
+
+
+def run(scenario: Scenario, **options: Any) -> None:
+    async def with_server() -> None:
+        async with asyncio.timeout(30), served(**options) as port:
+            await scenario(port)
+
+    run_on_new_loop(with_server)
+
+
+async def is_served(port: int) -> bool:
+    """Whether a new connection, which stays open, gets an answer."""
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    _kept.append(writer)
+    writer.write(REQUEST)
+    try:
+        return (await reader.readline()).startswith(b"HTTP/1.1 200")
+    except ConnectionResetError:
+        return False
+
+
+_kept: list[asyncio.StreamWriter] = []
+
+
+@pytest.fixture(autouse=True)
+def close_connections() -> Any:
+    _kept.clear()
+    yield
+    _kept.clear()
+
+
+def refused(state: ProcessState) -> float:
+    count = state.metrics.registry.get_sample_value("escape_explorer_connections_refused_total")
+    assert count is not None
+    return count
+
+
+@pytest.mark.parametrize(("xheaders", "most"), [(False, CONNECTIONS_PER_PAGE), (True, CONNECTIONS_PER_PAGE + 1)])
+def test_connections_are_limited(xheaders: bool, most: int, state: ProcessState) -> None:
+    async def scenario(port: int) -> None:
+        assert [await is_served(port) for _ in range(most + 1)] == [True] * most + [False]
+        assert refused(state) == 1
+        for writer in _kept:
+            writer.close()
+            await writer.wait_closed()
+        assert await is_served(port)
+        _kept[-1].close()
+
+    run(scenario, xheaders=xheaders)
+
+
+def test_websockets_do_not_count_as_connections(state: ProcessState) -> None:
+    async def scenario(port: int) -> None:
+        sockets = [await websocket_connect(f"ws://127.0.0.1:{port}/ws") for _ in range(CONNECTIONS_PER_PAGE + 3)]
+        assert refused(state) == 0
+        for socket in sockets:
+            socket.close()
+            assert await socket.read_message() is None
+
+    run(scenario)
+
+
+@pytest.mark.parametrize("sent", [b"", b"GET / HT", REQUEST[:-2]], ids=["nothing", "half a line", "half the headers"])
+@pytest.mark.usefixtures("state")
+def test_connections_without_a_whole_request_are_closed(sent: bytes) -> None:
+    async def scenario(port: int) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(sent)
+        assert await reader.read() == b""
+        writer.close()
+
+    run(scenario, idle_connection_timeout=0.05)
+
+
+@pytest.mark.usefixtures("state")
+def test_large_headers_are_refused() -> None:
+    async def scenario(port: int) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(REQUEST[:-2] + b"X: " + b"x" * LIMITS["max_header_size"])
+        assert await reader.read() == b""
+        writer.close()
+
+    run(scenario)

@@ -1,0 +1,119 @@
+"""Signed tokens: what they contain, and which ones are refused without being inflated."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import zlib
+
+import pytest
+from bokeh.application import Application
+from bokeh.server.tornado import BokehTornado
+from bokeh.util.token import generate_jwt_token, generate_session_id, get_session_id, get_token_payload
+from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
+
+from app.server.admission import LONGEST_LINK
+from app.server.limited_http_server import LIMITS
+from app.server.session_tokens import brings_own_token, issue_token, use_token
+
+OTHER_KEY = b"the key of another server, long enough"
+
+
+@pytest.fixture
+def application() -> BokehTornado:
+    return BokehTornado({"/app": Application()})
+
+
+def request(uri: str = "/app", **headers: str) -> HTTPServerRequest:
+    named = {name.replace("_", "-"): text for name, text in headers.items()}
+    every = HTTPHeaders({"Host": "localhost", **named})
+    return HTTPServerRequest(start_line=RequestStartLine("GET", uri, "HTTP/1.1"), headers=every)
+
+
+def socket_request(token: str) -> HTTPServerRequest:
+    return request("/app/ws", Sec_WebSocket_Protocol=f"bokeh, {token}")
+
+
+def bomb(expires: int = 2**40) -> str:
+    """A token that is not signed; inflating it fails the test."""
+    payload = {"session_id": "x" * 44, "session_expiry": expires, "__bk__zlib_": _encode(zlib.compress(b"0" * 2**20))}
+    return _encode(json.dumps(payload).encode())
+
+
+def _encode(raw: bytes) -> str:
+    return base64.urlsafe_b64encode(raw).decode().rstrip("=")
+
+
+def test_own_token_is_recognised(application: BokehTornado) -> None:
+    assert brings_own_token(application, socket_request(issue_token(application, request(), {})))
+
+
+def test_token_is_signed_with_the_key_of_bokeh_if_there_is_one(application: BokehTornado) -> None:
+    signed = BokehTornado({"/app": Application()}, secret_key=OTHER_KEY, sign_sessions=True)
+    token = issue_token(signed, request(), {})
+    assert brings_own_token(signed, socket_request(token))
+    assert not brings_own_token(application, socket_request(token))
+
+
+@pytest.mark.parametrize(
+    "token",
+    [
+        bomb(),
+        bomb(expires=0),
+        bomb() + ".signature",
+        bomb() + ".é",
+        generate_jwt_token(generate_session_id(OTHER_KEY, signed=True), OTHER_KEY, signed=True),
+        "",
+        "x",
+        "token.signature",
+        _encode(b"[" * 12_000) + ".x",
+        _encode(b"5") + ".x",
+        _encode(b"{}") + ".x",
+    ],
+    ids=["bomb", "expired", "wrong signature", "not ASCII", "other key", "empty", "short", "no JSON", "deep", "number", "no id"],
+)
+def test_other_tokens_are_refused_and_not_inflated(
+    token: str, application: BokehTornado, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(zlib, "decompress", lambda data: pytest.fail("inflated"))
+    assert not brings_own_token(application, socket_request(token))
+
+
+@pytest.mark.parametrize("offered", [None, "bokeh", "{}", "{}, bokeh", "bokeh, {}, more"])
+def test_tokens_in_other_places_are_refused(offered: str | None, application: BokehTornado) -> None:
+    token = issue_token(application, request(), {})
+    headers = {} if offered is None else {"Sec_WebSocket_Protocol": offered.format(token)}
+    assert not brings_own_token(application, request("/app/ws", **headers))
+
+
+def test_token_contains_the_parameters_of_the_link_only(application: BokehTornado) -> None:
+    asked = request("/app?h=0.2&h=0.3&theme=dark&bytes=1&bokeh-absolute-url=x", Cookie="a=b", User_Agent="browser")
+    payload = get_token_payload(issue_token(application, asked, {"app_path": "/app"}))
+    del payload["session_expiry"]
+    assert payload == {"headers": {}, "cookies": {}, "arguments": {"h": [b"0.2"]}, "app_path": "/app"}
+
+
+def test_cookies_are_in_the_token_if_there_is_a_login(application: BokehTornado, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(type(application.auth_provider), "endpoints", [("/login", object)])
+    assert get_token_payload(issue_token(application, request(Cookie="user=me"), {}))["cookies"] == {"user": "me"}
+
+
+def test_the_longest_link_fits_into_the_headers_of_the_websocket(application: BokehTornado) -> None:
+    # Random digits compress badly.
+    uri = ("/app?V=" + base64.urlsafe_b64encode(os.urandom(LONGEST_LINK)).decode())[:LONGEST_LINK]
+    token = issue_token(application, request(uri), {})
+    # The other headers of a browser, with cookies.
+    assert len(uri) + len(token) + 8192 < LIMITS["max_header_size"]
+    # The buffer of deploy/nginx.conf for one header.
+    assert len(token) < 16_000
+
+
+def test_each_token_is_of_a_new_session(application: BokehTornado) -> None:
+    assert len({get_session_id(issue_token(application, request(), {})) for _ in range(3)}) == 3
+
+
+def test_bokeh_takes_the_token_and_not_the_one_of_the_client(application: BokehTornado) -> None:
+    asked = request("/app?bokeh-token=mine")
+    use_token(asked, "issued")
+    assert asked.arguments["bokeh-token"] == [b"issued"]
