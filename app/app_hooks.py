@@ -1,12 +1,12 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
-Bokeh runs this file, more than once, before it builds its web application; it does nothing then but extend the URL patterns.
+Bokeh runs this file, more than once, before it builds its web application; it then checks the command line and extends the URL
+patterns.
 """
 
 from __future__ import annotations
 
 import logging
-import os
 import sys
 from importlib import import_module
 from typing import Any
@@ -23,10 +23,14 @@ from app.runtime.process_state import ProcessState, process_state
 from app.runtime.state_collector import StateCollector
 from app.server.admission import admit
 from app.server.log_format import set_up_logs
-from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
+from app.server.shutdown import finish_shutdown, stop_on_signals
+from app.server.start_checks import SEVERAL_PROCESSES, asks_for_several_processes, refuse_to_start
 from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
 
+# Before any process is forked. While this file runs, `sys.argv` has the arguments of the application only.
+if asks_for_several_processes(sys.orig_argv):
+    refuse_to_start(SEVERAL_PROCESSES)
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
 
 
@@ -41,7 +45,7 @@ def on_server_loaded(server_context: Any) -> None:
     if state.settings.bokeh_patches:
         batch_patches()
         run_callbacks_inline()
-    stop_gracefully_on_sigterm(state, context.io_loop.stop)
+    stop_on_signals(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     PeriodicCallback(lambda: _monitor_load(state), 1000.0 * load_monitor.TICK_SECONDS).start()
     start_warmup(state)
@@ -75,10 +79,7 @@ def _start_state() -> ProcessState:
     try:
         return process_state()
     except ValueError as error:
-        sys.stderr.write(f"{error}\n")
-        sys.stderr.flush()
-        # SystemExit would first run the hooks of a server that has not started.
-        os._exit(2)
+        refuse_to_start(str(error))
 
 
 def _monitor_load(state: ProcessState) -> None:
