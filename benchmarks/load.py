@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.simulated_sessions import Record, SimulatedSession
+from engine.taylor.jit.kernel_files import CACHE_VARIABLE
 
 LONGEST_WAIT_SECONDS = 2.0
 """Longest permitted time to the first frame of a map."""
@@ -37,6 +38,7 @@ SERVER_OPTIONS = (
     "--unused-session-lifetime=2000",
     "--check-unused-sessions=1000",
 )
+CACHE_SENTENCE = "Kernel cache: empty when the first process started, shared by all."
 START_SECONDS = 240.0
 WARM_SESSIONS = 6
 """The memory of a page is counted from this session on: the first ones load what all of them share."""
@@ -65,6 +67,21 @@ class Server:
             [count] = re.findall(r"^escape_explorer_messages_delayed_total (\S+)$", answer.read().decode(), re.MULTILINE)
         return int(float(count))
 
+    def seconds_until_live(self) -> float:
+        """Seconds until ``/liveness`` answers."""
+        begin = time.perf_counter()
+        with urllib.request.urlopen(self.address.removesuffix("/app") + "/liveness", timeout=60):
+            return time.perf_counter() - begin
+
+    def forget_peak(self) -> None:
+        """Measure the peak of the resident memory from now on."""
+        Path(f"/proc/{self.process}/clear_refs").write_text("5")
+
+    def peak_megabytes(self) -> float:
+        """Peak of the resident memory."""
+        [kilobytes] = re.findall(r"^VmHWM:\s+(\d+) kB$", Path(f"/proc/{self.process}/status").read_text(), re.MULTILINE)
+        return int(kilobytes) / 1024
+
     def cpu_seconds(self) -> float:
         """Processor time of the process so far."""
         fields = Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()
@@ -91,14 +108,18 @@ def served(log: Path, **environment: str) -> Iterator[Server]:
 
 @contextmanager
 def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.Popen[bytes]]]:
-    """Start the app on a free port, with more environment variables; it does not answer yet when this begins."""
+    """Start the app on a free port, with more environment variables; it does not answer yet when this begins.
+
+    Compiled kernels are stored beside the log, so that the user's kernel cache, which may be filled, changes no measurement.
+    """
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         host = f"127.0.0.1:{probe.getsockname()[1]}"
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={host.split(':')[1]}"]
     command += [f"--allow-websocket-origin={host}", *SERVER_OPTIONS]
+    variables = {**os.environ, CACHE_VARIABLE: str(log.parent / "kernel cache"), **environment}
     with log.open("w") as output:
-        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **environment})
+        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env=variables)
     try:
         yield Server(f"http://{host}/app", process.pid, log), process
     finally:
@@ -241,7 +262,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
         servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(options.processes)]
         setup = f"{options.sessions} sessions on {options.processes} processes"
-        print(f"\n{setup} for {options.seconds:g} s, seed {options.seed}\n", flush=True)
+        print(f"\n{setup} for {options.seconds:g} s, seed {options.seed}. {CACHE_SENTENCE}\n", flush=True)
         outcome = asyncio.run(load(servers, record, options.sessions, options.seconds, options.seed))
         report(servers, record, outcome)
         problems = list(find_problems(servers, record, outcome.remaining_sessions, options.ceiling))

@@ -9,9 +9,10 @@ import random
 import re
 import time
 from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, urljoin
 
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
@@ -192,6 +193,18 @@ class SimulatedSession:
     def is_open(self) -> bool:
         """Whether the page is connected."""
         return self._reader is not None and not self._reader.done()
+
+    async def fetch(self, path: str) -> int:
+        """Request a path of the server as another visitor would, and return the status."""
+        address = urljoin(self._address, path)
+        return (await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=60.0, **self._options)).code
+
+    async def connect(self, token: str) -> None:
+        """Open a WebSocket with this token, wait for the server's first message or until it closes the socket, and close it."""
+        channel = await Channel.connect(self._address, f'"token":"{token}"', self._options)
+        with suppress(EOFError):
+            await channel.part()
+        channel.close()
 
     def follow_link(self, link: str) -> None:
         """Show the view of a link, as the browser's Back does."""

@@ -12,7 +12,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from benchmarks.load import Server, resident_megabytes, served
+from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served
 from benchmarks.simulated_sessions import Record, SimulatedSession
 
 FIRST = 10
@@ -64,6 +64,7 @@ def main() -> int:
         last = resident_megabytes(server.process)
         sessions, errors = server.sessions(), [*record.errors, *server.error_lines()]
     growth = last / first - 1.0
+    print(CACHE_SENTENCE)
     print(f"Resident memory after {FIRST} visitors {first:.0f} MB, after {options.visitors} {last:.0f} MB: {growth:+.1%}.")
     print(f"Sessions that have not ended: {sessions}. Errors: {errors[:5] or 'none'}.")
     return 1 if growth > LARGEST_GROWTH or sessions or errors else 0
