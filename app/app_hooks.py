@@ -18,6 +18,7 @@ from tornado.ioloop import PeriodicCallback
 from app.bokeh_patches.batched_patches import batch_patches
 from app.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, load_monitor
+from app.runtime.memory_allocation import reduce_fragmentation
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.runtime.state_collector import StateCollector
@@ -36,6 +37,7 @@ install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
 
 def on_server_loaded(server_context: Any) -> None:
     """Start the process state and everything that runs in the background."""
+    reduce_fragmentation()
     state, context = _start_state(), server_context.application_context
     state.sessions = lambda: context.sessions
     state.metrics.registry.register(StateCollector(state))
@@ -47,7 +49,7 @@ def on_server_loaded(server_context: Any) -> None:
         run_callbacks_inline()
     stop_on_signals(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
-    PeriodicCallback(lambda: _monitor_load(state), 1000.0 * load_monitor.TICK_SECONDS).start()
+    PeriodicCallback(state.measure_load, 1000.0 * load_monitor.TICK_SECONDS).start()
     start_warmup(state)
     # Import the page before the first request, which would wait for it.
     import_module("app.session.page")
@@ -80,8 +82,3 @@ def _start_state() -> ProcessState:
         return process_state()
     except ValueError as error:
         refuse_to_start(str(error))
-
-
-def _monitor_load(state: ProcessState) -> None:
-    state.load.tick()
-    state.jobs.pause_background(state.load.is_high())

@@ -70,6 +70,9 @@ async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[Sim
     """A session with its page open."""
     session = SimulatedSession(place.address, seed, record, place.options)
     await session.open()
+    while not session.is_open:
+        await asyncio.sleep(1.0)
+        await session.open()
     try:
         yield session
     finally:
@@ -186,6 +189,8 @@ def find_problems(effect: Effect) -> Iterator[str]:
         late = [wait for wait in seconds if wait > LONGEST_WAIT_SECONDS]
         if late:
             yield f"{len(late)} {what} later than {LONGEST_WAIT_SECONDS:g} s, the latest after {max(late):.2f} s"
+    if effect.record.refused:
+        yield f"the page was refused {effect.record.refused} times"
     yield from dict.fromkeys(effect.record.errors)
 
 

@@ -43,7 +43,8 @@ START_SECONDS = 240.0
 WARM_SESSIONS = 6
 """The memory of a page is counted from this session on: the first ones load what all of them share."""
 _ROOT = Path(__file__).parents[1]
-_ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b|^Traceback|Task exception was never retrieved")
+# Refused pages are counted by the visitors.
+_ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^Traceback|Task exception was never retrieved")
 
 
 @dataclass
@@ -96,6 +97,18 @@ class Server:
         while True:
             self.megabytes.append(resident_megabytes(self.process))
             await asyncio.sleep(1.0)
+
+
+@contextmanager
+def busy_cores(count: int) -> Iterator[None]:
+    """Run as many other programs, each of which occupies a core."""
+    programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for program in programs:
+            program.terminate()
+            program.wait(30)
 
 
 @contextmanager
@@ -229,6 +242,7 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
         tenth = max(len(server.megabytes) // 10, 1)
         sizes = ", ".join(f"{size:.0f}" for size in server.megabytes[::tenth])
         print(f"Resident memory of a process, MB: {sizes}; maximum {max(server.megabytes):.0f}.")
+    print(f"Pages refused by a full server: {record.refused}.")
     print(f"Sessions: {outcome.open_sessions} at once, {outcome.remaining_sessions} after all were closed.")
 
 
@@ -257,11 +271,13 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--ceiling", type=float, default=2.0, help="largest permitted resident memory of a process, GiB")
     parser.add_argument("--processes", type=int, default=1, help="server processes")
+    parser.add_argument("--busy-cores", type=int, default=0, help="other programs, each of which occupies a core")
     options = parser.parse_args()
     record = Record()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
         servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(options.processes)]
-        setup = f"{options.sessions} sessions on {options.processes} processes"
+        end.enter_context(busy_cores(options.busy_cores))
+        setup = f"{options.sessions} sessions on {options.processes} processes beside {options.busy_cores} busy cores"
         print(f"\n{setup} for {options.seconds:g} s, seed {options.seed}. {CACHE_SENTENCE}\n", flush=True)
         outcome = asyncio.run(load(servers, record, options.sessions, options.seconds, options.seed))
         report(servers, record, outcome)

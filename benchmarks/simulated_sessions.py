@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import http.client
 import itertools
 import json
 import random
@@ -14,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import parse_qsl, urljoin
 
-from tornado.httpclient import AsyncHTTPClient, HTTPRequest
+from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from engine import Plane
@@ -51,8 +52,8 @@ class Record:
         By action, from the action to the first frame of its map.
     replaced
         Time waited in vain for a map before the next action replaced it.
-    previews, clicks, orbit_plots
-        Counts.
+    previews, clicks, orbit_plots, refused
+        Counts; `refused` are pages that a full server has not opened.
     errors
         Messages.
     """
@@ -63,6 +64,7 @@ class Record:
     previews: int = 0
     clicks: int = 0
     orbit_plots: int = 0
+    refused: int = 0
     errors: list[str] = field(default_factory=list)
 
 
@@ -156,9 +158,15 @@ class SimulatedSession:
         self._reader: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
-        """Load the page and wait for its first map."""
+        """Load the page and wait for its first map, or count that a full server has refused it."""
         begin = time.perf_counter()
-        self._channel = await Channel.open(self._address, self._options)
+        try:
+            self._channel = await Channel.open(self._address, self._options)
+        except HTTPClientError as error:
+            if error.code != http.client.SERVICE_UNAVAILABLE:
+                raise
+            self._record.refused += 1
+            return
         self._reader = asyncio.create_task(self._read(self._channel))
         try:
             await asyncio.wait_for(self._opened.wait(), FRAME_TIMEOUT_SECONDS)
@@ -167,8 +175,8 @@ class SimulatedSession:
             self._record.errors.append(f"no map within {FRAME_TIMEOUT_SECONDS:g} s of opening the page")
 
     async def run(self, end: float) -> None:
-        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map."""
-        while True:
+        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map; not without a page."""
+        while self.is_open:
             pause = self._random.uniform(*PAUSE_SECONDS)
             if time.perf_counter() + pause > end:
                 break

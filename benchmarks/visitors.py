@@ -23,10 +23,8 @@ LARGEST_GROWTH = 0.15
 
 ENVIRONMENT = {
     "ESCAPE_EXPLORER_CACHE_BYTES": str(32 * 2**20),
-    "MALLOC_ARENA_MAX": "2",
-    "MALLOC_MMAP_THRESHOLD_": str(2**20),
 }
-"""Settings of the server: its cache of results is full after the first visitors; memory is allocated as in the image."""
+"""Settings of the server: its cache of results is full after the first visitors."""
 
 AT_ONCE = 4
 _STAY_SECONDS = 6.0

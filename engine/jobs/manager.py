@@ -14,6 +14,7 @@ from typing import Any
 from engine.execution import count_workers, create_thread_pool, is_cancelled, raise_if_cancelled
 from engine.jobs.cache import ResultCache, SupportsNbytes
 from engine.jobs.context import JobContext, JobRequest
+from engine.jobs.map_priority import MapPriority
 from engine.jobs.orbit_semaphore import OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
@@ -40,8 +41,8 @@ class _Job:
     key: Hashable
     subscriptions: list[Subscription]
     client: Hashable
-    interactive: bool
-    """Whether the calls up to its first result have the highest priority."""
+    map_priority: MapPriority | None
+    """Of a map that is shown; all calls of other jobs are in the background."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
     """The last partial result."""
@@ -59,7 +60,7 @@ class _Job:
         return subscriptions
 
     def priority(self) -> Priority:
-        return Priority.FIRST_FRAME if self.interactive and self.latest is None else Priority.BACKGROUND
+        return Priority.BACKGROUND if self.map_priority is None else self.map_priority()
 
 
 class Jobs:
@@ -127,7 +128,7 @@ class Jobs:
         def run(context: JobContext) -> EscapeMap:
             return self._compute_map(spec, context, context.publish)
 
-        return self._request(spec, on_frame, on_error, run, client, interactive=True)
+        return self._request(spec, on_frame, on_error, run, client, MapPriority())
 
     def request[Result: SupportsNbytes](
         self,
@@ -148,7 +149,7 @@ class Jobs:
         on_error, client
             As in `request_map`.
         """
-        return self._request(spec, on_result, on_error, spec.run, client, interactive=False)
+        return self._request(spec, on_result, on_error, spec.run, client, None)
 
     @property
     def in_flight(self) -> int:
@@ -170,6 +171,10 @@ class Jobs:
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
         )
 
+    def take_first_frame_wait(self) -> float:
+        """Longest recent wait of a first frame for a thread; see `FairScheduler.take_first_frame_wait`."""
+        return self._scheduler.take_first_frame_wait()
+
     def pause_background(self, paused: bool) -> None:
         """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
@@ -189,7 +194,7 @@ class Jobs:
         on_error: Callable[[Exception], None],
         run: Callable[[JobContext], SupportsNbytes],
         client: Hashable,
-        interactive: bool,
+        map_priority: MapPriority | None,
     ) -> Subscription:
         subscription = Subscription(partial(self._unsubscribe, key), on_result, on_error)
         with self._lock:
@@ -202,7 +207,7 @@ class Jobs:
                 latest = self._in_flight[key].latest
             else:
                 latest = None
-                job = self._in_flight[key] = _Job(key, [subscription], client, interactive)
+                job = self._in_flight[key] = _Job(key, [subscription], client, map_priority)
                 self._coordinators.submit(self._run_job, job, run)
         if latest is not None:
             subscription.deliver(latest, last=complete)
@@ -279,6 +284,8 @@ class Jobs:
             return
         with self._lock:
             job.latest = result
+            if job.map_priority is not None:
+                job.map_priority.add_frame(result.horizon)
             subscriptions = list(job.subscriptions)
         for subscription in subscriptions:
             subscription.deliver(result, last=False)

@@ -28,11 +28,16 @@ class Priority(IntEnum):
     BACKGROUND = 2
     """Part of a larger computation, about 50 ms long; under load most calls are of this kind."""
 
+    UNSETTLED = 3
+    """The same for a result that is likely to be replaced before anyone looks at it."""
+
 
 class _Call(NamedTuple):
     executor: QueueExecutor
     future: Future[Any]
     function: Callable[[], Any]
+    queued: float
+    """Time on the monotonic clock."""
 
     def run(self) -> None:
         if not self.future.set_running_or_notify_cancel():
@@ -64,6 +69,7 @@ class FairScheduler:
         self._active_threads = 0
         self._running_long_calls = 0
         self._background_paused = False
+        self._first_frame_wait = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -85,8 +91,24 @@ class FairScheduler:
         with self._lock:
             return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
 
+    def take_first_frame_wait(self) -> float:
+        """Longest time in seconds that a `Priority.FIRST_FRAME` call has waited for a thread since the last call of this method.
+
+        Those that still wait count.
+        """
+        now = time.monotonic()
+        with self._lock:
+            waiting = [
+                now - calls[0].queued
+                for queues in self._pending.values()
+                for executor, calls in queues.items()
+                if executor.priority() is Priority.FIRST_FRAME
+            ]
+            longest, self._first_frame_wait = max(self._first_frame_wait, *waiting, 0.0), 0.0
+        return longest
+
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume `Priority.BACKGROUND` calls, to relieve an overloaded process.
+        """Pause or resume `Priority.BACKGROUND` and `Priority.UNSETTLED` calls, to relieve an overloaded process.
 
         While they are paused, long calls have a duty cycle of 10 % of one thread. To start the next of these, call this method
         about every 0.1 s during the pause.
@@ -145,6 +167,8 @@ class FairScheduler:
             self._running_long_calls += priority is Priority.LONG_CALL
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
+            if priority is Priority.FIRST_FRAME:
+                self._first_frame_wait = max(self._first_frame_wait, time.monotonic() - call.queued)
             if not queues[executor]:
                 del queues[executor]
             self._pending.move_to_end(executor.client)
@@ -163,7 +187,7 @@ class FairScheduler:
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
             return True
-        if priority is Priority.BACKGROUND:
+        if priority is not Priority.LONG_CALL:
             return not self._background_paused
         if self._background_paused:
             return self._running_long_calls == 0 and time.monotonic() >= self._next_long_call
@@ -186,7 +210,7 @@ class QueueExecutor(Executor):
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call and return its future."""
         future: Future[Any] = Future()
-        self._scheduler.add(_Call(self, future, lambda: fn(*args, **kwargs)))
+        self._scheduler.add(_Call(self, future, lambda: fn(*args, **kwargs), time.monotonic()))
         return future
 
     def cancel_futures(self) -> None:
