@@ -9,6 +9,7 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from enum import IntEnum
 from typing import Any, NamedTuple
+from weakref import WeakSet
 
 from engine.execution import count_workers, default_executor
 
@@ -39,6 +40,11 @@ class _Call(NamedTuple):
     queued: float
     """Time on the monotonic clock."""
 
+    def cancel(self) -> None:
+        self.future.cancel()
+        # Wakes the threads that wait for the future.
+        self.future.set_running_or_notify_cancel()
+
     def run(self) -> None:
         if not self.future.set_running_or_notify_cancel():
             return
@@ -65,6 +71,7 @@ class FairScheduler:
         self._lock = threading.Lock()
         # By client, in round-robin order, then by executor, oldest first; those without pending calls are removed.
         self._pending: OrderedDict[Hashable, dict[QueueExecutor, deque[_Call]]] = OrderedDict()
+        self._cancelled: WeakSet[QueueExecutor] = WeakSet()
         # Threads of the pool that run calls.
         self._active_threads = 0
         self._running_long_calls = 0
@@ -119,20 +126,24 @@ class FairScheduler:
             self._start_threads(self.threads if resumed else 1)
 
     def add(self, call: _Call) -> None:
-        """Queue a call."""
+        """Queue a call, or cancel it if those of its executor have been cancelled."""
         with self._lock:
-            self._pending.setdefault(call.executor.client, {}).setdefault(call.executor, deque()).append(call)
-        self._start_threads(1)
+            is_cancelled = call.executor in self._cancelled
+            if not is_cancelled:
+                self._pending.setdefault(call.executor.client, {}).setdefault(call.executor, deque()).append(call)
+        if is_cancelled:
+            call.cancel()
+        else:
+            self._start_threads(1)
 
     def cancel_futures(self, executor: QueueExecutor) -> None:
-        """Cancel the calls of an executor that no thread has started."""
+        """Cancel the calls of an executor that no thread has started, and all later ones."""
         with self._lock:
+            self._cancelled.add(executor)
             cancelled = self._pending.get(executor.client, {}).pop(executor, ())
             self._forget_if_empty(executor.client)
         for call in cancelled:
-            call.future.cancel()
-            # Wakes the threads that wait for the future.
-            call.future.set_running_or_notify_cancel()
+            call.cancel()
 
     def _start_threads(self, most: int) -> None:
         """Let up to `most` more threads run calls, if calls are pending."""
@@ -214,5 +225,5 @@ class QueueExecutor(Executor):
         return future
 
     def cancel_futures(self) -> None:
-        """Cancel the calls that no thread has started."""
+        """Cancel the calls that no thread has started, and all later ones."""
         self._scheduler.cancel_futures(self)

@@ -129,6 +129,16 @@ def test_pending_futures_of_one_executor_can_be_cancelled() -> None:
     assert recorder.run(*others) == ["a3"]
 
 
+def test_later_calls_of_a_cancelled_executor_are_cancelled() -> None:
+    recorder = Recorder()
+    recorder.scheduler.pause_background(True)
+    executor = recorder.executor("a")
+    executor.cancel_futures()
+    (later,) = recorder.submit(executor, "a1")
+    assert not wait([later], SECONDS).not_done
+    assert later.cancelled()
+
+
 def test_executor_has_the_workers_of_the_pool() -> None:
     assert count_workers(Recorder(threads=3).executor("a")) == 3
 
