@@ -27,8 +27,7 @@ ENV PATH=/opt/venv/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     PYTHONDONTWRITEBYTECODE=1 \
     ESCAPE_EXPLORER_ONLY_IDLE=yes \
-    MALLOC_ARENA_MAX=2 \
-    MALLOC_MMAP_THRESHOLD_=1048576 \
+    ESCAPE_EXPLORER_CACHE_BYTES=134217728 \
     ESCAPE_EXPLORER_CACHE=/var/cache/escape-explorer \
     MPLCONFIGDIR=/var/cache/escape-explorer/matplotlib
 # Origins that may open a WebSocket, such as the public name of a proxy: host:port, separated by commas.

@@ -1,13 +1,12 @@
 """Hooks that Bokeh calls when the server starts and stops, and for every session and request.
 
-Bokeh runs this file, more than once, before it builds its web application; it does nothing then but extend the
-URL patterns and choose the class of the HTTP server.
+Bokeh runs this file, more than once, before it builds its web application; it then checks the command line, extends the URL
+patterns and chooses the class of the HTTP server.
 """
 
 from __future__ import annotations
 
 import logging
-import os
 import sys
 import threading
 from importlib import import_module
@@ -22,24 +21,30 @@ from app.bokeh_patches.batched_patches import batch_patches
 from app.bokeh_patches.inline_callbacks import run_callbacks_inline
 from app.runtime import disconnects, load_monitor
 from app.runtime.loop_watch import LoopWatch
+from app.runtime.memory_allocation import reduce_fragmentation
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState, process_state
 from app.runtime.state_collector import StateCollector
 from app.server.admission import admit
 from app.server.limited_http_server import LimitedHTTPServer
 from app.server.log_format import set_up_logs
-from app.server.shutdown import finish_shutdown, stop_gracefully_on_sigterm
+from app.server.shutdown import finish_shutdown, stop_on_signals
+from app.server.start_checks import SEVERAL_PROCESSES, asks_for_several_processes, refuse_to_start
 from app.server.url_patterns import install_handlers
 from app.server.warmup import start_warmup
 from app.state.system_review import review_catalogue_entry
 from engine import CASES
 
+# Before any process is forked. While this file runs, `sys.argv` has the arguments of the application only.
+if asks_for_several_processes(sys.orig_argv):
+    refuse_to_start(SEVERAL_PROCESSES)
 install_handlers(urls.per_app_patterns, urls.toplevel_patterns)
 HTTPServer.configure(LimitedHTTPServer)
 
 
 def on_server_loaded(server_context: Any) -> None:
     """Start the process state and everything that runs in the background."""
+    reduce_fragmentation()
     state, context = _start_state(), server_context.application_context
     state.sessions = lambda: context.sessions
     state.metrics.registry.register(StateCollector(state))
@@ -49,10 +54,10 @@ def on_server_loaded(server_context: Any) -> None:
     if state.settings.bokeh_patches:
         batch_patches()
         run_callbacks_inline()
-    stop_gracefully_on_sigterm(state, context.io_loop.stop)
+    stop_on_signals(state, context.io_loop.stop)
     PeriodicCallback(disconnects.DisconnectMonitor(state.sessions).check, 1000.0 * disconnects.CHECK_SECONDS).start()
     watch = LoopWatch(state.load, state.metrics.loop_delays)
-    PeriodicCallback(lambda: _monitor_load(state, watch), 1000.0 * load_monitor.TICK_SECONDS).start()
+    PeriodicCallback(lambda: _measure_load(state, watch), 1000.0 * load_monitor.TICK_SECONDS).start()
     threading.Thread(target=watch.watch, args=[state.stopping], name="loop watch", daemon=True).start()
     start_warmup(state)
     # Import the page and review the cases of the paper before the first request, which would wait for both.
@@ -87,14 +92,11 @@ def _start_state() -> ProcessState:
     try:
         return process_state()
     except ValueError as error:
-        sys.stderr.write(f"{error}\n")
-        sys.stderr.flush()
-        # SystemExit would first run the hooks of a server that has not started.
-        os._exit(2)
+        refuse_to_start(str(error))
 
 
-def _monitor_load(state: ProcessState, watch: LoopWatch) -> None:
+def _measure_load(state: ProcessState, watch: LoopWatch) -> None:
     # The log of a server that stops ends with that it does.
     if not state.stopping.is_set():
         watch.tick()
-    state.jobs.pause_background(state.load.is_high())
+    state.adapt_to_load()

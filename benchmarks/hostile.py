@@ -17,89 +17,26 @@ import random
 import sys
 import tempfile
 import time
-from collections.abc import AsyncIterator, Callable, Iterator, Sequence
+from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
-from urllib.parse import quote, urlsplit
+from urllib.parse import urlsplit
 
-from benchmarks.load import Server, served, summary
+from benchmarks.attacks import ATTACKS, do_nothing
+from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served, summary
 from benchmarks.simulated_sessions import NO_OPTIONS, Options, Record, SimulatedSession
 from tests.deploy.proxy import Proxy, authorization, free_port, nginx, proxied
 
 LONGEST_WAIT_SECONDS = 3.0
-"""Longest permitted time to the first frame of the other visitor's map."""
+"""Longest permitted time to the first frame of the other visitor's map, and to the answer of ``/liveness``."""
 
 REST_SECONDS = 5.0
 """Between two attacks."""
 
-_WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
-
-Attack = Callable[[SimulatedSession, random.Random], AsyncIterator[None]]
-"""The actions of a visitor; each step is one action, and the pause after it."""
-
-
-async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """For comparison."""
-    while True:
-        await asyncio.sleep(1.0)
-        yield
-
-
-async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """The map that takes longest, with all layers, at slightly different energies."""
-    for number in itertools.count():
-        visitor.follow_link(_WORST_MAP.replace("h=0.3", f"h={0.3 + 1e-6 * number!r}"))
-        await asyncio.sleep(10.0)
-        yield
-
-
-async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """Curves against energy, with the largest map in view."""
-    for case in itertools.cycle(["III", "II", "I"]):
-        visitor.follow_link(f"?case={case}&resolution=900&t_max=1000000&analysis=energies")
-        await asyncio.sleep(2.0)
-        visitor.press("Compute the curves")
-        await asyncio.sleep(13.0)
-        yield
-
-
-async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """A potential of new powers each second, so that its integrator must be compiled."""
-    while True:
-        powers = [(i, degree - i) for degree in range(3, 9) for i in range(degree + 1)]
-        terms = " + ".join(f"{choice.uniform(-0.2, 0.2):.3f}*x^{i}*y^{j}" for i, j in choice.sample(powers, 6))
-        visitor.follow_link(f"?case=typed&V={quote(f'x^2/2 + y^2/2 - x^3/3 + {terms}')}&resolution=112")
-        await asyncio.sleep(1.0)
-        yield
-
-
-async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """Twenty clicks a second on long orbits, removed when there are five."""
-    for number in itertools.count():
-        if number % 5 == 0:
-            visitor.follow_link("?case=III&h=0.3&t_max=1000000&resolution=112")
-        visitor.click(choice.uniform(-0.3, 0.3), choice.uniform(-0.3, 0.3))
-        await asyncio.sleep(0.05)
-        yield
-
-
-async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
-    """Resolution and colours, as fast as messages are accepted."""
-    for resolution, palette in itertools.cycle(itertools.product((112, 224, 450, 900), ("paper", "safe"))):
-        visitor.follow_link(f"?case=III&h=0.3&resolution={resolution}&palette={palette}")
-        await asyncio.sleep(0.005)
-        yield
-
-
-ATTACKS: dict[str, Attack] = {
-    "nothing": do_nothing,
-    "largest map, all layers": compute_worst_map,
-    "against energy": sweep_energies,
-    "a new potential each second": type_potentials,
-    "clicks": click,
-    "resolution and colours": flip_choices,
-}
+PROBE_SECONDS = 0.25
+"""Between two requests of ``/liveness``."""
 
 
 class Place(NamedTuple):
@@ -109,15 +46,62 @@ class Place(NamedTuple):
     options: Options = NO_OPTIONS
 
 
+@dataclass
+class Effect:
+    """What an attack does to the other visitors and to the processes.
+
+    Attributes
+    ----------
+    record
+        The waits of the other visitors.
+    liveness
+        Seconds until each answer of ``/liveness``.
+    megabytes
+        Largest resident memory of a process before, during and after the attack.
+    """
+
+    record: Record
+    liveness: list[float]
+    megabytes: tuple[float, float, float]
+
+
 @asynccontextmanager
 async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
     """A session with its page open."""
     session = SimulatedSession(place.address, seed, record, place.options)
     await session.open()
+    while not session.is_open:
+        await asyncio.sleep(1.0)
+        await session.open()
     try:
         yield session
     finally:
         await session.close()
+
+
+async def measure(servers: Sequence[Server], places: Sequence[Place], name: str, seconds: float, seed: int) -> Effect:
+    """The effect of an attack."""
+    before, liveness = largest_memory(servers), list[float]()
+    for server in servers:
+        server.forget_peak()
+    probes = [asyncio.create_task(_probe(server, liveness)) for server in servers]
+    record = await attack(places, name, seconds, seed)
+    for probe in probes:
+        probe.cancel()
+    peak = max(server.peak_megabytes() for server in servers)
+    await asyncio.sleep(REST_SECONDS)
+    return Effect(record, liveness, (before, peak, largest_memory(servers)))
+
+
+async def _probe(server: Server, liveness: list[float]) -> None:
+    while True:
+        liveness.append(await asyncio.to_thread(server.seconds_until_live))
+        await asyncio.sleep(PROBE_SECONDS)
+
+
+def largest_memory(servers: Sequence[Server]) -> float:
+    """Largest resident memory of a process, in megabytes."""
+    return max(resident_megabytes(server.process) for server in servers)
 
 
 async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) -> Record:
@@ -144,7 +128,6 @@ async def attack(places: Sequence[Place], name: str, seconds: float, seed: int) 
         for task in tasks:
             with suppress(asyncio.CancelledError):
                 await task
-    await asyncio.sleep(REST_SECONDS)
     return record
 
 
@@ -188,6 +171,29 @@ def count_delayed_messages(servers: Sequence[Server]) -> int:
     return sum(server.delayed_messages() for server in servers)
 
 
+COLUMNS = (
+    "attack", "waits", "minimum", "median", "95 %", "99 %", "maximum", "delayed messages", "liveness",
+    "memory before", "peak", "after",
+)  # fmt: skip
+
+
+def row(name: str, effect: Effect, delayed_messages: int) -> str:
+    """A row of the table with `COLUMNS`."""
+    megabytes = " | ".join(f"{size:.0f}" for size in effect.megabytes)
+    return f"| {name} | {summary(waits(effect.record))} | {delayed_messages} | {max(effect.liveness):.2f} | {megabytes} |"
+
+
+def find_problems(effect: Effect) -> Iterator[str]:
+    """Violations of the limits."""
+    for what, seconds in (("waits", waits(effect.record)), ("answers of /liveness", effect.liveness)):
+        late = [wait for wait in seconds if wait > LONGEST_WAIT_SECONDS]
+        if late:
+            yield f"{len(late)} {what} later than {LONGEST_WAIT_SECONDS:g} s, the latest after {max(late):.2f} s"
+    if effect.record.refused:
+        yield f"the page was refused {effect.record.refused} times"
+    yield from dict.fromkeys(effect.record.errors)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--processes", type=int, default=1)
@@ -203,17 +209,15 @@ def main() -> int:
         places = [Place(server.address) for server in servers]
         if options.proxy:
             places = end.enter_context(behind_proxy(servers, Path(folder)))
-        print("\n| attack | waits | minimum | median | 95 % | 99 % | maximum | delayed messages |")
-        print("|---|---|---|---|---|---|---|---|")
+        print(f"\n{CACHE_SENTENCE} Largest seconds until /liveness answers; largest memory of a process in MB.\n")
+        print(f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}")
         for name in options.attack or ATTACKS:
             before = count_delayed_messages(servers)
-            record = asyncio.run(attack(places, name, options.seconds, options.seed))
+            effect = asyncio.run(measure(servers, places, name, options.seconds, options.seed))
             delayed = count_delayed_messages(servers) - before
-            print(f"| {name} | {summary(waits(record))} | {delayed} |", flush=True)
+            print(row(name, effect, delayed), flush=True)
             problems += [f"{delayed} messages delayed without an attack"] if delayed and ATTACKS[name] is do_nothing else []
-            late = [wait for wait in waits(record) if wait > LONGEST_WAIT_SECONDS]
-            problems += [f"{name}: {len(late)} waits longer than {LONGEST_WAIT_SECONDS:g} s"] if late else []
-            problems += [f"{name}: {error}" for error in dict.fromkeys(record.errors)]
+            problems += [f"{name}: {problem}" for problem in find_problems(effect)]
         problems += list(dict.fromkeys(line for server in servers for line in server.error_lines()))[:5]
     print("\nPassed." if not problems else "\nFailed: " + "; ".join(problems) + ".")
     return 1 if problems else 0

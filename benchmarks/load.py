@@ -21,6 +21,8 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from engine.taylor.jit.kernel_files import CACHE_VARIABLE
+
 from benchmarks.simulated_sessions import Record, SimulatedSession
 
 LONGEST_WAIT_SECONDS = 2.0
@@ -37,11 +39,13 @@ SERVER_OPTIONS = (
 ONE_ADDRESS = {"ESCAPE_EXPLORER_PAGES_PER_ADDRESS": "1000"}
 """All simulated visitors have the address of this machine."""
 
+CACHE_SENTENCE = "Kernel cache: empty when the first process started, shared by all."
 START_SECONDS = 240.0
 WARM_SESSIONS = 6
 """The memory of a page is counted from this session on: the first ones load what all of them share."""
 _ROOT = Path(__file__).parents[1]
-_ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b|^Traceback|Task exception was never retrieved")
+# Refused pages are counted by the visitors.
+_ERROR_LINE = re.compile(r"\b(ERROR|CRITICAL)\b(?!.*tornado.access: 503 )|^Traceback|Task exception was never retrieved")
 
 
 @dataclass
@@ -66,6 +70,21 @@ class Server:
             [count] = re.findall(rf"^escape_explorer_{metric} (\S+)$", answer.read().decode(), re.MULTILINE)
         return int(float(count))
 
+    def seconds_until_live(self) -> float:
+        """Seconds until ``/liveness`` answers."""
+        begin = time.perf_counter()
+        with urllib.request.urlopen(self.address.removesuffix("/app") + "/liveness", timeout=60):
+            return time.perf_counter() - begin
+
+    def forget_peak(self) -> None:
+        """Measure the peak of the resident memory from now on."""
+        Path(f"/proc/{self.process}/clear_refs").write_text("5")
+
+    def peak_megabytes(self) -> float:
+        """Peak of the resident memory."""
+        [kilobytes] = re.findall(r"^VmHWM:\s+(\d+) kB$", Path(f"/proc/{self.process}/status").read_text(), re.MULTILINE)
+        return int(kilobytes) / 1024
+
     def cpu_seconds(self) -> float:
         """Processor time of the process so far."""
         fields = Path(f"/proc/{self.process}/stat").read_text().rpartition(")")[2].split()
@@ -83,6 +102,18 @@ class Server:
 
 
 @contextmanager
+def busy_cores(count: int) -> Iterator[None]:
+    """Run as many other programs, each of which occupies a core."""
+    programs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for program in programs:
+            program.terminate()
+            program.wait(30)
+
+
+@contextmanager
 def served(log: Path, **environment: str) -> Iterator[Server]:
     """Run the app on a free port, with more environment variables; its kernels are compiled when this begins."""
     with started(log, **environment) as (server, process):
@@ -92,16 +123,18 @@ def served(log: Path, **environment: str) -> Iterator[Server]:
 
 @contextmanager
 def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.Popen[bytes]]]:
-    """Start the app on a free port, with more environment variables; it does not answer yet when this begins."""
+    """Start the app on a free port, with more environment variables; it does not answer yet when this begins.
+
+    Compiled kernels are stored beside the log, so that the user's kernel cache, which may be filled, changes no measurement.
+    """
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         host = f"127.0.0.1:{probe.getsockname()[1]}"
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={host.split(':')[1]}"]
     command += [f"--allow-websocket-origin={host}", *SERVER_OPTIONS]
+    variables = {**os.environ, **ONE_ADDRESS, CACHE_VARIABLE: str(log.parent / "kernel cache"), **environment}
     with log.open("w") as output:
-        process = subprocess.Popen(
-            command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env={**os.environ, **ONE_ADDRESS, **environment}
-        )
+        process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env=variables)
     try:
         yield Server(f"http://{host}/app", process.pid, log), process
     finally:
@@ -211,6 +244,7 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
         tenth = max(len(server.megabytes) // 10, 1)
         sizes = ", ".join(f"{size:.0f}" for size in server.megabytes[::tenth])
         print(f"Resident memory of a process, MB: {sizes}; maximum {max(server.megabytes):.0f}.")
+    print(f"Pages refused by a full server: {record.refused}.")
     print(f"Sessions: {outcome.open_sessions} at once, {outcome.remaining_sessions} after all were closed.")
 
 
@@ -239,12 +273,14 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--ceiling", type=float, default=2.0, help="largest permitted resident memory of a process, GiB")
     parser.add_argument("--processes", type=int, default=1, help="server processes")
+    parser.add_argument("--busy-cores", type=int, default=0, help="other programs, each of which occupies a core")
     options = parser.parse_args()
     record = Record()
     with tempfile.TemporaryDirectory() as folder, ExitStack() as end:
         servers = [end.enter_context(served(Path(folder) / f"log {n}")) for n in range(options.processes)]
-        setup = f"{options.sessions} sessions on {options.processes} processes"
-        print(f"\n{setup} for {options.seconds:g} s, seed {options.seed}\n", flush=True)
+        end.enter_context(busy_cores(options.busy_cores))
+        setup = f"{options.sessions} sessions on {options.processes} processes beside {options.busy_cores} busy cores"
+        print(f"\n{setup} for {options.seconds:g} s, seed {options.seed}. {CACHE_SENTENCE}\n", flush=True)
         outcome = asyncio.run(load(servers, record, options.sessions, options.seconds, options.seed))
         report(servers, record, outcome)
         problems = list(find_problems(servers, record, outcome.remaining_sessions, options.ceiling))

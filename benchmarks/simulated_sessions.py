@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import http.client
 import itertools
 import json
 import random
 import re
 import time
 from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, urljoin
 
-from tornado.httpclient import AsyncHTTPClient, HTTPRequest
+from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from engine import Plane
@@ -50,8 +52,8 @@ class Record:
         By action, from the action to the first frame of its map.
     replaced
         Time waited in vain for a map before the next action replaced it.
-    previews, clicks, orbit_plots
-        Counts.
+    previews, clicks, orbit_plots, refused
+        Counts; `refused` are pages that a full server has not opened.
     errors
         Messages.
     """
@@ -62,6 +64,7 @@ class Record:
     previews: int = 0
     clicks: int = 0
     orbit_plots: int = 0
+    refused: int = 0
     errors: list[str] = field(default_factory=list)
 
 
@@ -155,9 +158,15 @@ class SimulatedSession:
         self._reader: asyncio.Task[None] | None = None
 
     async def open(self) -> None:
-        """Load the page and wait for its first map."""
+        """Load the page and wait for its first map, or count that a full server has refused it."""
         begin = time.perf_counter()
-        self._channel = await Channel.open(self._address, self._options)
+        try:
+            self._channel = await Channel.open(self._address, self._options)
+        except HTTPClientError as error:
+            if error.code != http.client.SERVICE_UNAVAILABLE:
+                raise
+            self._record.refused += 1
+            return
         self._reader = asyncio.create_task(self._read(self._channel))
         try:
             await asyncio.wait_for(self._opened.wait(), FRAME_TIMEOUT_SECONDS)
@@ -166,8 +175,8 @@ class SimulatedSession:
             self._record.errors.append(f"no map within {FRAME_TIMEOUT_SECONDS:g} s of opening the page")
 
     async def run(self, end: float) -> None:
-        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map."""
-        while True:
+        """Act at random until `time.perf_counter()` reaches `end`, then wait for the last map; not without a page."""
+        while self.is_open:
             pause = self._random.uniform(*PAUSE_SECONDS)
             if time.perf_counter() + pause > end:
                 break
@@ -192,6 +201,18 @@ class SimulatedSession:
     def is_open(self) -> bool:
         """Whether the page is connected."""
         return self._reader is not None and not self._reader.done()
+
+    async def fetch(self, path: str) -> int:
+        """Request a path of the server as another visitor would, and return the status."""
+        address = urljoin(self._address, path)
+        return (await AsyncHTTPClient().fetch(address, raise_error=False, request_timeout=60.0, **self._options)).code
+
+    async def connect(self, token: str) -> None:
+        """Open a WebSocket with this token, wait for the server's first message or until it closes the socket, and close it."""
+        channel = await Channel.connect(self._address, f'"token":"{token}"', self._options)
+        with suppress(EOFError):
+            await channel.part()
+        channel.close()
 
     def follow_link(self, link: str) -> None:
         """Show the view of a link, as the browser's Back does."""

@@ -38,7 +38,10 @@ def refusal_reason(state: ProcessState) -> str | None:
 
 
 def _full_reason(state: ProcessState) -> str | None:
-    limit = state.settings.most_sessions
-    if len(list(state.sessions())) < limit:
-        return None
-    return f"All {limit} places are taken. Reload this page in a minute."
+    limit, sessions = state.settings.most_sessions, list(state.sessions())
+    if len(sessions) >= limit:
+        return f"All {limit} places are taken. Reload this page in a minute."
+    # The only visitor may reload the page, whatever delays it.
+    if state.overload.is_overloaded() and any(session.connection_count for session in sessions):
+        return "The server is busy with the pages that are open. Reload this page in a minute."
+    return None

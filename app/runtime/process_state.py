@@ -15,6 +15,7 @@ from bokeh.document import Document
 from app.runtime.fair_share import FairShare
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
+from app.runtime.overload import OverloadMonitor
 from app.runtime.settings import Settings, read_settings
 from engine.service import Jobs, compiled_operations
 
@@ -38,6 +39,8 @@ class ProcessState:
         Background jobs of all sessions.
     load
         Delay of the event loop.
+    overload
+        Whether the delays of first frames have been long for seconds.
     metrics
         Prometheus metrics.
     kernels_ready
@@ -53,6 +56,7 @@ class ProcessState:
     sockets: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
+    overload: OverloadMonitor = field(init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)
     kernels_ready: threading.Event = field(default_factory=threading.Event, init=False)
     kernels_failed: threading.Event = field(default_factory=threading.Event, init=False)
@@ -60,6 +64,7 @@ class ProcessState:
     _shares: WeakKeyDictionary[Document, FairShare] = field(default_factory=WeakKeyDictionary, init=False)
 
     def __post_init__(self) -> None:
+        self.overload = OverloadMonitor(self.settings.longest_delay)
         compiled_operations.most = self.settings.compiled_operations
         self.jobs = Jobs(
             cache_bytes=self.settings.cache_bytes,
@@ -71,6 +76,11 @@ class ProcessState:
     def fair_share(self, document: Document) -> FairShare:
         """The share of a document's page, whatever the number of its connections."""
         return self._shares.setdefault(document, FairShare())
+
+    def adapt_to_load(self) -> None:
+        """Adapt to the measured delays; call after each tick of `load` on the event loop."""
+        self.overload.add(self.load.delay + self.jobs.take_first_frame_wait())
+        self.jobs.pause_background(self.load.is_high())
 
     def is_overloaded(self) -> bool:
         """Whether the event loop is delayed or many calls wait for a thread."""

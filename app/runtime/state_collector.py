@@ -9,6 +9,7 @@ from prometheus_client.registry import Collector
 
 from app.runtime.health import not_ready_reason, resident_bytes
 from app.runtime.metrics import NAMESPACE
+from app.runtime.overload import WINDOW_SECONDS
 from app.runtime.process_state import ProcessState
 from engine.service import compiled_operations
 
@@ -32,6 +33,13 @@ class StateCollector(Collector):
         yield _gauge("sessions_open", "Open sessions", len(sessions))
         yield _gauge("sessions_limit", "Maximum number of sessions", state.settings.most_sessions)
         yield _gauge("websockets_open", "Open WebSockets", sum(session.connection_count for session in sessions))
+        yield _gauge("overloaded", "Whether pages are refused because first frames are late", state.overload.is_overloaded())
+        yield _gauge(
+            "delay_seconds",
+            f"Longest delay of a first frame by event loop and queue, last {WINDOW_SECONDS} s",
+            state.overload.delay,
+        )
+        yield _gauge("delay_limit_seconds", "Delay above which pages are refused", state.settings.longest_delay)
         yield _gauge("resident_memory_bytes", "Resident memory", resident_bytes())
         yield from _job_metrics(state)
 

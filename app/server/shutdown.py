@@ -6,6 +6,7 @@ import asyncio
 import logging
 import os
 import signal
+import socket
 import sys
 import threading
 from collections.abc import Callable
@@ -21,31 +22,42 @@ _GRACE_SECONDS = 0.5
 # Computations check for cancellation about every 50 ms; a compilation cannot be cancelled.
 _LAST_SECONDS = 4.0
 
+_SIGNALS = (signal.SIGTERM, signal.SIGINT)
+
 log = logging.getLogger(f"bokeh.{__name__}")
 
 
-def stop_gracefully_on_sigterm(state: ProcessState, stop_loop: Callable[[], None]) -> None:
-    """Replace Bokeh's handler of SIGTERM, which only stops the event loop; call on the thread of the loop."""
+def stop_on_signals(state: ProcessState, stop_loop: Callable[[], None]) -> None:
+    """Stop gracefully on SIGTERM and Ctrl-C, whatever the event loop is doing; call on the thread of the loop.
+
+    Replaces the handlers of Bokeh and asyncio, which wait for the event loop. A thread waits for the signals instead: Python
+    writes their numbers to a socket at once. Only a call of C that keeps the interpreter lock delays the thread, as all others.
+    """
     loop = asyncio.get_running_loop()
     if os.name != "posix" or threading.current_thread() is not threading.main_thread():
         return
+    loop.remove_signal_handler(signal.SIGTERM)
+    for number in _SIGNALS:
+        # A shell starts background jobs with SIGINT ignored.
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _leave_to_thread)
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
+    signal.set_wakeup_fd(sender.detach(), warn_on_full_buffer=False)
 
     def stop() -> None:
         begin_shutdown(state)
-        loop.call_later(_GRACE_SECONDS, stop_loop)
+        loop.call_soon_threadsafe(_notify_pages, state)
+        loop.call_soon_threadsafe(loop.call_later, _GRACE_SECONDS, stop_loop)
 
-    loop.add_signal_handler(signal.SIGTERM, stop)
+    threading.Thread(target=_wait_for_signal, args=(receiver, stop), name="signals", daemon=True).start()
 
 
 def begin_shutdown(state: ProcessState) -> None:
-    """Refuse new sessions, notify the pages, cancel all jobs and limit the time until the process ends."""
-    if state.stopping.is_set():
-        return
+    """Refuse new sessions, cancel all jobs and limit the time until the process ends; on any thread."""
+    _exit_later()
     state.stopping.set()
     log.info("stopping")
-    _exit_later()
-    for session in list(state.sessions()):
-        _notify(session.document)
     state.jobs.stop()
 
 
@@ -57,12 +69,26 @@ def finish_shutdown(state: ProcessState) -> None:
         os._exit(0)
 
 
-def _notify(document: Any) -> None:
-    try:
-        document.add_next_tick_callback(lambda: show_lasting_notice(document, RESTART_NOTICE))
-    except Exception:
-        # Continue with the other pages.
-        log.exception("a page could not be notified")
+def _leave_to_thread(number: int, frame: Any) -> None:
+    """Handle a signal of `_SIGNALS`: `_wait_for_signal` does."""
+
+
+def _wait_for_signal(receiver: socket.socket, stop: Callable[[], None]) -> None:
+    """Call `stop` after the first signal of `_SIGNALS`; others may have handlers of their own."""
+    while receiver.recv(1)[0] not in _SIGNALS:
+        pass
+    stop()
+
+
+def _notify_pages(state: ProcessState) -> None:
+    for session in list(state.sessions()):
+        try:
+            session.document.add_next_tick_callback(
+                lambda document=session.document: show_lasting_notice(document, RESTART_NOTICE)
+            )
+        except Exception:
+            # Continue with the other pages.
+            log.exception("a page could not be notified")
 
 
 def _exit_later() -> None:

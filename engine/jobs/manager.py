@@ -14,6 +14,7 @@ from typing import Any
 from engine.execution import count_workers, create_thread_pool, is_cancelled, raise_if_cancelled
 from engine.jobs.cache import ABSENT, ResultCache
 from engine.jobs.job import Job, Queue
+from engine.jobs.map_priority import MapPriority
 from engine.jobs.orbit_semaphore import OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
@@ -38,6 +39,8 @@ class _Run:
     job: Job[Any]
     subscriptions: list[Subscription]
     client: Hashable
+    map_priority: MapPriority | None
+    """Of a map that is shown; all short calls of other jobs are in the background."""
     cancel: threading.Event = field(default_factory=threading.Event)
     latest: Any = None
     """The last partial result."""
@@ -55,9 +58,8 @@ class _Run:
         return subscriptions
 
     def priority(self) -> Priority:
-        """Of short calls: the highest up to the first result, where the queue says so."""
-        is_first = self.job.queue is Queue.FIRST_FRAME and self.latest is None
-        return Priority.FIRST_FRAME if is_first else Priority.BACKGROUND
+        """Of the short calls."""
+        return Priority.BACKGROUND if self.map_priority is None else self.map_priority()
 
 
 class Jobs:
@@ -129,7 +131,8 @@ class Jobs:
                 latest = self._in_flight[job].latest
             elif not complete:
                 latest = None
-                run = self._in_flight[job] = _Run(job, [subscription], client)
+                priority = MapPriority() if job.queue is Queue.FIRST_FRAME else None
+                run = self._in_flight[job] = _Run(job, [subscription], client, priority)
                 self._coordinators.submit(self._run_job, run)
         if complete or latest is not None:
             subscription.deliver(latest, last=complete)
@@ -154,6 +157,10 @@ class Jobs:
             orbits_limit=self._semaphore.limit,
             threads=count_workers(self._executor) if self._executor is not None else self._scheduler.threads,
         )
+
+    def take_first_frame_wait(self) -> float:
+        """Longest recent wait of a first frame for a thread; see `FairScheduler.take_first_frame_wait`."""
+        return self._scheduler.take_first_frame_wait()
 
     def pause_background(self, paused: bool) -> None:
         """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
@@ -249,6 +256,8 @@ class Jobs:
             return
         with self._lock:
             run.latest = result
+            if run.map_priority is not None:
+                run.map_priority.add_frame(result.horizon)
             subscriptions = list(run.subscriptions)
         for subscription in subscriptions:
             subscription.deliver(result, last=False)

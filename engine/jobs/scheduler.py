@@ -9,6 +9,7 @@ from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from enum import IntEnum
 from typing import Any, NamedTuple
+from weakref import WeakSet
 
 from engine.execution import count_workers, default_executor
 
@@ -28,11 +29,21 @@ class Priority(IntEnum):
     BACKGROUND = 2
     """Part of a larger computation, about 50 ms long; under load most calls are of this kind."""
 
+    UNSETTLED = 3
+    """The same for a result that is likely to be replaced before anyone looks at it."""
+
 
 class _Call(NamedTuple):
     executor: QueueExecutor
     future: Future[Any]
     function: Callable[[], Any]
+    queued: float
+    """Time on the monotonic clock."""
+
+    def cancel(self) -> None:
+        self.future.cancel()
+        # Wakes the threads that wait for the future.
+        self.future.set_running_or_notify_cancel()
 
     def run(self) -> None:
         if not self.future.set_running_or_notify_cancel():
@@ -60,10 +71,12 @@ class FairScheduler:
         self._lock = threading.Lock()
         # By client, in round-robin order, then by executor, oldest first; those without pending calls are removed.
         self._pending: OrderedDict[Hashable, dict[QueueExecutor, deque[_Call]]] = OrderedDict()
+        self._cancelled: WeakSet[QueueExecutor] = WeakSet()
         # Threads of the pool that run calls.
         self._active_threads = 0
         self._running_long_calls = 0
         self._background_paused = False
+        self._first_frame_wait = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
         self._next_long_call = 0.0
 
@@ -85,8 +98,24 @@ class FairScheduler:
         with self._lock:
             return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
 
+    def take_first_frame_wait(self) -> float:
+        """Longest time in seconds that a `Priority.FIRST_FRAME` call has waited for a thread since the last call of this method.
+
+        Those that still wait count.
+        """
+        now = time.monotonic()
+        with self._lock:
+            waiting = [
+                now - calls[0].queued
+                for queues in self._pending.values()
+                for executor, calls in queues.items()
+                if executor.priority() is Priority.FIRST_FRAME
+            ]
+            longest, self._first_frame_wait = max(self._first_frame_wait, *waiting, 0.0), 0.0
+        return longest
+
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume `Priority.BACKGROUND` calls, to relieve an overloaded process.
+        """Pause or resume `Priority.BACKGROUND` and `Priority.UNSETTLED` calls, to relieve an overloaded process.
 
         While they are paused, long calls have a duty cycle of 10 % of one thread. To start the next of these, call this method
         about every 0.1 s during the pause.
@@ -97,20 +126,24 @@ class FairScheduler:
             self._start_threads(self.threads if resumed else 1)
 
     def add(self, call: _Call) -> None:
-        """Queue a call."""
+        """Queue a call, or cancel it if those of its executor have been cancelled."""
         with self._lock:
-            self._pending.setdefault(call.executor.client, {}).setdefault(call.executor, deque()).append(call)
-        self._start_threads(1)
+            is_cancelled = call.executor in self._cancelled
+            if not is_cancelled:
+                self._pending.setdefault(call.executor.client, {}).setdefault(call.executor, deque()).append(call)
+        if is_cancelled:
+            call.cancel()
+        else:
+            self._start_threads(1)
 
     def cancel_futures(self, executor: QueueExecutor) -> None:
-        """Cancel the calls of an executor that no thread has started."""
+        """Cancel the calls of an executor that no thread has started, and all later ones."""
         with self._lock:
+            self._cancelled.add(executor)
             cancelled = self._pending.get(executor.client, {}).pop(executor, ())
             self._forget_if_empty(executor.client)
         for call in cancelled:
-            call.future.cancel()
-            # Wakes the threads that wait for the future.
-            call.future.set_running_or_notify_cancel()
+            call.cancel()
 
     def _start_threads(self, most: int) -> None:
         """Let up to `most` more threads run calls, if calls are pending."""
@@ -145,6 +178,8 @@ class FairScheduler:
             self._running_long_calls += priority is Priority.LONG_CALL
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
+            if priority is Priority.FIRST_FRAME:
+                self._first_frame_wait = max(self._first_frame_wait, time.monotonic() - call.queued)
             if not queues[executor]:
                 del queues[executor]
             self._pending.move_to_end(executor.client)
@@ -163,7 +198,7 @@ class FairScheduler:
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
             return True
-        if priority is Priority.BACKGROUND:
+        if priority is not Priority.LONG_CALL:
             return not self._background_paused
         if self._background_paused:
             return self._running_long_calls == 0 and time.monotonic() >= self._next_long_call
@@ -186,9 +221,9 @@ class QueueExecutor(Executor):
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call and return its future."""
         future: Future[Any] = Future()
-        self._scheduler.add(_Call(self, future, lambda: fn(*args, **kwargs)))
+        self._scheduler.add(_Call(self, future, lambda: fn(*args, **kwargs), time.monotonic()))
         return future
 
     def cancel_futures(self) -> None:
-        """Cancel the calls that no thread has started."""
+        """Cancel the calls that no thread has started, and all later ones."""
         self._scheduler.cancel_futures(self)

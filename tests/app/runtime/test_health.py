@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -36,8 +37,21 @@ def test_not_ready_after_failed_compilation(state: ProcessState) -> None:
 
 
 def test_full_server_refuses_sessions(state: ProcessState) -> None:
-    state.sessions = lambda: ["one", "two"]
+    state.sessions = lambda: [SimpleNamespace(connection_count=0)] * 2
     assert not_ready_reason(state) == refusal_reason(state) == "All 2 places are taken. Reload this page in a minute."
+
+
+def test_overloaded_server_refuses_sessions(state: ProcessState) -> None:
+    state.overload.add(1000.0)
+    state.sessions = lambda: [SimpleNamespace(connection_count=1)]
+    assert not_ready_reason(state) == refusal_reason(state)
+    assert str(refusal_reason(state)).startswith("The server is busy")
+
+
+def test_overloaded_server_admits_its_only_visitor(state: ProcessState) -> None:
+    state.overload.add(1000.0)
+    state.sessions = lambda: [SimpleNamespace(connection_count=0)]
+    assert refusal_reason(state) is None
 
 
 def test_stopping_server_refuses_sessions(state: ProcessState) -> None:

@@ -53,6 +53,14 @@ def test_idle_process_is_not_overloaded() -> None:
     assert not ProcessState().is_overloaded()
 
 
+def test_delays_of_loop_and_queue_are_added(monkeypatch: pytest.MonkeyPatch) -> None:
+    state = ProcessState(Settings(longest_delay=0.5))
+    state.load.delay = 0.3
+    monkeypatch.setattr(state.jobs, "take_first_frame_wait", lambda: 0.4)
+    state.adapt_to_load()
+    assert state.overload.delay == pytest.approx(0.7)
+
+
 def test_each_document_has_its_share() -> None:
     state, first, second = ProcessState(), Document(), Document()
     assert state.fair_share(first) is state.fair_share(first)

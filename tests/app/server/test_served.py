@@ -14,6 +14,7 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import urlencode
@@ -65,21 +66,38 @@ class Served:
         raise TimeoutError(f"{path} did not return {status}: {self.log.read_text()}")
 
 
-@pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+@contextmanager
+def serving(log: Path, *command: str) -> Iterator[Served]:
+    """Run a command that serves the page."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    log = tmp_path_factory.mktemp("served") / "log"
-    command = [sys.executable, "-m", "panel", "serve", "app", "--address", "127.0.0.1", "--port", str(port)]
     environment = {**os.environ, "ESCAPE_EXPLORER_LOG": "json", "ESCAPE_EXPLORER_MOST_SESSIONS": "2"}
+    arguments = [sys.executable, "-m", *command, "--address", "127.0.0.1", "--port", str(port)]
     with log.open("wb") as output:
-        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=output)
+        process = subprocess.Popen(arguments, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL, stderr=output)
     try:
         yield Served(port, process, log)
     finally:
         process.kill()
         process.wait(30)
+
+
+PANEL = ("panel", "serve", "app")
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    with serving(tmp_path_factory.mktemp("served") / "log", *PANEL) as server:
+        yield server
+
+
+@pytest.fixture
+def _default_sigint() -> Iterator[None]:
+    """Processes started in the background ignore SIGINT, and so would the server."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def test_server_answers_during_compilation_and_is_ready_afterwards(served: Served) -> None:
@@ -145,12 +163,30 @@ def test_websocket_of_another_origin_is_refused(served: Served) -> None:
 
 
 def test_server_stops_within_five_seconds_during_a_computation(served: Served) -> None:
-    run_on_new_loop(lambda: stop_during_a_map(served))
+    run_on_new_loop(lambda: stop_during_a_map(served, signal.SIGTERM))
     assert served.process.wait(30) == 0
     assert time.monotonic() - served.stopped_at < 5.0
 
 
 def test_log_is_json_without_tracebacks(served: Served) -> None:
+    check_log(served)
+
+
+@pytest.mark.usefixtures("_default_sigint")
+@pytest.mark.parametrize("command", [PANEL, ("cli", "serve")], ids=["panel serve", "escape-explorer serve"])
+def test_ctrl_c_stops_the_server_during_a_computation(tmp_path: Path, command: tuple[str, ...]) -> None:
+    with serving(tmp_path / "log", *command) as server:
+        server.wait_for("/liveness", 200)
+        server.pages = [server.get(f"/app?{urlencode(LONG_MAP)}")[1]]
+        run_on_new_loop(lambda: stop_during_a_map(server, signal.SIGINT))
+        assert server.process.wait(30) == 0
+        assert time.monotonic() - server.stopped_at < 5.0
+        assert "Traceback" not in server.log.read_text()
+        check_log(server)
+
+
+def check_log(served: Served) -> None:
+    """The last record is that of the stop, and no record has a traceback."""
     lines = [line for line in served.log.read_text().splitlines() if line.startswith("{")]
     records = [json.loads(line) for line in lines]
     assert records[-1]["message"] == "stopping"
@@ -176,8 +212,8 @@ def check_nonce(page: str, policy: str) -> None:
     assert page.count("<script") == page.count("<script nonce=")
 
 
-async def stop_during_a_map(served: Served) -> None:
-    """Request a long map and send SIGTERM while it is computed."""
+async def stop_during_a_map(served: Served, number: signal.Signals) -> None:
+    """Request a long map and send a signal while it is computed."""
     channel = await Channel.connect(f"http://127.0.0.1:{served.port}/app", served.pages[0])
     async for kind, _ in channel.messages():
         if kind == "ACK":
@@ -186,6 +222,6 @@ async def stop_during_a_map(served: Served) -> None:
             channel.emit("document_ready")
         elif kind == "PATCH-DOC" and served.stopped_at == 0.0 and served.metric("jobs_in_flight") >= 1:
             served.stopped_at = time.monotonic()
-            served.process.send_signal(signal.SIGTERM)
+            served.process.send_signal(number)
     channel.close()
     assert served.stopped_at, "the map was never started"

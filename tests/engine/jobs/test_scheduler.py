@@ -10,7 +10,9 @@ from typing import Any
 import pytest
 
 from engine.execution import count_workers
+from engine.jobs import scheduler as scheduler_module
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
+from tests.app.clock import Clock
 
 SECONDS = 10.0
 
@@ -127,6 +129,16 @@ def test_pending_futures_of_one_executor_can_be_cancelled() -> None:
     assert recorder.run(*others) == ["a3"]
 
 
+def test_later_calls_of_a_cancelled_executor_are_cancelled() -> None:
+    recorder = Recorder()
+    recorder.scheduler.pause_background(True)
+    executor = recorder.executor("a")
+    executor.cancel_futures()
+    (later,) = recorder.submit(executor, "a1")
+    assert not wait([later], SECONDS).not_done
+    assert later.cancelled()
+
+
 def test_executor_has_the_workers_of_the_pool() -> None:
     assert count_workers(Recorder(threads=3).executor("a")) == 3
 
@@ -137,6 +149,52 @@ def test_pending_calls_are_counted() -> None:
     assert recorder.scheduler.pending_calls >= 2
     recorder.run(*calls)
     assert recorder.scheduler.pending_calls == 0
+
+
+def unsettled() -> Priority:
+    return Priority.UNSETTLED
+
+
+def test_unsettled_calls_run_last() -> None:
+    recorder = Recorder()
+    others = recorder.submit(recorder.executor("a", unsettled), "a1", "a2")
+    background = recorder.submit(recorder.executor("b"), "b1", "b2")
+    assert recorder.run(*others, *background) == ["b1", "b2", "a1", "a2"]
+
+
+def test_unsettled_calls_are_paused_with_background_calls() -> None:
+    recorder = Recorder()
+    recorder.scheduler.pause_background(True)
+    paused = recorder.submit(recorder.executor("a", unsettled), "a1")
+    recorder.run(*recorder.submit(recorder.executor("b", first_frame), "b1"))
+    assert not paused[0].done()
+    recorder.scheduler.pause_background(False)
+    assert recorder.run(*paused) == ["b1", "a1"]
+
+
+def test_wait_of_first_frames_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = Clock()
+    monkeypatch.setattr(scheduler_module, "time", clock)
+    recorder = Recorder()
+    frame = recorder.submit(recorder.executor("b", first_frame), "b1")
+    recorder.submit(recorder.executor("a"), "a1")
+    clock.now += 3.0
+    # It still waits.
+    assert recorder.scheduler.take_first_frame_wait() == 3.0
+    clock.now += 1.0
+    recorder.run(*frame)
+    assert recorder.scheduler.take_first_frame_wait() == 4.0
+    assert recorder.scheduler.take_first_frame_wait() == 0.0
+
+
+def test_other_calls_are_no_first_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = Clock()
+    monkeypatch.setattr(scheduler_module, "time", clock)
+    recorder = Recorder()
+    calls = recorder.submit(recorder.executor("a"), "a1")
+    clock.now += 3.0
+    recorder.run(*calls)
+    assert recorder.scheduler.take_first_frame_wait() == 0.0
 
 
 def test_paused_background_calls_wait_and_others_run() -> None:

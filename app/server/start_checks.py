@@ -1,0 +1,37 @@
+"""Checks before the server starts: what it refuses ends the process with one sentence and exit code 2."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+_INVALID_ARGUMENTS = 2
+
+SEVERAL_PROCESSES = (
+    "--num-procs: must be 1, as requests of a page could reach a process without its session; "
+    "start one server per port behind a proxy with sticky sessions instead (docs/operation.md)"
+)
+
+
+def refuse_to_start(sentence: str) -> NoReturn:
+    """Write the sentence to stderr and end the process."""
+    sys.stderr.write(f"{sentence}\n")
+    sys.stderr.flush()
+    # SystemExit would first run the hooks of a server that has not started.
+    os._exit(_INVALID_ARGUMENTS)
+
+
+def asks_for_several_processes(arguments: Sequence[str]) -> bool:
+    """Whether the arguments of `panel serve` contain ``--num-procs`` with another value than 1; 0 is one process per core."""
+    parser = argparse.ArgumentParser(add_help=False, exit_on_error=False)
+    parser.add_argument("--num-procs", type=int, default=1)
+    # Arguments of the application.
+    parser.add_argument("--args", nargs=argparse.REMAINDER)
+    try:
+        return bool(parser.parse_known_args(arguments)[0].num_procs != 1)
+    except argparse.ArgumentError:
+        # `panel serve` reports it.
+        return False

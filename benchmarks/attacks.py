@@ -1,0 +1,129 @@
+"""What a visitor does in `benchmarks.hostile`: one entry of `ATTACKS` for each way to keep the server busy."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import importlib.util
+import itertools
+import pkgutil
+import random
+from collections.abc import AsyncIterator, Callable
+from urllib.parse import quote
+
+from bokeh.core.types import ID
+from bokeh.util.token import generate_jwt_token
+
+from benchmarks.simulated_sessions import SimulatedSession
+
+_WORST_MAP = "?case=III&h=0.3&plane=x_px&t_max=1000000&resolution=900&judge=yes&trust=yes&manifolds=yes&origins=yes"
+_REQUEST_PAUSE = 0.05
+
+Attack = Callable[[SimulatedSession, random.Random], AsyncIterator[None]]
+"""The actions of a visitor; each step is one action, and the pause after it."""
+
+
+async def do_nothing(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """For comparison."""
+    while True:
+        await asyncio.sleep(1.0)
+        yield
+
+
+async def compute_worst_map(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """The map that takes longest, with all layers, at slightly different energies."""
+    for number in itertools.count():
+        visitor.follow_link(_WORST_MAP.replace("h=0.3", f"h={0.3 + 1e-6 * number!r}"))
+        await asyncio.sleep(10.0)
+        yield
+
+
+async def sweep_energies(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Curves against energy, with the largest map in view."""
+    for case in itertools.cycle(["III", "II", "I"]):
+        visitor.follow_link(f"?case={case}&resolution=900&t_max=1000000&analysis=energies")
+        await asyncio.sleep(2.0)
+        visitor.press("Compute the curves")
+        await asyncio.sleep(13.0)
+        yield
+
+
+async def type_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """A potential of new powers each second, so that its integrator must be compiled."""
+    while True:
+        powers = [(i, degree - i) for degree in range(3, 9) for i in range(degree + 1)]
+        terms = " + ".join(f"{choice.uniform(-0.2, 0.2):.3f}*x^{i}*y^{j}" for i, j in choice.sample(powers, 6))
+        visitor.follow_link(f"?case=typed&V={quote(f'x^2/2 + y^2/2 - x^3/3 + {terms}')}&resolution=112")
+        await asyncio.sleep(1.0)
+        yield
+
+
+async def click(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Twenty clicks a second on long orbits, removed when there are five."""
+    for number in itertools.count():
+        if number % 5 == 0:
+            visitor.follow_link("?case=III&h=0.3&t_max=1000000&resolution=112")
+        visitor.click(choice.uniform(-0.3, 0.3), choice.uniform(-0.3, 0.3))
+        await asyncio.sleep(0.05)
+        yield
+
+
+async def flip_choices(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Resolution and colours, as fast as messages are accepted."""
+    for resolution, palette in itertools.cycle(itertools.product((112, 224, 450, 900), ("paper", "safe"))):
+        visitor.follow_link(f"?case=III&h=0.3&resolution={resolution}&palette={palette}")
+        await asyncio.sleep(0.005)
+        yield
+
+
+async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Pages with a radial potential of new coefficients, one after another."""
+    while True:
+        powers = "".join(f"{sign}{choice.uniform(0.5, 1.5):.6f}*r^{2 * n}" for n, sign in zip(range(2, 7), "-+-+-", strict=True))
+        await visitor.fetch(f"/app?case=typed&V={quote(f'r^2/2{powers}')}")
+        await asyncio.sleep(_REQUEST_PAUSE)
+        yield
+
+
+async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Resources of components in all modules of large packages, none of which the page needs."""
+    names = _module_names()
+    choice.shuffle(names)
+    for name in itertools.cycle(names):
+        await visitor.fetch(f"/components/{name}/Component/__css__/file.css")
+        await asyncio.sleep(_REQUEST_PAUSE)
+        yield
+
+
+async def send_zlib_bombs(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """WebSockets with a token of 53 kB, which is close to the limit of a header and decompresses to 30 MB."""
+    token = await asyncio.to_thread(_large_token)
+    while True:
+        await visitor.connect(token)
+        await asyncio.sleep(_REQUEST_PAUSE)
+        yield
+
+
+def _module_names() -> list[str]:
+    """Modules of the packages, which are not imported here."""
+    specs = [importlib.util.find_spec(package) for package in ("bokeh", "matplotlib", "numba", "panel", "scipy", "tornado")]
+    folders = [(list(spec.submodule_search_locations or ()), spec.name) for spec in specs if spec is not None]
+    return [module.name for paths, package in folders for module in pkgutil.iter_modules(paths, f"{package}.")]
+
+
+@functools.cache
+def _large_token() -> str:
+    return generate_jwt_token(ID("attack"), extra_payload={"zeros": "0" * 30_000_000})
+
+
+ATTACKS: dict[str, Attack] = {
+    "nothing": do_nothing,
+    "largest map, all layers": compute_worst_map,
+    "against energy": sweep_energies,
+    "a new potential each second": type_potentials,
+    "clicks": click,
+    "resolution and colours": flip_choices,
+    "links to radial potentials": link_to_radial_potentials,
+    "resources of any module": name_modules,
+    "compressed tokens": send_zlib_bombs,
+}

@@ -1,0 +1,60 @@
+"""Options of glibc's memory allocation."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import threading
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import pytest
+
+from app.runtime.memory_allocation import reduce_fragmentation
+from tests import forked
+
+THREADS = 12
+
+pytestmark = pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="options of glibc")
+
+
+def count_arenas(results: Connection, folder: Path, variables: dict[str, str]) -> None:
+    """Send the number of arenas of a process in which many threads allocate memory at the same time."""
+    os.environ.update(variables)
+    reduce_fragmentation()
+    library = ctypes.CDLL(None)
+    barrier = threading.Barrier(THREADS + 1)
+
+    def allocate() -> None:
+        library.malloc(1000)
+        barrier.wait()
+        barrier.wait()
+
+    threads = [threading.Thread(target=allocate, daemon=True) for _ in range(THREADS)]
+    for thread in threads:
+        thread.start()
+    barrier.wait()
+    library.fopen.restype = ctypes.c_void_p
+    file = ctypes.c_void_p(library.fopen(str(folder / "arenas").encode(), b"w"))
+    library.malloc_info(0, file)
+    library.fclose(file)
+    results.send((folder / "arenas").read_text().count("<heap nr="))
+    barrier.wait()
+
+
+def arenas(folder: Path, variables: dict[str, str]) -> int:
+    receiver, sender = forked.fork_context().Pipe(duplex=False)
+    process = forked.start(count_arenas, sender, folder, variables)
+    assert receiver.poll(forked.SECONDS)
+    count: int = receiver.recv()
+    process.join(forked.SECONDS)
+    return count
+
+
+def test_threads_share_arenas(tmp_path: Path) -> None:
+    assert arenas(tmp_path, {}) <= 3
+
+
+def test_environment_variables_have_precedence(tmp_path: Path) -> None:
+    assert arenas(tmp_path, {"MALLOC_ARENA_MAX": "16"}) > 3

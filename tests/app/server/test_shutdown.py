@@ -1,0 +1,91 @@
+"""The process ends within seconds of a signal, whatever its event loop does."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import os
+import signal
+import time
+from collections.abc import Callable
+from multiprocessing.synchronize import Event
+
+import pytest
+
+from app.runtime.process_state import ProcessState
+from app.runtime.settings import Settings
+from app.server.shutdown import finish_shutdown, stop_on_signals
+from tests import forked
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+
+LIMIT_SECONDS = 5.0
+
+
+def compute_in_python() -> None:
+    while True:
+        sum(range(1000))
+
+
+def call_into_c() -> None:
+    """One call of C, which releases the interpreter lock, for minutes."""
+    hashlib.pbkdf2_hmac("sha512", b"password", b"salt", 2**30)
+
+
+def do_nothing() -> None:
+    """Leave the event loop idle."""
+
+
+def serve(started: Event, stopped: Event, occupy: Callable[[], None]) -> None:
+    """What `panel serve` does, without its server; the event loop is occupied as soon as it runs."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    asyncio.run(_serve(started, stopped, occupy))
+
+
+async def _serve(started: Event, stopped: Event, occupy: Callable[[], None]) -> None:
+    state, loop_stopped = ProcessState(Settings(threads=1)), asyncio.Event()
+    stop_on_signals(state, loop_stopped.set)
+    started.set()
+    occupy()
+    await loop_stopped.wait()
+    stopped.set()
+    finish_shutdown(state)
+
+
+@pytest.mark.parametrize("occupy", [compute_in_python, call_into_c])
+def test_process_with_an_occupied_event_loop_ends_in_time(occupy: Callable[[], None]) -> None:
+    assert not end_by_signal(signal.SIGTERM, occupy)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_event_loop_stops_after_a_signal(number: signal.Signals) -> None:
+    assert end_by_signal(number, do_nothing)
+
+
+def end_by_signal(number: signal.Signals, occupy: Callable[[], None]) -> bool:
+    """End a process, check its exit code and the time that it takes, and return whether its event loop has stopped before."""
+    started, stopped = forked.fork_context().Event(), forked.fork_context().Event()
+    process = forked.start(serve, started, stopped, occupy)
+    assert started.wait(forked.SECONDS)
+    begin = time.monotonic()
+    os.kill(process.pid or 0, number)
+    process.join(forked.SECONDS)
+    assert time.monotonic() - begin < LIMIT_SECONDS
+    assert process.exitcode == 0
+    return stopped.is_set()
+
+
+def test_an_ignored_signal_stays_ignored() -> None:
+    process = forked.start(check_ignored)
+    process.join(forked.SECONDS)
+    assert process.exitcode == 0
+
+
+def check_ignored() -> None:
+    async def install() -> None:
+        stop_on_signals(ProcessState(Settings(threads=1)), lambda: None)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    asyncio.run(install())
+    # The threads of the state would delay a regular exit.
+    os._exit(signal.getsignal(signal.SIGINT) is not signal.SIG_IGN)
