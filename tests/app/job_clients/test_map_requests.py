@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -46,9 +45,6 @@ class Recorder:
 
     def map_failed(self, sentence: str) -> None:
         self.record("map failed", sentence)
-
-    def preview_arrived(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
-        self.record("preview arrived", frame)
 
     def last_frame(self) -> EscapeMap | None:
         frames = [value for what, value in self.calls if what == "map arrived"]
@@ -186,49 +182,6 @@ def test_an_invalid_energy_gives_a_message(session: Session) -> None:
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.calls if what == "map failed")
     assert "energy=50.0" in sentence
-
-
-def previews(recorder: Recorder) -> list[EscapeMap]:
-    return [value for what, value in recorder.calls if what == "preview arrived"]
-
-
-def test_the_last_preview_is_at_the_last_energy(session: Session) -> None:
-    _, requests, recorder, jobs = session
-    for energy in (0.31, 0.32, 0.33, 0.34):
-        requests.request_preview(energy)
-    recorder.wait_for(lambda: bool(previews(recorder)) and previews(recorder)[-1].spec.energy == 0.34)
-    assert jobs.in_flight == 0
-    assert not requests.previews.under_way
-
-
-def test_a_preview_cancels_the_map(session: Session) -> None:
-    state, requests, recorder, _ = session
-    state.param.update(case="III", energy=0.26, t_max=1e5)
-    recorder.wait_for(lambda: recorder.last_frame() is not None)
-    requests.request_preview(0.5)
-    frames = recorder.names().count("map arrived")
-    recorder.wait_for(lambda: bool(previews(recorder)))
-    assert recorder.names().count("map arrived") == frames
-
-
-def test_a_map_request_cancels_previews(session: Session) -> None:
-    state, requests, recorder, _ = session
-    for energy in (0.31, 0.32, 0.33):
-        requests.request_preview(energy)
-    state.energy = 0.35
-    recorder.wait_for(recorder.complete)
-    names = recorder.names()
-    assert "preview arrived" not in names[names.index("map requested") :]
-
-
-def test_a_failed_preview_changes_nothing(session: Session) -> None:
-    _, requests, recorder, _ = session
-    requests.request_preview(50.0)
-    end = time.monotonic() + 30.0
-    while requests.previews.under_way and time.monotonic() < end:
-        time.sleep(0.01)
-    assert not requests.previews.under_way
-    assert recorder.names() == []
 
 
 def test_closing_cancels_all_jobs(session: Session) -> None:

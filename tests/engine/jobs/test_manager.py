@@ -29,12 +29,10 @@ from engine.service import (
     DivergentStartRequest,
     Jobs,
     OrbitRequest,
-    PreviewRequest,
     RegularityRequest,
     SeparationRequest,
     UnresolvedMapSpec,
     WarmupRequest,
-    preview_spec,
 )
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
@@ -207,17 +205,6 @@ def test_other_executors_can_be_used() -> None:
         jobs.request_map(QUICK, inbox.result, inbox.error)
         assert inbox.done.wait(30)
     np.testing.assert_array_equal(inbox.results[-1].fate, compute_map(QUICK).fate)
-
-
-def test_preview_is_delivered_once_and_cached() -> None:
-    jobs, first, second = Jobs(), Inbox(), Inbox()
-    unresolved = UnresolvedMapSpec(CASES["I"], Plane.X_PX, 0.3, (224, 224), None, 1e5)
-    jobs.request(PreviewRequest(unresolved), first.result, first.error)
-    assert first.first.wait(30)
-    wait_until_idle(jobs)
-    jobs.request(PreviewRequest(unresolved), second.result, second.error)
-    assert second.results == first.results
-    assert first.results[0].value.spec == preview_spec(unresolved.spec())
 
 
 def test_separation_equals_compute_separation() -> None:
