@@ -238,7 +238,7 @@ def report(servers: Sequence[Server], record: Record, outcome: Outcome) -> None:
         print(f"| {name} | {summary(times)} |")
     print(f"| replaced by the next action, until then | {summary(record.replaced)} |")
     print(f"| opening the page, one session at a time | {summary(record.opening)} |")
-    print(f"\nPreviews: {record.previews}. Clicks: {record.clicks}, plots of orbits: {record.orbit_plots}.")
+    print(f"\nClicks: {record.clicks}, plots of orbits: {record.orbit_plots}.")
     print(f"Busy cores: {outcome.busy_cores:.2f}. Memory per open page: {outcome.page_megabytes:.1f} MB.")
     for server in servers:
         tenth = max(len(server.megabytes) // 10, 1)

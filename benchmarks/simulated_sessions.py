@@ -19,14 +19,14 @@ from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from engine import Plane
-from engine.service import PREVIEW_SIDE
 
 CHEAP_ENERGIES = {"I": (0.22, 0.45), "II": (0.22, 0.45), "III": (0.40, 0.90)}
 """Energies well above the escape energy, where a map takes the least time."""
 
-MOVES, MOVE_SECONDS = 8, 0.05
-"""Number of slider moves of a drag, and the time between them."""
+DRAG_SECONDS = 0.4
+"""Duration of a drag of the slider."""
 
+POLL_SECONDS = 0.05
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
 """A frame that takes longer counts as an error."""
@@ -52,7 +52,7 @@ class Record:
         By action, from the action to the first frame of its map.
     replaced
         Time waited in vain for a map before the next action replaced it.
-    previews, clicks, orbit_plots, refused
+    clicks, orbit_plots, refused
         Counts; `refused` are pages that a full server has not opened.
     errors
         Messages.
@@ -61,7 +61,6 @@ class Record:
     opening: list[float] = field(default_factory=list)
     waits: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ACTIONS if name != "click"})
     replaced: list[float] = field(default_factory=list)
-    previews: int = 0
     clicks: int = 0
     orbit_plots: int = 0
     refused: int = 0
@@ -233,17 +232,18 @@ class SimulatedSession:
 
     async def _act_slider(self) -> None:
         while self._awaited is not None and self._awaited[0] == "case" and not self._accepted:
-            # The slider of the new case is not there yet.
-            await asyncio.sleep(MOVE_SECONDS)
+            # The slider has the range of the old case yet.
+            await asyncio.sleep(POLL_SECONDS)
             self._check_timeout()
         low, high = CHEAP_ENERGIES[self._case]
         # Between the steps of the slider, so that hardly any map is cached.
-        start, stop = (round(self._random.uniform(low, high), 6) for _ in range(2))
-        for move in range(1, MOVES + 1):
-            self._open_channel.set(self._models["Energy h"], value=start + (stop - start) * move / MOVES)
-            await asyncio.sleep(MOVE_SECONDS)
+        stop = round(self._random.uniform(low, high), 6)
+        # The browser computes what is shown during a drag.
+        await asyncio.sleep(DRAG_SECONDS)
         self._await_map("slider", h=repr(stop))
-        self._open_channel.set(self._models["Energy h"], value=stop, value_throttled=stop)
+        self._open_channel.emit(
+            "data_event", model={"id": self._models["energy"]}, data={"type": "map", "entries": [["energy", stop]]}
+        )
 
     async def _act_case(self) -> None:
         cases = list(CHEAP_ENERGIES)
@@ -305,20 +305,18 @@ class SimulatedSession:
                 link = dict(event["new"]["entries"])["link"]
                 self._accepted |= self._parameters.items() <= dict(parse_qsl(link.removeprefix("?"))).items()
             if event.get("attr") != "data":
-                # Sections and sliders are rebuilt while the page is open.
+                # Sections are rebuilt while the page is open.
                 self._models |= dict(_named_models(event))
             elif model in (self._models["maps"], self._models.get("paths")):
                 columns = dict(event.get("new", event.get("data"))["entries"])
                 if model == self._models["maps"]:
-                    self._on_pixels(columns)
+                    self._on_pixels()
                 elif columns["xs"]:
                     self._record.orbit_plots += 1
 
-    def _on_pixels(self, columns: dict[str, Any]) -> None:
-        """Record the pixels of a preview, or of the map that is awaited."""
-        if columns["fate"][0]["shape"][0] == PREVIEW_SIDE:
-            self._record.previews += 1
-        elif not self._opened.is_set():
+    def _on_pixels(self) -> None:
+        """Record the pixels of the map that is awaited."""
+        if not self._opened.is_set():
             self._opened.set()
         elif self._awaited is not None and self._accepted:
             self._record.waits[self._awaited[0]].append(time.perf_counter() - self._awaited[1])

@@ -28,12 +28,16 @@ export function render({model, el}) {
     rail.min = String(model.low)
     rail.max = String(model.high)
     rail.disabled = model.disabled
-    name.textContent = model.title
+    rail.setAttribute("aria-label", model.title)
+    name.textContent = model.note || `${model.title}: `
+    number.hidden = model.note !== ""
     write(clamped(model.energy))
   }
   const tell = (/** @type {string} */ event, /** @type {number} */ energy) =>
     document.dispatchEvent(new CustomEvent(event, {detail: energy}))
   const drag = (/** @type {number} */ energy) => {
+    name.textContent = `${model.title}: `
+    number.hidden = false
     write(energy)
     for (const event of ["energydragged", "energyshown"]) tell(event, energy)
   }
@@ -56,6 +60,6 @@ export function render({model, el}) {
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)
   model.on("lifecycle:remove", () => document.removeEventListener("energyshown", show))
-  model.on(["low", "high", "decimals", "title", "disabled", "energy"], follow)
+  model.on(["low", "high", "decimals", "title", "note", "disabled", "energy"], follow)
   follow()
 }

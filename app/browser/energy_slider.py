@@ -25,7 +25,8 @@ class EnergySlider(JSComponent):
         Parameters of the component.
     """
 
-    title = param.String(doc="text before the number")
+    title = param.String(default="Energy h", doc="name, shown before the number")
+    note = param.String(doc="shown in place of name and number")
     low = param.Number(default=0.0, doc="left end")
     high = param.Number(default=1.0, doc="right end")
     decimals = param.Integer(default=3, doc="decimals of the energies that can be chosen")

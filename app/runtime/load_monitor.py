@@ -1,4 +1,4 @@
-"""Measure the delay of the event loop; while it is high, previews and refined frames are postponed."""
+"""Measure the delay of the event loop; while it is high, refined frames are left out."""
 
 from __future__ import annotations
 

@@ -34,7 +34,12 @@ _RANGES = """name => {
     return [x_range.start, x_range.end, y_range.start, y_range.end]
 }"""
 
-_RAIL_AND_THUMB = """rail => [rail, rail.querySelector(".noUi-handle")].map(part => part.getBoundingClientRect().toJSON())"""
+# The thumb is 18 pixels wide.
+_RAIL_AND_THUMB = """rail => {
+    const {x, y, width, height} = rail.getBoundingClientRect(), reach = width - 18
+    const share = (rail.value - rail.min) / (rail.max - rail.min)
+    return {begin: x + 9 + share * reach, low: x + 9, reach, middle: y + height / 2}
+}"""
 
 
 class ExplorerPage:
@@ -160,14 +165,27 @@ class ExplorerPage:
 
     def drag_energy_to(self, share: float, *, steps: int = 5, let_go: bool = True, pause: float = 0.0) -> None:
         """Drag the thumb of the energy slider to a share of its length, with a pause, in ms, after each step."""
-        # Read at once, as another case brings a new slider.
-        rail, thumb = self.page.locator(".noUi-target").first.evaluate(_RAIL_AND_THUMB)
-        self.page.mouse.move(thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2)
+        rail = self._rail()
+        begin, end = rail["begin"], rail["low"] + share * rail["reach"]
+        self.page.mouse.move(begin, rail["middle"])
         self.page.mouse.down()
-        begin, end = thumb["x"] + thumb["width"] / 2, rail["x"] + share * rail["width"]
         for step in range(1, steps + 1):
-            self.page.mouse.move(begin + (end - begin) * step / steps, rail["y"] + rail["height"] / 2)
+            self.page.mouse.move(begin + (end - begin) * step / steps, rail["middle"])
             if pause:
                 self.page.wait_for_timeout(pause)
         if let_go:
             self.page.mouse.up()
+
+    def move_slider_to(self, share: float) -> None:
+        """Move the thumb that is being dragged to a share of its length."""
+        rail = self._rail()
+        self.page.mouse.move(rail["low"] + share * rail["reach"], rail["middle"])
+
+    def _rail(self) -> dict[str, float]:
+        """Places on the slider of the energy, on the screen."""
+        return self.page.get_by_role("slider", name="Energy h", exact=True).evaluate(_RAIL_AND_THUMB)
+
+    def window_of_pixels(self) -> list[float]:
+        """The window that the pixels cover."""
+        x, y, width, height = (self.column(name) for name in ("x", "y", "dw", "dh"))
+        return [x, x + width, y, y + height]

@@ -1,4 +1,4 @@
-"""The energy, dragged and played: previews on the way, the map where it ends."""
+"""The energy, dragged and played: the browser's pixels on the way, the server's map where it ends."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
-from engine.service import compute_preview, preview_spec
 from plots.palette import OUTCOMES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-# Previews have 76 pixels per side.
+# Counts messages to the server, and changes of the pixels.
 WATCH = """() => {
+    window.sent = window.pictures = 0
+    const send = WebSocket.prototype.send
+    WebSocket.prototype.send = function (data) { window.sent += 1; return send.call(this, data) }
     const source = Bokeh.documents[0].get_model_by_name('maps')
-    window.previews = 0
-    source.connect(source.properties.data.change, () => { if (source.data.fate[0].shape[0] == 76) window.previews += 1 })
+    source.connect(source.properties.data.change, () => { window.pictures += 1 })
 }"""
+PREVIEW = "!data.complete[0] && data.fate[0].shape[0] >= {least} && Math.abs(data.energy[0] - {energy}) < 1e-9"
 
 
 def assert_same_fates(explorer: ExplorerPage, expected: np.ndarray) -> None:
@@ -34,33 +36,58 @@ def exact_energy(explorer: ExplorerPage) -> Locator:
     return explorer.page.get_by_label("Exact h", exact=True)
 
 
-def test_previews_follow_the_slider_and_the_map_its_release(explorer: ExplorerPage) -> None:
+def wait_for_preview(explorer: ExplorerPage, energy: float, least: int = 76) -> None:
+    """Wait for pixels of the browser, at least so many along a side."""
+    explorer.wait_for_data("maps", PREVIEW.format(energy=energy, least=least))
+
+
+def test_pixels_follow_the_slider_without_the_server(explorer: ExplorerPage) -> None:
+    # Until the engine is there.
+    explorer.drag_energy_to(0.3, let_go=False)
+    wait_for_preview(explorer, 0.22)
     explorer.page.evaluate(WATCH)
-    explorer.drag_energy_to(0.9, steps=10, let_go=False, pause=50)
-    explorer.page.wait_for_function("() => window.previews >= 3")
-    expect(explorer.text("Preview up to t = 100")).to_be_visible()
-    spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (112, 112), t_max=100.0)
-    # The number follows the previews.
+    for share in (0.5, 0.7, 0.9):
+        explorer.move_slider_to(share)
+        wait_for_preview(explorer, 0.1 + 0.4 * share)
+    assert explorer.page.evaluate("() => window.pictures") >= 3
+    assert explorer.page.evaluate("() => window.sent") == 0
+    expect(explorer.text("Preview up to t =")).to_be_visible()
+    # The number follows the pixels.
     expect(exact_energy(explorer)).to_have_value("0.46")
-    assert_same_fates(explorer, compute_preview(preview_spec(spec)).fate)
+
+
+def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(explorer: ExplorerPage) -> None:
+    explorer.drag_energy_to(0.9, let_go=False)
+    wait_for_preview(explorer, 0.46, least=112)
+    window = explorer.window_of_pixels()
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (112, 112), t_max=100.0)
+    np.testing.assert_allclose(window, list(vars(spec.window).values()), rtol=2e-3)
     explorer.page.mouse.up()
     explorer.wait_for_view("h=0.46&")
-    assert_same_fates(explorer, compute_map(spec).fate)
+    expected = compute_map(spec).fate
+    assert_same_fates(explorer, expected)
 
 
 def test_dragging_back_shows_the_map_again(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
     explorer.drag_energy_to(0.9, let_go=False)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 76")
-    explorer.drag_energy_to(0.225)
+    wait_for_preview(explorer, 0.46)
+    explorer.move_slider_to(0.225)
     explorer.wait_for_data("maps", "data.fate[0].shape[0] == 112 && data.complete[0]")
+    explorer.page.mouse.up()
     np.testing.assert_array_equal(explorer.column("fate"), before)
+    expect(explorer.text("Done, t =")).to_be_visible()
 
 
-def test_the_energy_can_be_played_and_stopped(explorer: ExplorerPage) -> None:
-    explorer.page.evaluate(WATCH)
+def test_the_energy_can_be_played_and_stopped_without_the_server_between(explorer: ExplorerPage) -> None:
+    explorer.drag_energy_to(0.3, let_go=False)
+    wait_for_preview(explorer, 0.22)
+    explorer.drag_energy_to(0.225)
     explorer.press("▶ Play")
-    explorer.page.wait_for_function("() => window.previews >= 5")
+    expect(explorer.button("■ Stop")).to_be_visible()
+    explorer.page.evaluate(WATCH)
+    explorer.page.wait_for_function("() => window.pictures >= 5")
+    assert explorer.page.evaluate("() => window.sent") == 0
     explorer.press("■ Stop")
     explorer.page.wait_for_url(re.compile(r"h=0\.(19\d|[2-5]\d*)"))
     expect(explorer.button("▶ Play")).to_be_visible()
@@ -70,11 +97,46 @@ def test_the_energy_can_be_played_and_stopped(explorer: ExplorerPage) -> None:
 def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=f"{QUICK}&window=0.1,0.3,0.0,0.2")
     explorer.drag_energy_to(0.6, let_go=False)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 76")
+    wait_for_preview(explorer, 0.34)
     assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
     explorer.page.mouse.up()
     explorer.wait_for_view("window=0.1,0.3,0.0,0.2")
     assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
+
+
+def test_keys_move_the_energy(explorer: ExplorerPage) -> None:
+    explorer.page.get_by_role("slider", name="Energy h", exact=True).press("ArrowRight")
+    explorer.wait_for_view("h=0.191&")
+
+
+def test_a_zoom_is_drawn_by_the_browser_until_the_map_comes(explorer: ExplorerPage) -> None:
+    explorer.drag_energy_to(0.3, let_go=False)
+    wait_for_preview(explorer, 0.22)
+    explorer.drag_energy_to(0.225)
+    explorer.page.evaluate(
+        """() => {
+            window.previewed = false
+            const source = Bokeh.documents[0].get_model_by_name('maps')
+            source.connect(source.properties.data.change, () => {
+                window.previewed ||= !source.data.complete[0] && source.data.fate[0].shape[0] === 76
+            })
+        }"""
+    )
+    explorer.turn_wheel("basins", 0.1, 0.1, -100)
+    explorer.page.wait_for_function("() => window.previewed")
+    explorer.wait_for_data("maps", "data.complete[0] && data.dw[0] < 1.5")
+
+
+def test_the_orbit_under_the_cursor_is_drawn(explorer: ExplorerPage) -> None:
+    explorer.drag_energy_to(0.3, let_go=False)
+    wait_for_preview(explorer, 0.22)
+    explorer.drag_energy_to(0.225)
+    explorer.hover("basins", 0.3, 0.1)
+    card = explorer.page.locator(".orbit-card")
+    expect(card).to_be_visible()
+    expect(card).to_have_attribute("aria-label", re.compile(r"Exit [12] at t = |Inside until t = 200"))
+    explorer.page.mouse.move(5, 5)
+    expect(card).to_be_hidden()
 
 
 @pytest.mark.slow

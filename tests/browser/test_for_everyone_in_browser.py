@@ -63,7 +63,7 @@ def everything_open(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
 @pytest.mark.parametrize(
     ("role", "name"),
     [
-        ("radiogroup", "Case"), ("radiogroup", "Plane"), ("radio", "III"), ("group", "Energy h"), ("spinbutton", "Exact h"),
+        ("radiogroup", "Case"), ("radiogroup", "Plane"), ("radio", "III"), ("slider", "Energy h"), ("spinbutton", "Exact h"),
         ("combobox", "t_max"), ("combobox", "Resolution"), ("combobox", "Colours"),
         ("checkbox", "Pixels to trust"), ("radiogroup", "Drag over a map to"), ("radiogroup", "Analysis"),
         ("radiogroup", "Orbits"), ("textbox", "x"), ("textbox", "px"), ("button", "Play"), ("button", "Pause"),

@@ -39,7 +39,7 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
-from engine.service import LONGEST_TIME, compute_radius_envelope, fit_uncertainty, plan_sweep, preview_spec, trace_equipotentials
+from engine.service import LONGEST_TIME, compute_radius_envelope, fit_uncertainty, plan_sweep, trace_equipotentials
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]
@@ -85,7 +85,6 @@ def test_map(plane: Any, energy: Any, resolution: Any, window: Any, t_max: Any) 
     assert hash(spec) == hash(spec)
     assert spec.provenance()
     result_or_error(lambda: spec.pixel_at(spec.find_window().x_low, spec.find_window().ordinate_high), names)
-    assert preview_spec(spec).t_max <= LONGEST_TIME
     if spec.t_max <= 100.0 and np.prod(spec.resolution) <= 144:
         frame = result_or_error(lambda: compute_map(spec), names)
         if frame is not None:

@@ -157,8 +157,12 @@ export class Card {
       view.frame.y_scale.invert(event.clientY - box.top + view.frame.bbox.top),
     ]
     const [rows, columns] = fate[0].shape
-    const snap = (/** @type {number} */ value, /** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ count) =>
-      low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
+    const snap = (
+      /** @type {number} */ value,
+      /** @type {number} */ low,
+      /** @type {number} */ size,
+      /** @type {number} */ count,
+    ) => low + (size * (Math.floor(((value - low) / size) * count) + 0.5)) / count
     return [snap(point[0], x[0], dw[0], columns), snap(point[1], y[0], dh[0], rows)]
   }
 
@@ -179,7 +183,12 @@ export class Card {
     const style = getComputedStyle(this.#canvas)
     const [ink, paper] = ["--ui-ink", "--ui-surface"].map(name => style.getPropertyValue(name))
     const scale = box.width / (window.xHigh - window.xLow)
-    const draw = (/** @type {ArrayLike<number>} */ xs, /** @type {ArrayLike<number>} */ ys, /** @type {string} */ colour, /** @type {number} */ width) => {
+    const draw = (
+      /** @type {ArrayLike<number>} */ xs,
+      /** @type {ArrayLike<number>} */ ys,
+      /** @type {string} */ colour,
+      /** @type {number} */ width,
+    ) => {
       context.strokeStyle = colour
       context.lineWidth = width
       context.beginPath()
@@ -214,7 +223,11 @@ export class Card {
     const ratio = window.devicePixelRatio
     Object.assign(this.#canvas, {width: box.width * ratio, height: box.height * ratio})
     Object.assign(this.#canvas.style, {
-      display: "block", left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px`,
+      display: "block",
+      left: `${box.left}px`,
+      top: `${box.top}px`,
+      width: `${box.width}px`,
+      height: `${box.height}px`,
     })
     context.scale(ratio, ratio)
   }
@@ -236,8 +249,10 @@ function frames() {
       return {view, box: new DOMRect(canvas.left + left, canvas.top + top, width, height)}
     })
     .filter((/** @type {Frame} */ {box}) => box.width > 0)
-    .sort((/** @type {Frame} */ one, /** @type {Frame} */ other) =>
-      PICTURES.indexOf(one.view.model.name) - PICTURES.indexOf(other.view.model.name))
+    .sort(
+      (/** @type {Frame} */ one, /** @type {Frame} */ other) =>
+        PICTURES.indexOf(one.view.model.name) - PICTURES.indexOf(other.view.model.name),
+    )
 }
 
 /** @type {(box: DOMRect, event: PointerEvent) => boolean} */

@@ -56,6 +56,14 @@ const WIDEST = 1.1
 const SAME_ENERGY = 1e-12
 
 /**
+ * Whether two energies are equal but for rounding.
+ *
+ * @param {number} one
+ * @param {number} other
+ */
+export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY * Math.abs(other)
+
+/**
  * Whether columns from the server show a wish, with at least as many pixels as a preview of it.
  *
  * @param {Columns} columns
@@ -65,8 +73,7 @@ const SAME_ENERGY = 1e-12
 export function showsWish({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
   const near = (/** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ from, /** @type {number} */ to) =>
     Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
-  const sameEnergy = slice.axes[1] === "h" || Math.abs(energy[0] - wanted) <= SAME_ENERGY * Math.abs(wanted)
-  const sameWindow =
-    near(x[0], dw[0], window.xLow, window.xHigh) && near(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
-  return sameEnergy && sameWindow && (complete[0] || fate[0].shape[0] >= rows)
+  const ofEnergy = slice.axes[1] === "h" || sameEnergy(energy[0], wanted)
+  const sameWindow = near(x[0], dw[0], window.xLow, window.xHigh) && near(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
+  return ofEnergy && sameWindow && (complete[0] || fate[0].shape[0] >= rows)
 }

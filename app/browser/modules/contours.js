@@ -41,7 +41,11 @@ export function levelLines({window, values}, level) {
   /** Neighbours on the line of each crossed edge: edges from a sample to the right have even numbers, upward ones odd numbers. */
   const joined = /** @type {Map<number, number[]>} */ (new Map())
   const join = (/** @type {number} */ one, /** @type {number} */ other) => {
-    for (const [from, to] of [[one, other], [other, one]]) joined.set(from, [...(joined.get(from) ?? []), to])
+    for (const [from, to] of [
+      [one, other],
+      [other, one],
+    ])
+      joined.set(from, [...(joined.get(from) ?? []), to])
   }
   for (let row = 0; row < SAMPLES - 1; row++) {
     for (let column = 0; column < SAMPLES - 1; column++) joinCell(values, level, row * SAMPLES + column, join)
@@ -109,7 +113,8 @@ function takeLines(joined) {
     /** @type {number | undefined} */
     let edge = first
     while (edge !== undefined) {
-      const next = /** @type {number[]} */ (joined.get(edge)).find(other => joined.has(other) && other !== line[line.length - 2])
+      /** @type {number | undefined} */
+      const next = joined.get(edge)?.find(other => joined.has(other) && other !== line[line.length - 2])
       joined.delete(edge)
       if (next !== undefined) line.push(next)
       edge = next

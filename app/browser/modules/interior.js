@@ -91,9 +91,7 @@ function bernsteinMatrix(degree) {
     for (let i = 0; i < k; i++) value = (value * (n - i)) / (i + 1)
     return value
   }
-  return Array.from({length: degree + 1}, (_, i) =>
-    Array.from({length: i + 1}, (_, k) => choose(i, k) / choose(degree, k)),
-  )
+  return Array.from({length: degree + 1}, (_, i) => Array.from({length: i + 1}, (_, k) => choose(i, k) / choose(degree, k)))
 }
 
 /**

@@ -8,7 +8,39 @@ import {Pool, workerCount} from "./pool.js"
 import {Preview} from "./preview.js"
 
 /** The smallest module with an instruction on vectors. */
-const SIMD = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11)
+const SIMD = Uint8Array.of(
+  0,
+  97,
+  115,
+  109,
+  1,
+  0,
+  0,
+  0,
+  1,
+  5,
+  1,
+  96,
+  0,
+  1,
+  123,
+  3,
+  2,
+  1,
+  0,
+  10,
+  10,
+  1,
+  8,
+  0,
+  65,
+  0,
+  253,
+  15,
+  253,
+  98,
+  11,
+)
 
 /**
  * @param {any} model
@@ -23,10 +55,9 @@ export function start(model, el) {
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
   const find = (/** @type {string} */ name) => page.get_model_by_name(name)
   const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))
-  /** @type {Preview} */
-  let preview
   const frames = new Frames(pool, workerCount(), (view, pixels) => preview.show(view, pixels))
-  preview = new Preview(find, frames)
+  /** @type {Preview} */
+  const preview = new Preview(find, frames)
   const tell = (/** @type {number} */ energy) => document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
   const player = new Player(
     energy => {
@@ -38,7 +69,12 @@ export function start(model, el) {
       model.send_msg({energy})
     },
   )
-  const card = new Card(el, () => preview.wish, () => find("maps").data, () => model.view.colours)
+  const card = new Card(
+    el,
+    () => preview.wish,
+    () => find("maps").data,
+    () => model.view.colours,
+  )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
   const takeView = () => model.view.system && preview.setView(model.view)

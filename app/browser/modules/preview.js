@@ -4,7 +4,7 @@
  * view with at least as many.
  */
 
-import {pixelColumns, showsWish} from "./columns.js"
+import {pixelColumns, sameEnergy, showsWish} from "./columns.js"
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Local, LocalWhenPresent} from "./local.js"
 import {Potential} from "./potential.js"
@@ -104,7 +104,10 @@ export class Preview {
     const [view, system] = [this.#view, this.#system]
     const isHome = view?.home && view.system === system?.key
     const window = isHome && system ? windowAt(system.windows[view.plane], energy) : null
-    if (window) {
+    if (view && sameEnergy(energy, view.energy)) {
+      this.#x.restore()
+      this.#y.restore()
+    } else if (window) {
       this.#x.show({start: window.xLow, end: window.xHigh})
       this.#y.show({start: window.ordinateLow, end: window.ordinateHigh})
     }
@@ -184,9 +187,18 @@ export class Preview {
       Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
     this.#labels.show({
       data: {
-        x: fill(lines.map(({label}) => label[0]), NaN),
-        y: fill(lines.map(({label}) => label[1]), NaN),
-        text: fill(lines.map(({channel}) => String(channel)), ""),
+        x: fill(
+          lines.map(({label}) => label[0]),
+          NaN,
+        ),
+        y: fill(
+          lines.map(({label}) => label[1]),
+          NaN,
+        ),
+        text: fill(
+          lines.map(({channel}) => String(channel)),
+          "",
+        ),
         colour: fill(colour, colours[0]),
       },
     })

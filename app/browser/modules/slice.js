@@ -33,10 +33,7 @@ export function unitOf({length, time}, coordinate) {
  * @param {number} count
  */
 export function pixelCentres(low, high, count) {
-  return Float64Array.from(
-    {length: count},
-    (_, i) => 0.5 * (low + high) + (high - low) * ((2 * i + 1 - count) / (2 * count)),
-  )
+  return Float64Array.from({length: count}, (_, i) => 0.5 * (low + high) + (high - low) * ((2 * i + 1 - count) / (2 * count)))
 }
 
 /** The starts of the points of a slice. */

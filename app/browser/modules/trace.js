@@ -32,7 +32,13 @@ export function traceOrbit(integrator, start, duration) {
   const exits = exitCurves(system.exits, start.h)
   integrator.prepare(system.layout.tolerance, duration, exits)
   integrator.now.rows.fill(0.01)
-  for (const [row, value] of [[X, start.x], [Y, start.y], [PX, start.px], [PY, start.py], [T, 0]]) {
+  for (const [row, value] of [
+    [X, start.x],
+    [Y, start.y],
+    [PX, start.px],
+    [PY, start.py],
+    [T, 0],
+  ]) {
     integrator.now.rows[row * lanes] = value
   }
   /** @type {Trace} */

@@ -170,8 +170,8 @@ class Controls:
         state = self.state
         on_h = state.plane.energy_axis is not None
         beyond = not state.energies.low <= state.energy <= state.energies.high
-        title = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else "Energy h: "
-        self.energy.param.update(energy=state.energy, disabled=on_h, title="Energy is the vertical axis here" if on_h else title)
+        note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
+        self.energy.param.update(energy=state.energy, disabled=on_h, note="Energy is the vertical axis here" if on_h else note)
         self.exact_energy.disabled = on_h
         self.exact_energy.show(state.energy)
         self.play.disabled = on_h

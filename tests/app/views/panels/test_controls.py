@@ -17,28 +17,18 @@ class Page:
 
     def __init__(self) -> None:
         self.state = ViewState(case="I", energy=0.19)
-        self.previews: list[float] = []
-        self.settled = 0
         self.controls = Controls(
             self.state,
             ControlActions(
-                preview=self.previews.append,
-                settle=self.settle,
                 play=lambda: None,
                 choose_potential=lambda: None,
                 lock_times=lambda locked: None,
             ),
         )
 
-    def settle(self) -> None:
-        self.settled += 1
-
-    def drag_over(self, energy: float) -> None:
-        """A message of the browser while the slider is dragged."""
-        self.controls.energy._process_events({"value": energy})
-
     def release_at(self, energy: float) -> None:
-        self.controls.energy._process_events({"value": energy, "value_throttled": energy})
+        """A message of the browser when the slider is released."""
+        self.controls.energy._receive({"energy": energy})
 
 
 @pytest.fixture
@@ -46,53 +36,26 @@ def page() -> Page:
     return Page()
 
 
-def test_dragging_requests_previews_and_keeps_the_state(page: Page) -> None:
-    for energy in (0.2, 0.21):
-        page.drag_over(energy)
-    assert page.previews == [0.2, 0.21]
-    assert page.state.energy == 0.19
-
-
-def test_releasing_the_slider_sets_the_energy_without_another_preview(page: Page) -> None:
-    page.drag_over(0.2)
+def test_releasing_the_slider_sets_the_energy(page: Page) -> None:
     page.release_at(0.25)
     assert page.state.energy == 0.25
-    assert page.previews == [0.2]
 
 
-def test_an_energy_of_the_slider_has_no_rounding_error(page: Page) -> None:
-    page.drag_over(0.21000000000000002)
-    page.release_at(0.45999999999999996)
-    assert page.state.energy == 0.46
-    assert page.previews == [0.21]
-
-
-def test_dragging_back_shows_the_map_again(page: Page) -> None:
-    page.drag_over(0.2)
-    page.drag_over(0.19)
-    assert page.settled == 1
+@pytest.mark.parametrize("message", [{"energy": "0.3"}, {"energy": float("nan")}, {}, None])
+def test_other_messages_of_the_slider_are_ignored(page: Page, message: object) -> None:
+    page.controls.energy._receive(message)
     assert page.state.energy == 0.19
 
 
-def test_an_animation_moves_only_the_slider(page: Page) -> None:
-    for energy in (0.2, 0.21):
-        page.controls.show_animated(energy)
-    assert page.controls.energy.value == 0.21
-    assert page.state.energy == 0.19
-    assert page.previews == []
-
-
-def test_after_an_animation_an_energy_that_it_passed_can_be_chosen(page: Page) -> None:
-    page.controls.show_animated(0.21)
-    page.state.energy = 0.22
-    page.release_at(0.21)
-    assert page.state.energy == 0.21
+def test_the_slider_chooses_no_energy_beyond_its_ends(page: Page) -> None:
+    page.release_at(17.0)
+    assert page.state.energy == page.controls.energy.high
 
 
 def test_an_energy_beyond_the_slider_can_be_typed(page: Page) -> None:
     page.controls.exact_energy._receive({"number": 0.7, "typed": 1})
     assert page.state.energy == 0.7
-    assert page.controls.energy.value == page.controls.energy.end
+    assert "beyond the end of the slider" in page.controls.energy.note
 
 
 def test_another_case_resets_energy_and_orbits(page: Page) -> None:
@@ -103,8 +66,9 @@ def test_another_case_resets_energy_and_orbits(page: Page) -> None:
 
 def test_the_controls_follow_a_preset(page: Page) -> None:
     page.state.param.update(case="II", plane=Plane.X_Y, energy=0.22, t_max=1e3, palette="safe")
-    shown = {name: getattr(page.controls, name).value for name in ("case", "plane", "energy")}
-    assert shown == {"case": "II", "plane": Plane.X_Y, "energy": 0.22}
+    shown = {name: getattr(page.controls, name).value for name in ("case", "plane")}
+    assert shown == {"case": "II", "plane": Plane.X_Y}
+    assert page.controls.energy.energy == 0.22
 
 
 def open_quality(page: Page) -> dict[str, pn.widgets.Select]:

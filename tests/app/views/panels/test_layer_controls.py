@@ -18,7 +18,7 @@ def locks() -> list[bool]:
 
 
 def controls(state: ViewState, locks: list[bool]) -> Controls:
-    return Controls(state, ControlActions(lambda energy: None, lambda: None, lambda: None, lambda: None, locks.append))
+    return Controls(state, ControlActions(lambda: None, lambda: None, locks.append))
 
 
 def lock_of(panel: Controls) -> Widget:

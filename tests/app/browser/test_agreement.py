@@ -1,0 +1,83 @@
+"""The browser's pixels are those of the server's map at the same time: on all robust pixels, and on nearly all others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from app.state.system import TYPED, System
+
+from app.browser.views import describe_slice
+from engine import EscapeMap, Fate, MapSpec, Plane, Trust, Window, compute_map, compute_trust, default_window
+from engine.service import make_portable_system
+from tests.node import needs_node, run_node
+
+SYSTEMS = (System("I"), System("II"), System("III"), System("C5"), System(TYPED, "½(x² + y²) − x²y² − x³/4"))
+# Powers of ten.
+ZOOMS = (0, 2, 5, 9)
+SIDE, COARSE, HORIZON = 30, 10, 30.0
+# Of all pixels, sensitive ones included.
+LEAST_SHARE = 0.995
+
+
+def random_specs(number: int) -> Iterator[MapSpec]:
+    """Views of a system, one for each zoom, on boundaries between basins: plane, energy and place are random."""
+    chance, system = np.random.default_rng(number), SYSTEMS[number]
+    energies, potential = system.energies, system.potential
+    for zooms in ZOOMS:
+        plane = chance.choice([Plane.X_Y, Plane.X_PX, Plane.X_H])
+        highest = potential.escape_energy + 0.9 * (energies.high - potential.escape_energy)
+        energy = (potential.escape_energy, highest) if plane is Plane.X_H else chance.uniform(potential.escape_energy, highest)
+        window = default_window(potential, plane, energy)
+        spec = MapSpec(potential, plane, energy, (SIDE, SIDE), window, HORIZON * potential.units.time, certify=False)
+        for _ in range(zooms):
+            spec = zoom_on_boundary(spec, chance)
+        yield spec
+
+
+def zoom_on_boundary(spec: MapSpec, chance: np.random.Generator) -> MapSpec:
+    """The view ten times smaller around a random pixel that escapes elsewhere than its neighbour, or around the middle."""
+    coarse = compute_map(replace(spec, resolution=(COARSE, COARSE)))
+    left, right = coarse.fate[:, :-1], coarse.fate[:, 1:]
+    places = np.argwhere((left != right) & (left >= 1) & (right >= 1))
+    row, column = chance.choice(places) if places.size else (COARSE // 2, COARSE // 2)
+    x, ordinate, window = coarse.x[column], coarse.ordinate[row], spec.window
+    half = 0.05 * (window.x_high - window.x_low), 0.05 * (window.ordinate_high - window.ordinate_low)
+    return replace(spec, window=Window(x - half[0], x + half[0], ordinate - half[1], ordinate + half[1]))
+
+
+def as_view(spec: MapSpec) -> dict[str, Any]:
+    window = dict(zip(("xLow", "xHigh", "ordinateLow", "ordinateHigh"), vars(spec.window).values(), strict=True))
+    energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
+    shape = {"columns": SIDE, "rows": SIDE, "horizon": HORIZON}
+    return {"slice": describe_slice(spec.plane), "energy": energy, "window": window, **shape}
+
+
+def expected_fate(escape_map: EscapeMap) -> np.ndarray:
+    """Orbits inside at the horizon are undecided."""
+    return np.where(escape_map.fate == Fate.BOUNDED, Fate.NOT_COMPUTED, escape_map.fate)
+
+
+@needs_node
+@pytest.mark.parametrize("number", range(len(SYSTEMS)), ids=[system.title for system in SYSTEMS])
+def test_pixels_are_those_of_the_map(number: int, tmp_path: Path) -> None:
+    specs = list(random_specs(number))
+    potential = specs[0].potential
+    portable = make_portable_system(potential, SYSTEMS[number].energies.high)
+    data = {"system": portable.to_dict(), "module": portable.module, "views": [as_view(spec) for spec in specs]}
+    same = []
+    for spec, found in zip(specs, run_node("run_view.js", data, tmp_path), strict=True):
+        escape_map = compute_map(spec)
+        expected, fate = expected_fate(escape_map).ravel(), np.array(found["fate"])
+        robust = np.isin(compute_trust(escape_map).trust, (Trust.LIKE_NEIGHBOURS, Trust.CONFIRMED)).ravel()
+        np.testing.assert_array_equal(fate[robust], expected[robust], err_msg=str(spec))
+        escaped = robust & (expected > 0)
+        np.testing.assert_array_equal(np.array(found["crossings"])[escaped], escape_map.crossings.ravel()[escaped])
+        times = np.array(found["time"], float)[escaped]
+        np.testing.assert_allclose(times, escape_map.escape_time.ravel()[escaped], rtol=0.01)
+        same.append(fate == expected)
+    assert float(np.mean(same)) >= LEAST_SHARE
