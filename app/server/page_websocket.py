@@ -64,7 +64,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
     def open(self, *args: Any, **kwargs: Any) -> Any:
         """Disable Nagle's algorithm and open the connection."""
         self.set_nodelay(True)
-        self._guard, self._closed = MessageGuard(), False
+        self._guard, self._closed, self._is_over = MessageGuard(), False, False
         self._writes: list[Awaitable[None]] = []
         self._told = -PASSING_SECONDS
         try:
@@ -80,6 +80,9 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             await super()._async_open(token)
         except ProtocolError as error:
             self._refuse_connection(error)
+        if self._is_over and self._open_session() is not None:
+            # Closed before Bokeh made the connection, which it would keep with its session for ever.
+            super().on_close()
 
     async def send_message(self, message: Message[Any]) -> None:
         """Write all parts of a message at once, then wait until the socket has taken them.
@@ -140,7 +143,7 @@ class PageWebSocket(SecurityHeaders, WSHandler):
             forget_socket(str(self.request.remote_ip))
         if self.connection is None or self._open_session() is not None:
             super().on_close()
-        self._closed = True
+        self._closed = self._is_over = True
 
     def _open_session(self) -> Any:
         """The session; None before it is open and after Bokeh has given up the connection."""

@@ -232,7 +232,8 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="section", title="The section of Hénon and Heiles", group=_EXPLANATIONS, picture="basins",
-        case="HH", plane=Plane.Y_PY, energy=0.18, t_max=1e4, starts=((0.04, 0.0), (0.52, 0.0), (0.8, 0.0), (-0.2, 0.0)),
+        case="HH", plane=Plane.Y_PY, energy=0.18, t_max=1e4,
+        starts=((0.05, 0.0), (0.61, 0.0), (0.7, 0.0), (-0.2, 0.0), (0.2, 0.0)),
         caption="Hénon and Heiles drew their orbits in this plane, y and py where an orbit passes x = 0 to the right. At their "
         "energies all orbits are bounded; slightly above 1/6 only the grey islands are left of them, and all around an orbit "
         "leaves through one of the three exits.",

@@ -78,8 +78,8 @@ class OrbitControls:
         )  # fmt: skip
 
     def follow_plane(self, plane: Plane) -> None:
-        """Label the second box with the ordinate of the plane."""
-        self.ordinate.label = plane.ordinate
+        """Label the boxes with the axes of the plane."""
+        self.x.label, self.ordinate.label = plane.axis_names
         self.open_plane.visible = plane.energy_axis is not None
 
     def set_palette(self, palette: Palette) -> None:

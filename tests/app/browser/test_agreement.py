@@ -9,11 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from app.state.system import TYPED, System
 
-from app.browser.views import describe_slice
 from engine import EscapeMap, Fate, MapSpec, Plane, Trust, Window, compute_map, compute_trust, default_window
-from engine.service import make_portable_system
+from engine.service import TYPED, System, make_portable_system
 from tests.node import needs_node, run_node
 
 SYSTEMS = (System("I"), System("II"), System("III"), System("C5"), System(TYPED, "½(x² + y²) − x²y² − x³/4"))
@@ -29,9 +27,10 @@ def random_specs(number: int) -> Iterator[MapSpec]:
     chance, system = np.random.default_rng(number), SYSTEMS[number]
     energies, potential = system.energies, system.potential
     for zooms in ZOOMS:
-        plane = chance.choice([Plane.X_Y, Plane.X_PX, Plane.X_H])
+        plane = list(Plane)[chance.integers(len(Plane))]
         highest = potential.escape_energy + 0.9 * (energies.high - potential.escape_energy)
-        energy = (potential.escape_energy, highest) if plane is Plane.X_H else chance.uniform(potential.escape_energy, highest)
+        ends = potential.escape_energy, highest
+        energy = ends if plane.energy_axis is not None else chance.uniform(*ends)
         window = default_window(potential, plane, energy)
         spec = MapSpec(potential, plane, energy, (SIDE, SIDE), window, HORIZON * potential.units.time, certify=False)
         for _ in range(zooms):
@@ -45,16 +44,15 @@ def zoom_on_boundary(spec: MapSpec, chance: np.random.Generator) -> MapSpec:
     left, right = coarse.fate[:, :-1], coarse.fate[:, 1:]
     places = np.argwhere((left != right) & (left >= 1) & (right >= 1))
     row, column = chance.choice(places) if places.size else (COARSE // 2, COARSE // 2)
-    x, ordinate, window = coarse.x[column], coarse.ordinate[row], spec.window
+    x, ordinate, window = coarse.x[column], coarse.ordinate[row], spec.find_window()
     half = 0.05 * (window.x_high - window.x_low), 0.05 * (window.ordinate_high - window.ordinate_low)
     return replace(spec, window=Window(x - half[0], x + half[0], ordinate - half[1], ordinate + half[1]))
 
 
 def as_view(spec: MapSpec) -> dict[str, Any]:
-    window = dict(zip(("xLow", "xHigh", "ordinateLow", "ordinateHigh"), vars(spec.window).values(), strict=True))
-    energy = 0.0 if isinstance(spec.energy, tuple) else spec.energy
+    window = dict(zip(("xLow", "xHigh", "ordinateLow", "ordinateHigh"), vars(spec.find_window()).values(), strict=True))
     shape = {"columns": SIDE, "rows": SIDE, "horizon": HORIZON}
-    return {"slice": describe_slice(spec.plane), "energy": energy, "window": window, **shape}
+    return {"slice": spec.plane.to_dict(), "energy": spec.common_energy or 0.0, "window": window, **shape}
 
 
 def expected_fate(escape_map: EscapeMap) -> np.ndarray:

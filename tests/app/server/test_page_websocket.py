@@ -188,3 +188,31 @@ def test_changes_made_while_others_are_being_sent_reach_the_page(state: ProcessS
         await asyncio.gather(*tasks)
 
     run(1, scenario, build_with_pane)
+
+
+def test_a_socket_that_is_closed_while_it_is_opened_leaves_no_connection(
+    state: ProcessState, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed, opened = asyncio.Event(), asyncio.Event()
+    open_session, on_close = PageWebSocket._async_open, PageWebSocket.on_close
+
+    async def open_after_the_end(handler: PageWebSocket, token: str) -> None:
+        await closed.wait()
+        await open_session(handler, token)
+        opened.set()
+
+    def tell(handler: PageWebSocket) -> None:
+        on_close(handler)
+        closed.set()
+
+    async def scenario(channel: Channel, document: Document) -> None:
+        monkeypatch.setattr(PageWebSocket, "_async_open", open_after_the_end)
+        monkeypatch.setattr(PageWebSocket, "on_close", tell)
+        address = channel._socket.request.url.replace("ws://", "http://").removesuffix("/ws")
+        page = await AsyncHTTPClient().fetch(address)
+        (await Channel.connect(address, page.body.decode())).close()
+        await opened.wait()
+        sessions = document.session_context.server_context.sessions
+        assert sum(session.connection_count for session in sessions) == 1
+
+    run(1, scenario)

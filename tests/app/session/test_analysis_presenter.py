@@ -186,7 +186,9 @@ def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) ->
 
 
 def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("engine.jobs.requests.compute_uncertainty_exponent", partial(compute_uncertainty_exponent, work=1e7))
+    monkeypatch.setattr(
+        "app.session.analysis_presenter.compute_uncertainty_exponent", partial(compute_uncertainty_exponent, work=1e7)
+    )
     session = begin(analysis=Analysis.MEASURES)
     session.presenter.measures.button.clicks += 1
     assert session.presenter.measures.button.disabled

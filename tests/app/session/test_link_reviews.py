@@ -19,10 +19,11 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
-from app.state import system as system_module
+from app.state import system_review as review_module
 from app.state.system_review import review_system
 from engine import CASES, Plane, Window
 from engine.potentials import potential as potential_module
+from engine.potentials import system as system_module
 from engine.service import TYPED, System
 from tests.app.other_loop import run_on_new_loop
 
@@ -31,7 +32,7 @@ LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 # Whatever takes time; a potential has no other costly quantities.
 SLOW = [
     (system_module, "parse_formula"),
-    (system_module, "review_potential"),
+    (review_module, "review_potential"),
     (potential_module, "find_critical_points"),
     (potential_module, "leads_out_of_well"),
     (potential_module, "find_maxima_beside"),
@@ -44,7 +45,7 @@ def threads(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[int]]:
     called: dict[str, set[int]] = {}
     # As when the server starts.
     for case in CASES:
-        system_module.review_catalogue_entry(case)
+        review_module.review_catalogue_entry(case)
 
     def recording(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         def call(*arguments: Any) -> Any:

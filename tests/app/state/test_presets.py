@@ -106,7 +106,7 @@ def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
         ("shares", [1, 2, 0]),
         ("owl", [0, 0, 0, 0]),
         ("ajar", [1, 2, 3, 0]),
-        ("section", [0, 0, 1, 2]),
+        ("section", [0, 0, 1, 2, 3]),
     ],
 )
 def test_fates_agree_with_the_caption(key: str, expected: list[int]) -> None:
