@@ -18,6 +18,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "slice": describe_slice(state.plane),
         "energy": state.energy,
         "home": state.window is None,
+        "resolution": state.resolution,
         "colours": list(state.colours.channels),
         "coding": pixel_coding(),
     }

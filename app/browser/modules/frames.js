@@ -88,7 +88,8 @@ export class Frames {
     this.#wish = null
     if (!wish) return
     this.#computing = "moving"
-    const [side, begun] = [this.#side, performance.now()]
+    const side = Math.min(this.#side, wish.most)
+    const begun = performance.now()
     this.#compute({...wish, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
       const next = Math.round(side * Math.min(Math.max(change, SLOWER), FASTER))
@@ -110,7 +111,8 @@ export class Frames {
       this.#computing = "nothing"
       return
     }
-    const {side, horizon} = RESTING[level]
+    const {horizon} = RESTING[level]
+    const side = Math.min(RESTING[level].side, wish.most)
     if (side < this.#side) {
       this.#refine(wish, level + 1)
       return

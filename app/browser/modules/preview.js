@@ -23,12 +23,27 @@ import {coversEnergy, windowAt} from "./system.js"
  * @property {boolean} home  whether the window is the default one
  * @property {string[]} colours  of the channels
  * @property {import("./columns.js").Coding} coding
- * @property {number} t_max
+ * @property {number} resolution  pixels along a side of the server's map
  *
  * Models of Bokeh by their names; null for those that are not on the page.
  *
  * @typedef {(name: string) => any} FindModel
  */
+
+/**
+ * Edges that are this close, as a share of the side, are not moved while the energy changes: to paint axes takes longer than to
+ * paint pixels. The default window has more space than that around its interior.
+ */
+const NEAR_EDGE = 0.02
+
+/** @type {(one: import("./slice.js").Window, other: import("./slice.js").Window) => boolean} */
+const isNear = (one, other) => {
+  const near = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
+    Math.abs(a - b) <= NEAR_EDGE * side
+  const [width, height] = [other.xHigh - other.xLow, other.ordinateHigh - other.ordinateLow]
+  const nearX = near(one.xLow, other.xLow, width) && near(one.xHigh, other.xHigh, width)
+  return nearX && near(one.ordinateLow, other.ordinateLow, height) && near(one.ordinateHigh, other.ordinateHigh, height)
+}
 
 export class Preview {
   /**
@@ -67,6 +82,8 @@ export class Preview {
   #view = null
   /** Energy of the slider or of the player, until the server has it. @type {number | null} */
   #energy = null
+  /** Default window at that energy; null for that of the ranges. @type {import("./slice.js").Window | null} */
+  #window = null
   #held = false
   #waiting = false
   /** The preview on the page. @type {import("./pixels.js").View | null} */
@@ -82,14 +99,15 @@ export class Preview {
     this.#system = system
     this.#potential = new Potential(system.terms)
     this.#frames.setSystem(system, module)
-    this.#follow()
+    if (this.#held && this.#energy !== null) this.showEnergy(this.#energy)
+    else this.#follow()
   }
 
   /** @param {ServerView} view */
   setView(view) {
     const other = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
     this.#view = view
-    if (!this.#held) this.#energy = null
+    if (!this.#held) this.#energy = this.#window = null
     if (other) this.#restore()
   }
 
@@ -103,14 +121,10 @@ export class Preview {
     this.#energy = energy
     const [view, system] = [this.#view, this.#system]
     const isHome = view?.home && view.system === system?.key
-    const window = isHome && system ? windowAt(system.windows[view.plane], energy) : null
-    if (view && sameEnergy(energy, view.energy)) {
-      this.#x.restore()
-      this.#y.restore()
-    } else if (window) {
-      this.#x.show({start: window.xLow, end: window.xHigh})
-      this.#y.show({start: window.ordinateLow, end: window.ordinateHigh})
-    }
+    const returns = view && sameEnergy(energy, view.energy)
+    const home = isHome && system && !returns ? windowAt(system.windows[view.plane], energy) : null
+    if (!home || !isNear(home, this.#present)) this.#window = home
+    if (returns) for (const range of [this.#x, this.#y]) range.restore()
     this.#follow()
   }
 
@@ -121,12 +135,20 @@ export class Preview {
 
   /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Wish | null} */
   get wish() {
-    const [view, system, [x, y]] = [this.#view, this.#system, this.#ranges()]
-    if (!view || !system || view.system !== system.key || !(x.start < x.end && y.start < y.end)) return null
+    const [view, system, window] = [this.#view, this.#system, this.#present]
+    if (!view || !system || view.system !== system.key) return null
+    if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
-    const window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
     const highest = view.slice.axes[1] === "h" ? window.ordinateHigh : energy
-    return coversEnergy(system, highest / unitOf(system.units, "h")) ? {slice: view.slice, energy, window} : null
+    return coversEnergy(system, highest / unitOf(system.units, "h"))
+      ? {slice: view.slice, energy, window, most: view.resolution}
+      : null
+  }
+
+  /** The window that is shown, or is about to be. @returns {import("./slice.js").Window} */
+  get #present() {
+    const [x, y] = this.#ranges()
+    return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
   }
 
   /** A range changes: its other end and the pixels from the server may follow at once. */
@@ -167,6 +189,11 @@ export class Preview {
     if (!system || !potential || !server) return
     this.#shown = view
     this.#maps.show({data: pixelColumns(server.coding, view, pixels, this.#maps.server.data)})
+    // Together with the pixels, as each change of a range repaints all pictures.
+    if (this.#window) {
+      this.#x.show({start: view.window.xLow, end: view.window.xHigh})
+      this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
+    }
     this.#limit.show({data: this.#curves.trace(system, potential, view)})
     if (view.slice.axes.join() === "x,y") this.#showExits(system, view.energy, server.colours)
     this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
@@ -221,4 +248,4 @@ const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.cs
  * @param {import("./pixels.js").View} view
  * @returns {import("./frames.js").Wish}
  */
-const pick = ({slice, energy, window}) => ({slice, energy, window})
+const pick = ({slice, energy, window, most}) => ({slice, energy, window, most})
