@@ -1,7 +1,6 @@
 // @ts-check
 /** Measurements in the page, for `benchmarks/drag.py`. */
 
-const source = Bokeh.documents[0].get_model_by_name("maps")
 const frame = () => new Promise(requestAnimationFrame)
 
 /** @type {Map<number, number>} */
@@ -18,13 +17,15 @@ WebSocket.prototype.send = function (data) {
   return send.call(this, data)
 }
 
-source.connect(source.properties.data.change, () => {
-  const {energy, fate, complete} = source.data
-  const begun = moved.get(energy[0])
-  if (complete[0] || begun === undefined) return
-  moved.delete(energy[0])
-  sides.push(fate[0].shape[0])
-  // Bokeh paints in the next frame; a message of that frame arrives after it.
+/** Canvases over the pictures that are observed. */
+const observed = new Set()
+const observer = new MutationObserver(records => {
+  const {energy, side} = /** @type {HTMLElement} */ (records[0].target).dataset
+  const begun = moved.get(Number(energy))
+  if (begun === undefined) return
+  moved.delete(Number(energy))
+  sides.push(Number(side))
+  // The pixels are on the screen after the next frame; a message of that frame arrives after it.
   requestAnimationFrame(() => {
     const {port1, port2} = new MessageChannel()
     port1.onmessage = () => delays.push(performance.now() - begun)
@@ -32,12 +33,29 @@ source.connect(source.properties.data.change, () => {
   })
 })
 
+/** Observe the first canvas over the pictures. */
+function observe() {
+  const canvas = findAll(document, "canvas[data-energy]")[0]
+  if (!canvas || observed.has(canvas)) return
+  observed.add(canvas)
+  observer.observe(canvas, {attributeFilter: ["data-energy"]})
+}
+
+/** @param {Document | ShadowRoot} root @param {string} selector @returns {Element[]} */
+function findAll(root, selector) {
+  const inside = [...root.querySelectorAll("*")].flatMap(({shadowRoot}) => (shadowRoot ? findAll(shadowRoot, selector) : []))
+  return [...root.querySelectorAll(selector), ...inside]
+}
+
 const bench = {
   /** Wait until the engine shows pixels. */
   async ready() {
-    const {complete} = source.data
-    document.dispatchEvent(new CustomEvent("energydragged", {detail: 0.4}))
-    while (source.data.complete === complete) await frame()
+    let energy = 0.26
+    while (observed.size === 0) {
+      document.dispatchEvent(new CustomEvent("energydragged", {detail: (energy += 1e-4)}))
+      for (let k = 0; k < 5; k++) await frame()
+      observe()
+    }
     document.dispatchEvent(new CustomEvent("energyreleased"))
   },
 

@@ -1,4 +1,4 @@
-"""What the browser computes by itself: frames per second and delay while the energy is dragged, the orbit under the cursor, memory.
+"""What the browser computes by itself: frames per second and delay of drags, the orbit under the cursor, memory of the page.
 
 Run alone on the machine: uv run python -m benchmarks.drag
 """
@@ -19,7 +19,7 @@ from tests.browser.served_app import served_app
 
 VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
 SPAN = 0.06
-DRAG_SECONDS = 6.0
+DRAG_SECONDS = 4.0
 HOVERS = 60
 MEMORY_MINUTES = 3.0
 SCRIPT = Path(__file__).with_name("drag.js")
@@ -44,9 +44,7 @@ def drag(explorer: ExplorerPage, energy: float, seconds: float) -> dict[str, Any
 
 def report_drags(browser: Browser, address: str) -> None:
     """Frames per second, and time from a move of the slider to its pixels."""
-    print(
-        "| view | frames per second | ms from move to pixels: median, 95 %, worst | pixels along a side: least, median | messages |"
-    )
+    print("| view | frames per second | ms from move to pixels: median, 95 %, worst | side in pixels: least, median | messages |")
     print("|---|---|---|---|---|")
     for case, energy in VIEWS:
         explorer = ready_page(browser, address, case, energy)
@@ -79,9 +77,7 @@ def report_memory(browser: Browser, address: str) -> None:
     for _ in range(3):
         drag(explorer, 0.45, 60.0 * MEMORY_MINUTES / 3)
         sizes.append(heap_megabytes(session))
-    print(
-        f"\nMemory of the page's scripts, dragging for {MEMORY_MINUTES:g} minutes, MB: {', '.join(f'{size:.1f}' for size in sizes)}"
-    )
+    print(f"\nMemory of scripts, dragging for {MEMORY_MINUTES:g} minutes, MB: {', '.join(f'{size:.1f}' for size in sizes)}")
     explorer.page.context.close()
 
 

@@ -23,7 +23,7 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-headless-shell")
 SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
-# Pixels of the server's map are on the screen at the second animation frame after a change of the source to its energy and window.
+# Pixels are on the screen at the second animation frame after a change of the source.
 # `begin` is called at the start of each action.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')

@@ -32,7 +32,7 @@ export class Frames {
   /**
    * @param {import("./pool.js").Pool} pool
    * @param {number} workers
-   * @param {(view: View, pixels: Pixels) => void} show
+   * @param {(view: View, pixels: Pixels, moving: boolean) => void} show
    */
   constructor(pool, workers, show) {
     this.#pool = pool
@@ -135,7 +135,7 @@ export class Frames {
     this.#pool.compute(view, list, (part, pixels) => {
       picture.add(part, pixels)
       if (--left > 0) return
-      this.#show(view, picture.finish())
+      this.#show(view, picture.finish(), this.#computing === "moving")
       done()
     })
   }

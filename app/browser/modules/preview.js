@@ -49,8 +49,10 @@ export class Preview {
   /**
    * @param {FindModel} find
    * @param {import("./frames.js").Frames} frames
+   * @param {import("./overlay.js").Overlay} overlay
    */
-  constructor(find, frames) {
+  constructor(find, frames, overlay) {
+    this.#overlay = overlay
     const ranges = find("basins")
     this.#frames = frames
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
@@ -65,6 +67,7 @@ export class Preview {
   }
 
   #frames
+  #overlay
   #maps
   #x
   #y
@@ -179,54 +182,66 @@ export class Preview {
   }
 
   /**
-   * Show the pixels of a preview.
+   * Show the pixels of a preview: in Bokeh's pictures, or over them while the energy moves.
    *
    * @param {import("./pixels.js").View} view
    * @param {import("./pixels.js").Pixels} pixels
+   * @param {boolean} moving  whether the next preview is to follow in the next frame
    */
-  show(view, pixels) {
+  show(view, pixels, moving) {
     const [system, potential, server] = [this.#system, this.#potential, this.#view]
     if (!system || !potential || !server) return
     this.#shown = view
-    this.#maps.show({data: pixelColumns(server.coding, view, pixels, this.#maps.server.data)})
-    // Together with the pixels, as each change of a range repaints all pictures.
+    const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data)
+    const limit = this.#curves.trace(system, potential, view)
+    const exits = view.slice.axes.join() === "x,y" ? exitLines(system, view.energy) : []
+    const coloured = exits.map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
+    // Each change of a range repaints all pictures: together with the pixels, or seldom.
     if (this.#window) {
       this.#x.show({start: view.window.xLow, end: view.window.xHigh})
       this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
     }
-    this.#limit.show({data: this.#curves.trace(system, potential, view)})
-    if (view.slice.axes.join() === "x,y") this.#showExits(system, view.energy, server.colours)
     this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
+    if (moving && this.#held) {
+      this.#overlay.show({
+        energy: view.energy,
+        window: view.window,
+        columns,
+        lines: {zero_velocity_curve: limit, lyapunov_orbits: coloured},
+      })
+      return
+    }
+    this.#maps.show({data: columns})
+    this.#limit.show({data: sourceOf(limit)})
+    if (exits.length > 0 || this.#exits.server.data) this.#showExits(coloured)
+    this.#overlay.hide()
   }
 
-  /**
-   * @param {import("./system.js").System} system
-   * @param {number} energy
-   * @param {string[]} colours
-   */
-  #showExits(system, energy, colours) {
-    const lines = exitLines(system, energy)
-    const colour = lines.map(({channel}) => colours[channel - 1])
-    this.#exits.show({data: {xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys), colour}})
+  /** @param {(ReturnType<typeof exitLines>[number] & {colour: string})[]} exits */
+  #showExits(exits) {
+    this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
     // Always as many texts: Bokeh fails when texts with colours of their own become fewer.
-    const labels = this.#labels.server.data ?? {text: []}
+    const labels = this.#labels.server.data ?? {text: [], colour: []}
     const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
       Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
     this.#labels.show({
       data: {
         x: fill(
-          lines.map(({label}) => label[0]),
+          exits.map(({label}) => label[0]),
           NaN,
         ),
         y: fill(
-          lines.map(({label}) => label[1]),
+          exits.map(({label}) => label[1]),
           NaN,
         ),
         text: fill(
-          lines.map(({channel}) => String(channel)),
+          exits.map(({channel}) => String(channel)),
           "",
         ),
-        colour: fill(colour, colours[0]),
+        colour: fill(
+          exits.map(({colour}) => colour),
+          labels.colour[0],
+        ),
       },
     })
   }
@@ -235,9 +250,13 @@ export class Preview {
   #restore() {
     this.#frames.stop()
     this.#shown = null
+    this.#overlay.hide()
     for (const local of [this.#maps, this.#limit, this.#exits, this.#labels, this.#status, this.#x, this.#y]) local.restore()
   }
 }
+
+/** Lines as the columns of a data source of Bokeh. @type {(lines: {xs: number[], ys: number[]}[]) => {xs: number[][], ys: number[][]}} */
+const sourceOf = lines => ({xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys)})
 
 /** The status line, which has no name in the document. */
 const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
