@@ -20,6 +20,8 @@ const LONGEST = 200
 const [PRESS_MS, PRESS_PIXELS] = [350, 8]
 /** @type {import("./system.js").Slice} */
 const PLANE = {axes: ["x", "y"], fixed: {px: 0}, decided: "py", sign: 1}
+/** Side of the card if there is one picture, as a share of the picture. */
+const ALONE = 0.55
 /** Of the text, in pixels. */
 const [PADDING, TEXT_HEIGHT] = [6, 22]
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
@@ -53,6 +55,10 @@ export class Card {
     document.addEventListener("pointerup", () => this.#lift(), true)
     document.addEventListener("pointercancel", () => this.#lift(), true)
     document.addEventListener("pointerleave", () => this.#hide())
+    // The browser would scroll the page, or open a menu.
+    for (const name of ["touchmove", "contextmenu"]) {
+      document.addEventListener(name, event => this.#pressed && event.preventDefault(), {capture: true, passive: false})
+    }
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
   }
 
@@ -92,6 +98,7 @@ export class Card {
 
   #lift() {
     if (this.#finger) clearTimeout(this.#finger.timer)
+    if (this.#pressed) this.#hide()
     this.#finger = null
     this.#pressed = false
   }
@@ -136,7 +143,7 @@ export class Card {
       this.#hide()
       return
     }
-    this.#draw(picture, found.h, traceOrbit(integrator, found, LONGEST))
+    this.#draw(picture, event.clientX, found.h, traceOrbit(integrator, found, LONGEST))
   }
 
   #hide() {
@@ -168,14 +175,14 @@ export class Card {
 
   /**
    * @param {import("./pictures.js").Frame} over  the picture under the pointer
+   * @param {number} pointer  its place from the left of the screen
    * @param {number} energy  in units of the well
    * @param {import("./trace.js").Trace} trace
    */
-  #draw(over, energy, trace) {
+  #draw(over, pointer, energy, trace) {
     const [system, engine, context] = [this.#system, this.#engine, this.#canvas.getContext("2d")]
     if (!system || !engine || !context) return
-    const shown = frames()
-    const {box} = shown.find(({view}) => view !== over.view) ?? over
+    const box = placeFor(over, pointer)
     const h = energy * unitOf(system.units, "h")
     const window = windowAt(system.windows.X_Y, h)
     if (!window) return this.#hide()
@@ -213,3 +220,17 @@ export class Card {
 /** @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
+
+/**
+ * Where the card is drawn: over the first picture that is not under the pointer, or in the other half of the only one.
+ *
+ * @param {import("./pictures.js").Frame} over  the picture under the pointer
+ * @param {number} pointer  its place from the left of the screen
+ */
+function placeFor(over, pointer) {
+  const other = frames().find(({view}) => view !== over.view)
+  if (other) return other.box
+  const {left, top, width} = over.box
+  const side = ALONE * width
+  return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)
+}

@@ -55,10 +55,15 @@ export function start(model, el) {
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
   const find = (/** @type {string} */ name) => page.get_model_by_name(name)
+  // The plots of the orbits have sources of the same names.
+  const findSource = (/** @type {string} */ name) =>
+    find("curves")
+      .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
+      .find((/** @type {any} */ source) => source?.name === name)
   const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))
   const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
   /** @type {Preview} */
-  const preview = new Preview(find, frames, new Overlay(el))
+  const preview = new Preview(find, findSource, frames, new Overlay(el))
   const tell = (/** @type {number} */ energy) => document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
   const player = new Player(
     energy => {

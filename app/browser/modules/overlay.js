@@ -64,7 +64,14 @@ export class Overlay {
     for (const {glyph, data_source: source} of plot.renderers) {
       if (source.name === "maps") this.#paintImage(context, box, columns[glyph.image.field][0], glyph.color_mapper)
       for (const line of lines[source.name] ?? []) {
-        strokeLine(context, window, box, line, line.colour ?? valueOf(glyph.line_color), valueOf(glyph.line_width))
+        strokeLine(
+          context,
+          window,
+          box,
+          line,
+          glyph.line_color.field ? line.colour : valueOf(glyph.line_color),
+          valueOf(glyph.line_width),
+        )
       }
     }
     canvas.dataset.energy = String(energy)

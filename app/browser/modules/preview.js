@@ -48,10 +48,11 @@ const isNear = (one, other) => {
 export class Preview {
   /**
    * @param {FindModel} find
+   * @param {FindModel} findSource  finds a data source of the first picture
    * @param {import("./frames.js").Frames} frames
    * @param {import("./overlay.js").Overlay} overlay
    */
-  constructor(find, frames, overlay) {
+  constructor(find, findSource, frames, overlay) {
     this.#overlay = overlay
     const ranges = find("basins")
     this.#frames = frames
@@ -60,9 +61,9 @@ export class Preview {
     this.#x = new Local(ranges.x_range, ["start", "end"], moved)
     this.#y = new Local(ranges.y_range, ["start", "end"], moved)
     this.#ranges = () => [ranges.x_range, ranges.y_range]
-    this.#limit = new LocalWhenPresent(() => find("zero_velocity_curve"), ["data"])
-    this.#exits = new LocalWhenPresent(() => find("lyapunov_orbits"), ["data"])
-    this.#labels = new LocalWhenPresent(() => find("channel_numbers"), ["data"])
+    this.#limit = new LocalWhenPresent(() => findSource("zero_velocity_curve"), ["data"])
+    this.#exits = new LocalWhenPresent(() => findSource("lyapunov_orbits"), ["data"])
+    this.#labels = new LocalWhenPresent(() => findSource("channel_numbers"), ["data"])
     this.#status = new LocalWhenPresent(findStatus, ["text"])
   }
 
