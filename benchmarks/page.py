@@ -1,6 +1,6 @@
-"""The page in headless Chromium: opening, latency of new pixels, previews per second, bytes of an update, server memory.
+"""The page in headless Chromium: opening, latency of the server's pixels, bytes of an update, server memory.
 
-Run: uv run python -m benchmarks.page
+What the browser computes by itself is measured by `benchmarks.drag`. Run: uv run python -m benchmarks.page
 """
 
 from __future__ import annotations
@@ -19,22 +19,21 @@ from benchmarks.load import resident_megabytes
 from tests.browser.explorer_page import ExplorerPage
 from tests.browser.served_app import served_app
 
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-headless-shell")
 SHARES = (0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.5, 0.4)
 CYCLES = 30
 NEW_POTENTIALS = ("½(x² + y²) − x²y² − x³/4", "½(x² + y²) − x²y² − 0.1x⁴y²")
-# Pixels are on the screen at the second animation frame after a change of the source. `begin` is called at the start of each
-# action; previews have 76 pixels per side.
+# Pixels are on the screen at the second animation frame after a change of the source.
+# `begin` is called at the start of each action.
 WATCH = """() => {
     const source = Bokeh.documents[0].get_model_by_name('maps')
     window.painted = {}
-    window.previews = []
     const paint = () => {
-        const now = performance.now(), {data} = source
+        const {data} = source
         requestAnimationFrame(() => requestAnimationFrame(() => {
             window.painted.first ??= performance.now()
             if (data.complete[0]) window.painted.whole ??= performance.now()
         }))
-        if (data.fate[0].shape[0] == 76) window.previews.push(now)
     }
     source.connect(source.properties.data.change, paint)
     window.begin = () => { window.painted = {begun: performance.now()} }
@@ -85,24 +84,6 @@ ELEMENTS = """() => {
 PAINTED = """() => {
     const source = window.Bokeh?.documents[0]?.get_model_by_name('maps')
     return source?.data.fate?.[0]?.shape[0] > 1
-}"""
-DRAG_SECONDS = 4.0
-# Drag the slider with one move per animation frame, as browsers deliver those of a mouse; Playwright's moves come at 20 per
-# second, as each waits for its answer. Returns the number of moves per second.
-DRAG = """async ([start, y, end, seconds]) => {
-    let target = document.elementFromPoint(start, y)
-    while (target.shadowRoot) target = target.shadowRoot.elementFromPoint(start, y)
-    const fire = (type, x, target) => target.dispatchEvent(
-        new MouseEvent(type, {clientX: x, clientY: y, buttons: 1, bubbles: true, composed: true, cancelable: true}))
-    fire('mousedown', start, target)
-    const begin = performance.now()
-    let moves = 0
-    for (let share = 0; share < 1; share = (performance.now() - begin) / (1000 * seconds)) {
-        fire('mousemove', start + share * (end - start), document.documentElement)
-        moves++
-        await new Promise(requestAnimationFrame)
-    }
-    return moves / seconds
 }"""
 TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
@@ -169,21 +150,6 @@ def measure(explorer: ExplorerPage, action: Callable[[ExplorerPage, float], None
         explorer.press("Whole plane")
         time.sleep(1.0)
     return times
-
-
-def report_previews(browser: Browser, address: str) -> None:
-    """Previews per second while the slider of case III is dragged from h = 0.45 to h = 1 in `DRAG_SECONDS`."""
-    explorer = open_page(browser, address, "?case=III&h=0.45&t_max=1000")
-    explorer.page.evaluate(WATCH)
-    thumb, rail = (explorer.page.locator(f".noUi-{part}").first.bounding_box() for part in ("handle", "base"))
-    assert thumb is not None
-    assert rail is not None
-    middle = thumb["x"] + thumb["width"] / 2, thumb["y"] + thumb["height"] / 2
-    moves = explorer.page.evaluate(DRAG, [*middle, rail["x"] + rail["width"], DRAG_SECONDS])
-    previews = explorer.page.evaluate("() => window.previews")
-    rate = (len(previews) - 1) / (previews[-1] - previews[0]) * 1000
-    print(f"\nPreviews while dragging, III from h = 0.45 up: {rate:.1f} per second, at {moves:.1f} moves per second", flush=True)
-    explorer.page.context.close()
 
 
 def report_typing(browser: Browser, address: str) -> None:
@@ -257,8 +223,8 @@ def main() -> None:
         served_app(Path(folder) / "log") as address,
         sync_playwright() as playwright,
     ):
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        for report in (report_opening, report_typing, report_latency, report_previews, report_bytes, report_memory):
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        for report in (report_opening, report_typing, report_latency, report_bytes, report_memory):
             report(browser, address)
         browser.close()
 

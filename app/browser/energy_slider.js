@@ -14,6 +14,7 @@ export function render({model, el}) {
   label.htmlFor = rail.id = "energy"
   label.append(name, number)
   el.append(label, rail)
+  let moved = false
   const rounded = (/** @type {number} */ energy) => Number(energy.toFixed(Math.max(model.decimals, 0)))
   const clamped = (/** @type {number} */ energy) => Math.min(Math.max(energy, model.low), model.high)
   const write = (/** @type {number} */ energy) => {
@@ -39,9 +40,13 @@ export function render({model, el}) {
     name.textContent = `${model.title}: `
     number.hidden = false
     write(energy)
+    moved = true
     for (const event of ["energydragged", "energyshown"]) tell(event, energy)
   }
+  // Back at the energy where it began, a drag ends without an event of change.
   const release = () => {
+    if (!moved) return
+    moved = false
     const energy = rounded(rail.valueAsNumber)
     tell("energyreleased", energy)
     if (energy !== clamped(model.energy)) model.send_msg({energy})
@@ -55,7 +60,7 @@ export function render({model, el}) {
     release()
   }
   rail.addEventListener("input", () => drag(rounded(rail.valueAsNumber)))
-  rail.addEventListener("change", release)
+  for (const event of ["change", "pointerup", "pointercancel"]) rail.addEventListener(event, release)
   rail.addEventListener("keydown", press)
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)

@@ -17,6 +17,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "slice": state.plane.to_dict(),
         "energy": state.energy,
         "home": state.window is None,
+        "resolution": state.resolution,
         "colours": list(state.colours.channels),
         "coding": pixel_coding(),
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -99,3 +100,27 @@ def test_what_two_fingers_do_is_one_entry_of_the_history(explorer: ExplorerPage)
     move_fingers(explorer, ((-80, 0), (-40, 30)), ((80, 0), (60, 30)))
     explorer.wait_for_view("window=")
     assert explorer.page.evaluate("history.state.entry") == 1
+
+
+def test_a_finger_that_rests_shows_the_orbit_under_it(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_touched(open_explorer, 420)
+    explorer.radio("Scroll").scroll_into_view_if_needed()
+    card, session = explorer.page.locator(".orbit-card"), explorer.page.context.new_cdp_session(explorer.page)
+    x, y = middle_of(explorer)
+
+    def touch(kind: str, *points: dict[str, float]) -> None:
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": list(points)})
+
+    # Until the engine is there.
+    for _ in range(20):
+        touch("touchStart", {"x": float(x), "y": float(y)})
+        with suppress(AssertionError):
+            expect(card).to_be_visible(timeout=1500)
+            break
+        touch("touchEnd")
+    before, label = window(explorer), card.get_attribute("aria-label")
+    touch("touchMove", {"x": float(x) + 40.0, "y": float(y) + 30.0})
+    expect(card).not_to_have_attribute("aria-label", label or "")
+    np.testing.assert_array_equal(window(explorer), before)
+    touch("touchEnd")
+    expect(card).to_be_hidden()

@@ -8,6 +8,7 @@ import {exitLines, LimitingCurves} from "./curves.js"
 import {Integrator} from "./integrator.js"
 import {Interior} from "./interior.js"
 import {exitCurves} from "./exits.js"
+import {cover, frames, strokeLine} from "./pictures.js"
 import {Potential} from "./potential.js"
 import {Starts, unitOf} from "./slice.js"
 import {windowAt} from "./system.js"
@@ -17,9 +18,10 @@ import {traceOrbit} from "./trace.js"
 const LONGEST = 200
 /** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
 const [PRESS_MS, PRESS_PIXELS] = [350, 8]
-const PICTURES = ["curves", "basins", "times", "crossings", "characters", "origins"]
 /** @type {import("./system.js").Slice} */
 const PLANE = {axes: ["x", "y"], fixed: {px: 0}, decided: "py", sign: 1}
+/** Side of the card if there is one picture, as a share of the picture. */
+const ALONE = 0.55
 /** Of the text, in pixels. */
 const [PADDING, TEXT_HEIGHT] = [6, 22]
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
@@ -53,6 +55,10 @@ export class Card {
     document.addEventListener("pointerup", () => this.#lift(), true)
     document.addEventListener("pointercancel", () => this.#lift(), true)
     document.addEventListener("pointerleave", () => this.#hide())
+    // The browser would scroll the page, or open a menu.
+    for (const name of ["touchmove", "contextmenu"]) {
+      document.addEventListener(name, event => this.#pressed && event.preventDefault(), {capture: true, passive: false})
+    }
     document.addEventListener("scroll", () => this.#hide(), {capture: true, passive: true})
   }
 
@@ -92,6 +98,7 @@ export class Card {
 
   #lift() {
     if (this.#finger) clearTimeout(this.#finger.timer)
+    if (this.#pressed) this.#hide()
     this.#finger = null
     this.#pressed = false
   }
@@ -136,7 +143,7 @@ export class Card {
       this.#hide()
       return
     }
-    this.#draw(picture, found.h, traceOrbit(integrator, found, LONGEST))
+    this.#draw(picture, event.clientX, found.h, traceOrbit(integrator, found, LONGEST))
   }
 
   #hide() {
@@ -146,7 +153,7 @@ export class Card {
   /**
    * The centre of the pixel under the pointer; the point itself between pictures.
    *
-   * @param {Frame} picture
+   * @param {import("./pictures.js").Frame} picture
    * @param {PointerEvent} event
    * @returns {[number, number] | null}
    */
@@ -167,44 +174,38 @@ export class Card {
   }
 
   /**
-   * @param {Frame} over  the picture under the pointer
+   * @param {import("./pictures.js").Frame} over  the picture under the pointer
+   * @param {number} pointer  its place from the left of the screen
    * @param {number} energy  in units of the well
    * @param {import("./trace.js").Trace} trace
    */
-  #draw(over, energy, trace) {
+  #draw(over, pointer, energy, trace) {
     const [system, engine, context] = [this.#system, this.#engine, this.#canvas.getContext("2d")]
     if (!system || !engine || !context) return
-    const shown = frames()
-    const {box} = shown.find(({view}) => view !== over.view) ?? over
+    const box = placeFor(over, pointer)
     const h = energy * unitOf(system.units, "h")
     const window = windowAt(system.windows.X_Y, h)
     if (!window) return this.#hide()
-    this.#place(box, context)
+    cover(this.#canvas, box)
+    context.clearRect(0, 0, box.width, box.height)
     const style = getComputedStyle(this.#canvas)
     const [ink, paper] = ["--ui-ink", "--ui-surface"].map(name => style.getPropertyValue(name))
-    const scale = box.width / (window.xHigh - window.xLow)
     const draw = (
-      /** @type {ArrayLike<number>} */ xs,
-      /** @type {ArrayLike<number>} */ ys,
+      /** @type {{xs: ArrayLike<number>, ys: ArrayLike<number>}} */ line,
       /** @type {string} */ colour,
       /** @type {number} */ width,
-    ) => {
-      context.strokeStyle = colour
-      context.lineWidth = width
-      context.beginPath()
-      for (let i = 0; i < xs.length; i++) context.lineTo((xs[i] - window.xLow) * scale, (window.ordinateHigh - ys[i]) * scale)
-      context.stroke()
-    }
+    ) => strokeLine(context, window, box, line, colour, width)
     const limit = this.#limits.trace(system, engine.potential, {slice: PLANE, window, energy: h})
-    limit.xs.forEach((xs, k) => draw(xs, limit.ys[k], ink, 1.5))
+    for (const line of limit) draw(line, ink, 1.5)
     const colours = this.#colours()
-    for (const {channel, xs, ys} of exitLines(system, h)) draw(xs, ys, colours[channel - 1], 3)
-    const [x, y] = [trace.x, trace.y].map(values => values.map(value => value * system.units.length))
-    draw(x, y, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
+    for (const {channel, xs, ys} of exitLines(system, h)) draw({xs, ys}, colours[channel - 1], 3)
+    const [xs, ys] = [trace.x, trace.y].map(values => values.map(value => value * system.units.length))
+    draw({xs, ys}, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
     const text = describe(trace, system.units.time)
     context.fillStyle = ink
     context.beginPath()
-    context.arc((x[0] - window.xLow) * scale, (window.ordinateHigh - y[0]) * scale, 3.5, 0, 2 * Math.PI)
+    const scale = box.width / (window.xHigh - window.xLow)
+    context.arc((xs[0] - window.xLow) * scale, (window.ordinateHigh - ys[0]) * scale, 3.5, 0, 2 * Math.PI)
     context.fill()
     context.font = "12px system-ui, sans-serif"
     const [width, height] = [context.measureText(text).width + 2 * PADDING, TEXT_HEIGHT]
@@ -214,47 +215,22 @@ export class Card {
     context.fillText(text, PADDING, box.height - PADDING)
     this.#canvas.setAttribute("aria-label", text)
   }
-
-  /**
-   * @param {DOMRect} box
-   * @param {CanvasRenderingContext2D} context
-   */
-  #place(box, context) {
-    const ratio = window.devicePixelRatio
-    Object.assign(this.#canvas, {width: box.width * ratio, height: box.height * ratio})
-    Object.assign(this.#canvas.style, {
-      display: "block",
-      left: `${box.left}px`,
-      top: `${box.top}px`,
-      width: `${box.width}px`,
-      height: `${box.height}px`,
-    })
-    context.scale(ratio, ratio)
-  }
-}
-
-/**
- * The picture of a map on the screen: its view and the box of its frame.
- *
- * @typedef {{view: any, box: DOMRect}} Frame
- *
- * @returns {Frame[]}
- */
-function frames() {
-  const views = [...Bokeh.index.all_views()].filter((/** @type {any} */ view) => PICTURES.includes(view.model.name))
-  return views
-    .map((/** @type {any} */ view) => {
-      const canvas = view.canvas_view.el.getBoundingClientRect()
-      const {left, top, width, height} = view.frame.bbox
-      return {view, box: new DOMRect(canvas.left + left, canvas.top + top, width, height)}
-    })
-    .filter((/** @type {Frame} */ {box}) => box.width > 0)
-    .sort(
-      (/** @type {Frame} */ one, /** @type {Frame} */ other) =>
-        PICTURES.indexOf(one.view.model.name) - PICTURES.indexOf(other.view.model.name),
-    )
 }
 
 /** @type {(box: DOMRect, event: PointerEvent) => boolean} */
 const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
+
+/**
+ * Where the card is drawn: over the first picture that is not under the pointer, or in the other half of the only one.
+ *
+ * @param {import("./pictures.js").Frame} over  the picture under the pointer
+ * @param {number} pointer  its place from the left of the screen
+ */
+function placeFor(over, pointer) {
+  const other = frames().find(({view}) => view !== over.view)
+  if (other) return other.box
+  const {left, top, width} = over.box
+  const side = ALONE * width
+  return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)
+}

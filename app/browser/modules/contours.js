@@ -35,7 +35,7 @@ export function sampleGrid(window, sample) {
  *
  * @param {Grid} grid
  * @param {number} level
- * @returns {{xs: number[][], ys: number[][]}}
+ * @returns {{xs: number[], ys: number[]}[]}
  */
 export function levelLines({window, values}, level) {
   /** Neighbours on the line of each crossed edge: edges from a sample to the right have even numbers, upward ones odd numbers. */
@@ -52,7 +52,7 @@ export function levelLines({window, values}, level) {
   }
   const place = (/** @type {number} */ edge) => edgePoint(window, values, level, edge)
   const lines = takeLines(joined).map(edges => edges.map(place))
-  return {xs: lines.map(line => line.map(([x]) => x)), ys: lines.map(line => line.map(([, y]) => y))}
+  return lines.map(line => ({xs: line.map(([x]) => x), ys: line.map(([, y]) => y)}))
 }
 
 /**

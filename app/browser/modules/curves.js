@@ -19,7 +19,7 @@ export class LimitingCurves {
   /**
    * @param {import("./system.js").System} system
    * @param {import("./potential.js").Potential} potential
-   * @param {import("./frames.js").Wish} wish
+   * @param {Pick<import("./pixels.js").View, "slice" | "window" | "energy">} view
    */
   trace(system, potential, {slice, window, energy}) {
     const key = JSON.stringify([system.key, slice, window])

@@ -37,7 +37,8 @@ const CLOSED = {
   coefficients: [0],
 }
 const MOST_ITERATIONS = 80
-const ROOT_ACCURACY = 1e-15
+/** Escape times are shown as colours and with five digits. */
+const ROOT_ACCURACY = 1e-9
 
 /**
  * The exits of all channels at an energy.

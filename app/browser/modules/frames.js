@@ -32,7 +32,7 @@ export class Frames {
   /**
    * @param {import("./pool.js").Pool} pool
    * @param {number} workers
-   * @param {(view: View, pixels: Pixels) => void} show
+   * @param {(view: View, pixels: Pixels, moving: boolean) => void} show
    */
   constructor(pool, workers, show) {
     this.#pool = pool
@@ -88,7 +88,8 @@ export class Frames {
     this.#wish = null
     if (!wish) return
     this.#computing = "moving"
-    const [side, begun] = [this.#side, performance.now()]
+    const side = Math.min(this.#side, wish.most)
+    const begun = performance.now()
     this.#compute({...wish, columns: side, rows: side, horizon: MOVING_HORIZON}, 2 * this.#workers, () => {
       const change = Math.sqrt(FRAME_MS / Math.max(performance.now() - begun, 1))
       const next = Math.round(side * Math.min(Math.max(change, SLOWER), FASTER))
@@ -110,7 +111,8 @@ export class Frames {
       this.#computing = "nothing"
       return
     }
-    const {side, horizon} = RESTING[level]
+    const {horizon} = RESTING[level]
+    const side = Math.min(RESTING[level].side, wish.most)
     if (side < this.#side) {
       this.#refine(wish, level + 1)
       return
@@ -133,7 +135,7 @@ export class Frames {
     this.#pool.compute(view, list, (part, pixels) => {
       picture.add(part, pixels)
       if (--left > 0) return
-      this.#show(view, picture.finish())
+      this.#show(view, picture.finish(), this.#computing === "moving")
       done()
     })
   }

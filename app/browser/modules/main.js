@@ -3,6 +3,7 @@
 
 import {Card} from "./card.js"
 import {Frames} from "./frames.js"
+import {Overlay} from "./overlay.js"
 import {Player} from "./player.js"
 import {Pool, workerCount} from "./pool.js"
 import {Preview} from "./preview.js"
@@ -54,10 +55,15 @@ export function start(model, el) {
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
   const find = (/** @type {string} */ name) => page.get_model_by_name(name)
+  // The plots of the orbits have sources of the same names.
+  const findSource = (/** @type {string} */ name) =>
+    find("curves")
+      .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
+      .find((/** @type {any} */ source) => source?.name === name)
   const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))
-  const frames = new Frames(pool, workerCount(), (view, pixels) => preview.show(view, pixels))
+  const frames = new Frames(pool, workerCount(), (view, pixels, moving) => preview.show(view, pixels, moving))
   /** @type {Preview} */
-  const preview = new Preview(find, frames)
+  const preview = new Preview(find, findSource, frames, new Overlay(el))
   const tell = (/** @type {number} */ energy) => document.dispatchEvent(new CustomEvent("energyshown", {detail: energy}))
   const player = new Player(
     energy => {

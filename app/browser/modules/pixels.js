@@ -12,6 +12,7 @@ import {pixelCentres, Starts, unitOf} from "./slice.js"
  * @property {import("./system.js").Slice} slice
  * @property {number} energy
  * @property {import("./slice.js").Window} window
+ * @property {number} most  pixels along a side of the server's map, which a preview does not exceed
  * @property {number} columns
  * @property {number} rows
  * @property {number} horizon  longest time, in units of the well

@@ -23,19 +23,37 @@ import {coversEnergy, windowAt} from "./system.js"
  * @property {boolean} home  whether the window is the default one
  * @property {string[]} colours  of the channels
  * @property {import("./columns.js").Coding} coding
- * @property {number} t_max
+ * @property {number} resolution  pixels along a side of the server's map
  *
  * Models of Bokeh by their names; null for those that are not on the page.
  *
  * @typedef {(name: string) => any} FindModel
  */
 
+/**
+ * Edges that are this close, as a share of the side, are not moved while the energy changes: to paint axes takes longer than to
+ * paint pixels. The default window has more space than that around its interior.
+ */
+const NEAR_EDGE = 0.02
+
+/** @type {(one: import("./slice.js").Window, other: import("./slice.js").Window) => boolean} */
+const isNear = (one, other) => {
+  const near = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ side) =>
+    Math.abs(a - b) <= NEAR_EDGE * side
+  const [width, height] = [other.xHigh - other.xLow, other.ordinateHigh - other.ordinateLow]
+  const nearX = near(one.xLow, other.xLow, width) && near(one.xHigh, other.xHigh, width)
+  return nearX && near(one.ordinateLow, other.ordinateLow, height) && near(one.ordinateHigh, other.ordinateHigh, height)
+}
+
 export class Preview {
   /**
    * @param {FindModel} find
+   * @param {FindModel} findSource  finds a data source of the first picture
    * @param {import("./frames.js").Frames} frames
+   * @param {import("./overlay.js").Overlay} overlay
    */
-  constructor(find, frames) {
+  constructor(find, findSource, frames, overlay) {
+    this.#overlay = overlay
     const ranges = find("basins")
     this.#frames = frames
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
@@ -43,13 +61,14 @@ export class Preview {
     this.#x = new Local(ranges.x_range, ["start", "end"], moved)
     this.#y = new Local(ranges.y_range, ["start", "end"], moved)
     this.#ranges = () => [ranges.x_range, ranges.y_range]
-    this.#limit = new LocalWhenPresent(() => find("zero_velocity_curve"), ["data"])
-    this.#exits = new LocalWhenPresent(() => find("lyapunov_orbits"), ["data"])
-    this.#labels = new LocalWhenPresent(() => find("channel_numbers"), ["data"])
+    this.#limit = new LocalWhenPresent(() => findSource("zero_velocity_curve"), ["data"])
+    this.#exits = new LocalWhenPresent(() => findSource("lyapunov_orbits"), ["data"])
+    this.#labels = new LocalWhenPresent(() => findSource("channel_numbers"), ["data"])
     this.#status = new LocalWhenPresent(findStatus, ["text"])
   }
 
   #frames
+  #overlay
   #maps
   #x
   #y
@@ -67,6 +86,8 @@ export class Preview {
   #view = null
   /** Energy of the slider or of the player, until the server has it. @type {number | null} */
   #energy = null
+  /** Default window at that energy; null for that of the ranges. @type {import("./slice.js").Window | null} */
+  #window = null
   #held = false
   #waiting = false
   /** The preview on the page. @type {import("./pixels.js").View | null} */
@@ -82,14 +103,15 @@ export class Preview {
     this.#system = system
     this.#potential = new Potential(system.terms)
     this.#frames.setSystem(system, module)
-    this.#follow()
+    if (this.#held && this.#energy !== null) this.showEnergy(this.#energy)
+    else this.#follow()
   }
 
   /** @param {ServerView} view */
   setView(view) {
     const other = this.#view && (view.system !== this.#view.system || view.plane !== this.#view.plane)
     this.#view = view
-    if (!this.#held) this.#energy = null
+    if (!this.#held) this.#energy = this.#window = null
     if (other) this.#restore()
   }
 
@@ -103,14 +125,10 @@ export class Preview {
     this.#energy = energy
     const [view, system] = [this.#view, this.#system]
     const isHome = view?.home && view.system === system?.key
-    const window = isHome && system ? windowAt(system.windows[view.plane], energy) : null
-    if (view && sameEnergy(energy, view.energy)) {
-      this.#x.restore()
-      this.#y.restore()
-    } else if (window) {
-      this.#x.show({start: window.xLow, end: window.xHigh})
-      this.#y.show({start: window.ordinateLow, end: window.ordinateHigh})
-    }
+    const returns = view && sameEnergy(energy, view.energy)
+    const home = isHome && system && !returns ? windowAt(system.windows[view.plane], energy) : null
+    if (!home || !isNear(home, this.#present)) this.#window = home
+    if (returns) for (const range of [this.#x, this.#y]) range.restore()
     this.#follow()
   }
 
@@ -121,12 +139,20 @@ export class Preview {
 
   /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Wish | null} */
   get wish() {
-    const [view, system, [x, y]] = [this.#view, this.#system, this.#ranges()]
-    if (!view || !system || view.system !== system.key || !(x.start < x.end && y.start < y.end)) return null
+    const [view, system, window] = [this.#view, this.#system, this.#present]
+    if (!view || !system || view.system !== system.key) return null
+    if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
-    const window = {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
     const highest = view.slice.axes[1] === "h" ? window.ordinateHigh : energy
-    return coversEnergy(system, highest / unitOf(system.units, "h")) ? {slice: view.slice, energy, window} : null
+    return coversEnergy(system, highest / unitOf(system.units, "h"))
+      ? {slice: view.slice, energy, window, most: view.resolution}
+      : null
+  }
+
+  /** The window that is shown, or is about to be. @returns {import("./slice.js").Window} */
+  get #present() {
+    const [x, y] = this.#ranges()
+    return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
   }
 
   /** A range changes: its other end and the pixels from the server may follow at once. */
@@ -157,49 +183,66 @@ export class Preview {
   }
 
   /**
-   * Show the pixels of a preview.
+   * Show the pixels of a preview: in Bokeh's pictures, or over them while the energy moves.
    *
    * @param {import("./pixels.js").View} view
    * @param {import("./pixels.js").Pixels} pixels
+   * @param {boolean} moving  whether the next preview is to follow in the next frame
    */
-  show(view, pixels) {
+  show(view, pixels, moving) {
     const [system, potential, server] = [this.#system, this.#potential, this.#view]
     if (!system || !potential || !server) return
     this.#shown = view
-    this.#maps.show({data: pixelColumns(server.coding, view, pixels, this.#maps.server.data)})
-    this.#limit.show({data: this.#curves.trace(system, potential, view)})
-    if (view.slice.axes.join() === "x,y") this.#showExits(system, view.energy, server.colours)
+    const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data)
+    const limit = this.#curves.trace(system, potential, view)
+    const exits = view.slice.axes.join() === "x,y" ? exitLines(system, view.energy) : []
+    const coloured = exits.map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
+    // Each change of a range repaints all pictures: together with the pixels, or seldom.
+    if (this.#window) {
+      this.#x.show({start: view.window.xLow, end: view.window.xHigh})
+      this.#y.show({start: view.window.ordinateLow, end: view.window.ordinateHigh})
+    }
     this.#status.show({text: `Preview up to t = ${view.horizon * system.units.time}`})
+    if (moving && this.#held) {
+      this.#overlay.show({
+        energy: view.energy,
+        window: view.window,
+        columns,
+        lines: {zero_velocity_curve: limit, lyapunov_orbits: coloured},
+      })
+      return
+    }
+    this.#maps.show({data: columns})
+    this.#limit.show({data: sourceOf(limit)})
+    if (exits.length > 0 || this.#exits.server.data) this.#showExits(coloured)
+    this.#overlay.hide()
   }
 
-  /**
-   * @param {import("./system.js").System} system
-   * @param {number} energy
-   * @param {string[]} colours
-   */
-  #showExits(system, energy, colours) {
-    const lines = exitLines(system, energy)
-    const colour = lines.map(({channel}) => colours[channel - 1])
-    this.#exits.show({data: {xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys), colour}})
+  /** @param {(ReturnType<typeof exitLines>[number] & {colour: string})[]} exits */
+  #showExits(exits) {
+    this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
     // Always as many texts: Bokeh fails when texts with colours of their own become fewer.
-    const labels = this.#labels.server.data ?? {text: []}
+    const labels = this.#labels.server.data ?? {text: [], colour: []}
     const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
       Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
     this.#labels.show({
       data: {
         x: fill(
-          lines.map(({label}) => label[0]),
+          exits.map(({label}) => label[0]),
           NaN,
         ),
         y: fill(
-          lines.map(({label}) => label[1]),
+          exits.map(({label}) => label[1]),
           NaN,
         ),
         text: fill(
-          lines.map(({channel}) => String(channel)),
+          exits.map(({channel}) => String(channel)),
           "",
         ),
-        colour: fill(colour, colours[0]),
+        colour: fill(
+          exits.map(({colour}) => colour),
+          labels.colour[0],
+        ),
       },
     })
   }
@@ -208,9 +251,13 @@ export class Preview {
   #restore() {
     this.#frames.stop()
     this.#shown = null
+    this.#overlay.hide()
     for (const local of [this.#maps, this.#limit, this.#exits, this.#labels, this.#status, this.#x, this.#y]) local.restore()
   }
 }
+
+/** Lines as the columns of a data source of Bokeh. @type {(lines: {xs: number[], ys: number[]}[]) => {xs: number[][], ys: number[][]}} */
+const sourceOf = lines => ({xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys)})
 
 /** The status line, which has no name in the document. */
 const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model
@@ -221,4 +268,4 @@ const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.cs
  * @param {import("./pixels.js").View} view
  * @returns {import("./frames.js").Wish}
  */
-const pick = ({slice, energy, window}) => ({slice, energy, window})
+const pick = ({slice, energy, window, most}) => ({slice, energy, window, most})

@@ -6,7 +6,7 @@
  */
 
 import {crossedExit, findExitTime} from "./exits.js"
-import {CROSSED, FLAGS, PX, PY, SIZE, T, X, Y} from "./integrator.js"
+import {CROSSED, FLAGS, SIZE, T, X, Y} from "./integrator.js"
 import {countUpwardCrossings, seriesValue} from "./series.js"
 
 /**
@@ -155,7 +155,7 @@ class Propagation {
   buffer(i, now, next, channel) {
     const {lanes, integrator} = this
     const k = this.buffered++
-    for (const [row, place] of [X, Y, PX, PY].entries()) integrator.starts[row * lanes + k] = now[place * lanes + i]
+    for (let row = 0; row < 4; row++) integrator.starts[row * lanes + k] = now[(X + row) * lanes + i]
     this.begin[k] = now[T * lanes + i]
     this.size[k] = next[SIZE * lanes + i]
     this.orbit[k] = this.lane_orbit[i]

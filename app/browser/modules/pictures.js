@@ -1,0 +1,66 @@
+// @ts-check
+/** The pictures of the maps on the screen. */
+
+const NAMES = ["curves", "basins", "times", "crossings", "characters", "origins"]
+
+/**
+ * A picture: its view of Bokeh, and the box of its frame on the screen.
+ *
+ * @typedef {{view: any, box: DOMRect}} Frame
+ *
+ * @returns {Frame[]}
+ */
+export function frames() {
+  const views = [...Bokeh.index.all_views()].filter(view => NAMES.includes(view.model.name))
+  views.sort((one, other) => NAMES.indexOf(one.model.name) - NAMES.indexOf(other.model.name))
+  return views.map(withBox).filter(({box}) => box.width > 0)
+}
+
+/** @type {(view: any) => Frame} */
+function withBox(view) {
+  const canvas = view.canvas_view.el.getBoundingClientRect()
+  const {left, top, width, height} = view.frame.bbox
+  // A picture that narrow screens hide has no canvas.
+  return {view, box: new DOMRect(canvas.left + left, canvas.top + top, canvas.width && width, canvas.height && height)}
+}
+
+/**
+ * Make a canvas cover a box on the screen.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {DOMRect} box
+ */
+export function cover(canvas, box) {
+  const ratio = window.devicePixelRatio
+  const [width, height] = [Math.round(box.width * ratio), Math.round(box.height * ratio)]
+  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height})
+  Object.assign(canvas.style, {
+    display: "block",
+    left: `${box.left}px`,
+    top: `${box.top}px`,
+    width: `${box.width}px`,
+    height: `${box.height}px`,
+  })
+  const context = canvas.getContext("2d")
+  context?.setTransform(ratio, 0, 0, ratio, 0, 0)
+  return context
+}
+
+/**
+ * Draw a line given in the coordinates of a window that fills a square or a rectangle.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {import("./slice.js").Window} window
+ * @param {DOMRect} box
+ * @param {{xs: ArrayLike<number>, ys: ArrayLike<number>}} line
+ * @param {string} colour
+ * @param {number} width
+ */
+export function strokeLine(context, {xLow, xHigh, ordinateLow, ordinateHigh}, box, {xs, ys}, colour, width) {
+  const [scaleX, scaleY] = [box.width / (xHigh - xLow), box.height / (ordinateHigh - ordinateLow)]
+  context.strokeStyle = colour
+  context.lineWidth = width
+  context.beginPath()
+  for (let i = 0; i < xs.length; i++) context.lineTo((xs[i] - xLow) * scaleX, (ordinateHigh - ys[i]) * scaleY)
+  context.stroke()
+}

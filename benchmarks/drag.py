@@ -1,0 +1,102 @@
+"""What the browser computes by itself: frames per second and delay of drags, the orbit under the cursor, memory of the page.
+
+Run alone on the machine: uv run python -m benchmarks.drag
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Browser, CDPSession, sync_playwright
+
+from benchmarks.page import CHROMIUM, open_page
+from tests.browser.explorer_page import ExplorerPage
+from tests.browser.served_app import served_app
+
+VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
+SPAN = 0.06
+DRAG_SECONDS = 4.0
+HOVERS = 60
+MEMORY_MINUTES = 3.0
+SCRIPT = Path(__file__).with_name("drag.js")
+
+
+def ready_page(browser: Browser, address: str, case: str, energy: float) -> ExplorerPage:
+    """A page whose browser has the system of the view."""
+    explorer = open_page(browser, address, f"?case={case}&h={energy}&t_max=1000")
+    explorer.page.evaluate(f"async () => {{ {SCRIPT.read_text()}; window.bench = bench }}")
+    explorer.page.evaluate("() => window.bench.ready()")
+    return explorer
+
+
+def drag(explorer: ExplorerPage, energy: float, seconds: float) -> dict[str, Any]:
+    """Drag the slider around an energy."""
+    rail = explorer.page.get_by_role("slider", name="Energy h", exact=True)
+    found: dict[str, Any] = rail.evaluate(
+        "(rail, options) => window.bench.drag(rail, ...options)", [energy - SPAN, energy + SPAN, seconds]
+    )
+    return found
+
+
+def report_drags(browser: Browser, address: str) -> None:
+    """Frames per second, and time from a move of the slider to its pixels."""
+    print("| view | frames per second | ms from move to pixels: median, 95 %, worst | side in pixels: least, median | messages |")
+    print("|---|---|---|---|---|")
+    for case, energy in VIEWS:
+        explorer = ready_page(browser, address, case, energy)
+        drag(explorer, energy, 2.0)
+        found = drag(explorer, energy, DRAG_SECONDS)
+        delays, sides = sorted(found["delays"]), found["sides"]
+        print(
+            f"| {case}, h = {energy} | {len(sides) / DRAG_SECONDS:.0f} | {statistics.median(delays):.0f},"
+            f" {delays[int(0.95 * len(delays))]:.0f}, {delays[-1]:.0f} | {min(sides)}, {statistics.median(sides):.0f} |"
+            f" {found['sent']} |",
+            flush=True,
+        )
+        explorer.page.context.close()
+
+
+def report_hover(browser: Browser, address: str) -> None:
+    """Time that the orbit under the cursor takes, on the thread of the page."""
+    explorer = ready_page(browser, address, "III", 0.45)
+    points = [explorer.point("basins", 0.5 * (2 * k / HOVERS - 1), 0.2) for k in range(HOVERS)]
+    times = explorer.page.evaluate("points => window.bench.hover(points)", points)
+    print(f"\nOrbit under the cursor, III: {statistics.median(times):.1f} ms, at most {max(times):.1f} ms")
+    explorer.page.context.close()
+
+
+def report_memory(browser: Browser, address: str) -> None:
+    """Memory of the page's scripts after minutes of dragging."""
+    explorer = ready_page(browser, address, "III", 0.45)
+    session = explorer.page.context.new_cdp_session(explorer.page)
+    sizes = [heap_megabytes(session)]
+    for _ in range(3):
+        drag(explorer, 0.45, 60.0 * MEMORY_MINUTES / 3)
+        sizes.append(heap_megabytes(session))
+    print(f"\nMemory of scripts, dragging for {MEMORY_MINUTES:g} minutes, MB: {', '.join(f'{size:.1f}' for size in sizes)}")
+    explorer.page.context.close()
+
+
+def heap_megabytes(session: CDPSession) -> float:
+    """Memory in use after a garbage collection."""
+    session.send("HeapProfiler.collectGarbage")
+    usage = session.send("Runtime.getHeapUsage")
+    return float(usage["usedSize"] + usage.get("backingStorageSize", 0)) / 1e6
+
+
+def main(memory: bool) -> None:
+    with tempfile.TemporaryDirectory() as folder, served_app(Path(folder) / "log") as address, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        report_drags(browser, address)
+        report_hover(browser, address)
+        if memory:
+            report_memory(browser, address)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main("--memory" in sys.argv)

@@ -1,0 +1,64 @@
+// @ts-check
+import assert from "node:assert/strict"
+import {test} from "node:test"
+
+import {pixelColumns, showsWish} from "../../../app/browser/modules/columns.js"
+
+class Image {
+  /** @param {ArrayBuffer} buffer @param {[number, number]} shape */
+  constructor(buffer, shape) {
+    this.buffer = buffer
+    this.shape = shape
+  }
+}
+
+const coding = {
+  outcomes: /** @type {[number, number][]} */ ([
+    [-3, 0],
+    [0, 4],
+  ]),
+  first: 5,
+  leastCrossings: [0, 1, 2, 3, 11],
+}
+const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}
+/** @type {import("../../../app/browser/modules/system.js").Slice} */
+const slice = {axes: ["x", "px"], fixed: {y: 0}, decided: "py", sign: 1}
+const wish = {slice, energy: 0.3, window, most: 224}
+const view = {...wish, columns: 3, rows: 1, horizon: 30}
+const like = {fate: [new Image(new ArrayBuffer(1), [1, 1])], escape_time: [new Image(new ArrayBuffer(4), [1, 1])]}
+const pixels = {fate: Int8Array.of(-3, 1, 4), time: Float32Array.of(NaN, 2, 3), crossings: Uint16Array.of(9, 0, 12)}
+
+test("outcomes, channels and classes of crossings have the codes of the server", () => {
+  const columns = pixelColumns(coding, view, pixels, like)
+  assert.deepEqual([...new Uint8Array(columns.fate[0].buffer)], [0, 5, 8])
+  assert.deepEqual([...new Uint8Array(columns.crossing_class[0].buffer)], [0, 5, 9])
+  assert.deepEqual(columns.fate[0].shape, [1, 3])
+  assert.deepEqual([columns.x, columns.y, columns.dw, columns.dh], [[-1], [-2], [2], [4]])
+})
+
+const server = (/** @type {Record<string, any>} */ changes) => ({
+  x: [-1],
+  y: [-2],
+  dw: [2],
+  dh: [4],
+  energy: [0.3],
+  complete: [false],
+  fate: [{shape: [112, 112]}],
+  ...changes,
+})
+
+test("a map of the server replaces a preview with as many pixels", () => {
+  assert.ok(showsWish(server({}), wish, 112))
+  assert.ok(!showsWish(server({}), wish, 224))
+  assert.ok(showsWish(server({complete: [true]}), wish, 224))
+})
+
+test("a map at another energy or of another window does not", () => {
+  assert.ok(!showsWish(server({energy: [0.31]}), wish, 1))
+  assert.ok(!showsWish(server({x: [-1.01]}), wish, 1))
+  assert.ok(!showsWish(server({dw: [1]}), wish, 1))
+})
+
+test("a coarse frame may reach beyond the window", () => {
+  assert.ok(showsWish(server({dw: [2.05]}), wish, 1))
+})

@@ -1,0 +1,107 @@
+// @ts-check
+import assert from "node:assert/strict"
+import {mock, test} from "node:test"
+
+import {Frames, LEAST_SIDE, Picture} from "../../../app/browser/modules/frames.js"
+
+const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}
+/** @type {import("../../../app/browser/modules/system.js").Slice} */
+const slice = {axes: ["x", "px"], fixed: {y: 0}, decided: "py", sign: 1}
+const system = /** @type {any} */ ({mirror: [0, 2, 1]})
+const wish = (/** @type {number} */ energy) => ({slice, energy, window, most: 224})
+const view = {...wish(0.3), columns: 3, rows: 3, horizon: 30}
+
+test("half of a symmetric picture is computed, the other half has the mirror images of the channels", () => {
+  const picture = new Picture(system, view)
+  const parts = picture.deal(2)
+  assert.deepEqual(
+    parts.map(({rows}) => [...rows]),
+    [[0], [1]],
+  )
+  const computed = (/** @type {number[]} */ fate) => ({
+    fate: Int8Array.from(fate),
+    time: Float32Array.of(1, 2, 3),
+    crossings: Uint16Array.of(4, 5, 6),
+  })
+  picture.add(parts[0], computed([1, 2, -1]))
+  picture.add(parts[1], computed([1, -3, 2]))
+  const {fate, time} = picture.finish()
+  assert.deepEqual([...fate], [1, 2, -1, 1, -3, 2, -1, 1, 2])
+  assert.deepEqual([...time.subarray(6)], [3, 2, 1])
+})
+
+test("all of another picture is computed", () => {
+  const picture = new Picture(/** @type {any} */ ({mirror: null}), view)
+  assert.deepEqual(
+    picture.deal(5).map(({rows, columns}) => [rows.length, columns]),
+    [
+      [1, 3],
+      [1, 3],
+      [1, 3],
+    ],
+  )
+})
+
+/** Frames with a pool that answers when it is told to. */
+function startFrames() {
+  /** @type {{view: any, finish: () => void}[]} */
+  const asked = []
+  const pool = /** @type {any} */ ({
+    setSystem: () => {},
+    cancel: mock.fn(),
+    compute: (/** @type {any} */ given, /** @type {any[]} */ parts, /** @type {Function} */ receive) => {
+      const none = {fate: new Int8Array(0), time: new Float32Array(0), crossings: new Uint16Array(0)}
+      asked.push({view: given, finish: () => parts.forEach(part => receive({...part, rows: new Uint32Array(0)}, none))})
+    },
+  })
+  /** @type {any[]} */
+  const shown = []
+  const frames = new Frames(pool, 1, given => shown.push(given))
+  frames.setSystem(system, /** @type {any} */ (null))
+  return {frames, asked, shown, pool}
+}
+
+test("while a picture is computed only the newest wish waits", () => {
+  mock.timers.enable({apis: ["setTimeout"]})
+  const {frames, asked, shown} = startFrames()
+  for (const energy of [0.3, 0.31, 0.32]) frames.want(wish(energy))
+  assert.deepEqual(
+    asked.map(({view: {energy}}) => energy),
+    [0.3],
+  )
+  asked[0].finish()
+  assert.deepEqual(
+    asked.map(({view: {energy}}) => energy),
+    [0.3, 0.32],
+  )
+  assert.equal(shown.length, 1)
+  frames.stop()
+  mock.timers.reset()
+})
+
+test("at rest the picture gets finer and longer, and a new wish replaces that at once", () => {
+  mock.timers.enable({apis: ["setTimeout"]})
+  const {frames, asked} = startFrames()
+  frames.want(wish(0.3))
+  assert.equal(asked[0].view.columns, LEAST_SIDE)
+  asked[0].finish()
+  mock.timers.tick(100)
+  assert.deepEqual([asked[1].view.columns, asked[1].view.horizon], [112, 100])
+  frames.want(wish(0.4))
+  assert.equal(asked[2].view.energy, 0.4)
+  frames.stop()
+  mock.timers.reset()
+})
+
+test("a preview has no more pixels than the map", () => {
+  mock.timers.enable({apis: ["setTimeout"]})
+  const {frames, asked} = startFrames()
+  frames.want({...wish(0.3), most: 112})
+  for (let k = 0; k < 3; k++) {
+    asked[k]?.finish()
+    mock.timers.tick(100)
+  }
+  assert.ok(asked.every(({view: {columns}}) => columns <= 112))
+  frames.stop()
+  mock.timers.reset()
+})

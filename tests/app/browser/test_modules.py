@@ -1,0 +1,15 @@
+"""The JavaScript of the engine in the browser: its own tests, run by Node.js."""
+
+from __future__ import annotations
+
+import subprocess
+
+from tests.node import SCRIPTS, needs_node
+
+
+@needs_node
+def test_the_tests_of_the_modules_pass() -> None:
+    tests = sorted(map(str, SCRIPTS.glob("*.test.js")))
+    done = subprocess.run(["node", "--test", *tests], capture_output=True, text=True, timeout=60, check=False)
+    assert tests
+    assert done.returncode == 0, done.stdout
