@@ -21,9 +21,8 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from engine.taylor.jit.kernel_files import CACHE_VARIABLE
-
 from benchmarks.simulated_sessions import Record, SimulatedSession
+from engine.storage.cache_files import CACHE_VARIABLE
 
 LONGEST_WAIT_SECONDS = 2.0
 """Longest permitted time to the first frame of a map."""

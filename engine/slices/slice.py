@@ -273,7 +273,7 @@ def checked_slice(value: Any) -> Slice:
     """A slice, given as one or by the title or the key of a named one: "(x, px)" or "x_px"."""
     if isinstance(value, Slice):
         return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
-    for plane in Plane:
+    for plane in Plane if isinstance(value, str) else ():
         if value in (plane.title, plane.key):
             return plane
     raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.title for plane in Plane)}")

@@ -53,7 +53,7 @@ def check(parameters: dict[str, str]) -> None:
         result_or_error(state.map_spec, ["energy", "window", "plane", "t_max", "resolution"])
     for start in state.starts:
         spec = result_or_error(partial(state.orbit_job, start), ["energy", "x", "ordinate", "start", "starts"])
-        assert spec is None or len(spec.state) == 4
+        assert spec is None or len(spec.arguments[1]) == 4
     assert open_link(dict(parse_qsl(write_link(state)[1:])))[1] == []
 
 

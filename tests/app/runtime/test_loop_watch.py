@@ -70,7 +70,7 @@ def test_a_slow_turn_is_logged_and_counted(
     monkeypatch.setattr("app.runtime.load_monitor.time", clock)
     watch = LoopWatch(LoadMonitor(), metrics.loop_delays)
     watch.tick()
-    with caplog.at_level(logging.INFO):
+    with caplog.at_level(logging.INFO, "bokeh"):
         clock.now += TICK_SECONDS + late
         watch.tick()
         clock.now += TICK_SECONDS

@@ -30,7 +30,8 @@ def documented() -> list[str]:
 
 
 def test_all_mounted_routes_are_documented(mounted: list[str]) -> None:
-    assert mounted[1:] == documented()
+    # The addresses of modules contain a hash.
+    assert [re.sub(r"/browser/[0-9a-f]+/", "/browser/…/", route) for route in mounted[1:]] == documented()
 
 
 def test_other_routes_are_refused_first(mounted: list[str]) -> None:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import numpy as np
-from app.browser.system_request import BrowserSystemRequest, system_key
-from app.state.system import System
+import threading
 
+import numpy as np
+
+from app.browser.browser_system import make_browser_system, system_key
 from engine import CASES, Plane, default_window
-from engine.service import Jobs
-from tests.engine.jobs.inbox import Inbox
+from engine.service import System
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:
-    jobs, inbox = Jobs(), Inbox()
-    jobs.request(BrowserSystemRequest(CASES["III"], 0.2, 1.0), inbox.result, inbox.error)
-    assert inbox.done.wait(60)
-    table = inbox.results[0].windows[Plane.X_PX.name]
+    system = make_browser_system(CASES["III"], 0.2, 1.0, cancel=threading.Event())
+    table = system.windows[Plane.X_PX.key]
     for energy in (0.3, 0.45, 0.8):
         window = default_window(CASES["III"], Plane.X_PX, energy)
         edge = np.interp(energy, table["energies"], [edges[1] for edges in table["windows"]])
