@@ -13,6 +13,7 @@ from engine import CASES, Plane, start_states
 @pytest.mark.parametrize("plane", Plane)
 def test_a_slice_describes_the_starts_of_its_plane(plane: Plane) -> None:
     slice_, point = describe_slice(plane), (0.1, 0.3)
+    assert slice_ is not None
     state = dict(zip(("x", "y", "px", "py"), start_states(CASES["I"], plane, 0.4, *np.array(point)[:, None])[0], strict=True))
     expected = {**slice_["fixed"], **dict(zip(slice_["axes"], point, strict=True))}
     assert {name: state[name] for name in expected if name != "h"} == {n: v for n, v in expected.items() if n != "h"}
