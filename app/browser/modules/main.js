@@ -22,7 +22,9 @@ const SIMD = Uint8Array.of(
 export function start(model, el) {
   if (!WebAssembly.validate(SIMD)) {
     // Without vectors the last map stays until the next one comes, and there is nothing to play.
-    model.on("command", () => model.command.name === "play" && model.send_msg({energy: model.command.energy}))
+    const refuse = () => model.command.name === "play" && model.send_msg({energy: model.command.energy})
+    model.on("command", refuse)
+    refuse()
     return
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
@@ -74,4 +76,5 @@ export function start(model, el) {
   model.on("command", obey)
   takeView()
   void takeSystem()
+  if (model.command.name === "play") obey()
 }
