@@ -77,4 +77,5 @@ export function start(model, el) {
   takeView()
   void takeSystem()
   if (model.command.name === "play") obey()
+  document.dispatchEvent(new Event("energyasked"))
 }
