@@ -25,6 +25,7 @@ ORBITS = "?case=III&h=0.35&t_max=10000&orbits=0.1,0.2;-0.3,0.02"
 PICTURES: dict[str, tuple[str, Callable[[ExplorerPage], None], bool]] = {
     "maps": ("", lambda explorer: None, False),
     "orbits": (ORBITS, lambda explorer: explorer.wait_for_data("points", "true"), True),
+    "hover": ("?case=III&h=0.35&t_max=1000", lambda explorer: hover_when_ready(explorer), False),
     "layers": ("?case=II&h=0.24&judge=yes&trust=yes&manifolds=yes&origins=yes", lambda explorer: None, True),
     "statistics": ("?case=II&h=0.24&analysis=statistics", lambda explorer: None, True),
     "measures": ("?case=II&h=0.24&analysis=measures", lambda explorer: None, True),
@@ -33,6 +34,12 @@ PICTURES: dict[str, tuple[str, Callable[[ExplorerPage], None], bool]] = {
     "help": ("", lambda explorer: explorer.press("Help"), False),
     "potential": ("", lambda explorer: explorer.press("Other …"), False),
 }
+
+
+def hover_when_ready(explorer: ExplorerPage) -> None:
+    """Show the orbit under the cursor."""
+    explorer.page.wait_for_timeout(4000)
+    explorer.hover("basins", 0.35, 0.2)
 
 
 def take(browser: Browser, address: str, name: str, width: int, theme: str) -> None:
@@ -57,7 +64,9 @@ def main() -> None:
     """Take all pictures."""
     HERE.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, served_app(Path(folder) / "log") as address, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        browser = playwright.chromium.launch(
+            executable_path=shutil.which("chromium") or shutil.which("chromium-headless-shell"), args=["--no-sandbox"]
+        )
         for name in PICTURES:
             for width in SIZES:
                 for theme in THEMES:

@@ -1,9 +1,22 @@
 // @ts-check
-/** Loads the modules, which the server serves as files. */
+/** Loads the modules, which the server serves as files, when the page is at rest after the first pixels. */
+
+/** Longest wait for rest, in ms. */
+const PATIENCE = 2000
 
 /** @param {{model: any, el: HTMLElement}} component */
 export function render({model, el}) {
   el.setAttribute("aria-hidden", "true")
-  const address = new URL(model.address, document.baseURI).href
-  void import(address).then(({start}) => start(model, el))
+  const load = () => void import(new URL(model.address, document.baseURI).href).then(({start}) => start(model, el))
+  // Safari has no requestIdleCallback.
+  const rest = globalThis.requestIdleCallback ?? setTimeout
+  // The server sends a system after the first frame of a map.
+  let loading = false
+  const begin = () => {
+    if (loading || !model.system.key) return
+    loading = true
+    rest(load, {timeout: PATIENCE})
+  }
+  model.on("system", begin)
+  begin()
 }

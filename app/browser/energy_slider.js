@@ -64,7 +64,13 @@ export function render({model, el}) {
   rail.addEventListener("keydown", press)
   const show = (/** @type {Event} */ event) => write(clamped(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyshown", show)
-  model.on("lifecycle:remove", () => document.removeEventListener("energyshown", show))
+  // The engine may be loaded while the slider is held.
+  const answer = () => moved && tell("energydragged", rounded(rail.valueAsNumber))
+  document.addEventListener("energyasked", answer)
+  model.on("lifecycle:remove", () => {
+    document.removeEventListener("energyshown", show)
+    document.removeEventListener("energyasked", answer)
+  })
   model.on(["low", "high", "decimals", "title", "note", "disabled", "energy"], follow)
   follow()
 }

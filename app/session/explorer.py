@@ -307,7 +307,7 @@ class Explorer:
     def _add_start(self, x: float, ordinate: float) -> None:
         """Add a start, or say why not; a forbidden start takes no place."""
         state = self.state
-        if state.orbit_spec((x, ordinate)) is None:
+        if state.orbit_job((x, ordinate)) is None:
             self.notice.show(describe_fate(Fate.FORBIDDEN))
             return
         # The first orbits add figures and buttons: Bokeh searches the models of the page once for all of them.

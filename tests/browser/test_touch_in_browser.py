@@ -116,6 +116,7 @@ def test_a_finger_that_rests_shows_the_orbit_under_it(open_explorer: Callable[..
         touch("touchStart", {"x": float(x), "y": float(y)})
         with suppress(AssertionError):
             expect(card).to_be_visible(timeout=1500)
+        if card.is_visible():
             break
         touch("touchEnd")
     before, label = window(explorer), card.get_attribute("aria-label")

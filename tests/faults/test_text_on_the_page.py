@@ -10,10 +10,10 @@ from html import escape
 
 import panel as pn
 import pytest
-from app.state.system import review_catalogue_entry
 from playwright.sync_api import Browser
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.state.system_review import review_catalogue_entry
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.energy_curves import EnergyCurvesView
 from app.views.analysis.potential_panel import PotentialPanel

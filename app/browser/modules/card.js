@@ -88,10 +88,11 @@ export class Card {
   /** @param {PointerEvent} event */
   #press(event) {
     this.#lift()
-    if (event.pointerType !== "touch" || !this.#viewAt(event)) return
+    const picture = this.#viewAt(event)
+    if (event.pointerType !== "touch" || !picture) return
     const timer = setTimeout(() => {
       this.#pressed = true
-      this.#show(event)
+      this.#show(picture, event)
     }, PRESS_MS)
     this.#finger = {timer, x: event.clientX, y: event.clientY}
   }
@@ -112,7 +113,9 @@ export class Card {
       else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
       if (!this.#pressed) return
     }
-    this.#show(event)
+    // While the energy or the window is dragged with a mouse, the pictures are being watched.
+    const dragged = event.buttons && event.pointerType !== "touch"
+    this.#show(dragged ? undefined : this.#viewAt(event), event)
   }
 
   /**
@@ -125,12 +128,14 @@ export class Card {
     return onMap ? frames().find(({box}) => contains(box, event)) : undefined
   }
 
-  /** @param {PointerEvent} event */
-  #show(event) {
-    const [picture, wish, system, engine] = [this.#viewAt(event), this.#wish(), this.#system, this.#engine]
+  /**
+   * @param {import("./pictures.js").Frame | undefined} picture
+   * @param {PointerEvent} event
+   */
+  #show(picture, event) {
+    const [wish, system, engine] = [this.#wish(), this.#system, this.#engine]
     const place = picture && this.#start(picture, event)
-    // While the energy or the window is dragged, the pictures are being watched.
-    if (!picture || !place || !wish || !system || !engine || (event.buttons && event.pointerType !== "touch")) {
+    if (!picture || !place || !wish || !system || !engine) {
       this.#hide()
       return
     }

@@ -9,38 +9,10 @@ import {Pool, workerCount} from "./pool.js"
 import {Preview} from "./preview.js"
 
 /** The smallest module with an instruction on vectors. */
+// prettier-ignore
 const SIMD = Uint8Array.of(
-  0,
-  97,
-  115,
-  109,
-  1,
-  0,
-  0,
-  0,
-  1,
-  5,
-  1,
-  96,
-  0,
-  1,
-  123,
-  3,
-  2,
-  1,
-  0,
-  10,
-  10,
-  1,
-  8,
-  0,
-  65,
-  0,
-  253,
-  15,
-  253,
-  98,
-  11,
+  0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3,
+  2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11,
 )
 
 /**
@@ -50,7 +22,9 @@ const SIMD = Uint8Array.of(
 export function start(model, el) {
   if (!WebAssembly.validate(SIMD)) {
     // Without vectors the last map stays until the next one comes, and there is nothing to play.
-    model.on("command", () => model.command.name === "play" && model.send_msg({energy: model.command.energy}))
+    const refuse = () => model.command.name === "play" && model.send_msg({energy: model.command.energy})
+    model.on("command", refuse)
+    refuse()
     return
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
@@ -102,4 +76,6 @@ export function start(model, el) {
   model.on("command", obey)
   takeView()
   void takeSystem()
+  if (model.command.name === "play") obey()
+  document.dispatchEvent(new Event("energyasked"))
 }

@@ -18,7 +18,7 @@ import {coversEnergy, windowAt} from "./system.js"
  * @typedef {object} ServerView
  * @property {string} system  key of the system
  * @property {string} plane  name of the slice
- * @property {import("./system.js").Slice} slice
+ * @property {import("./system.js").Slice | null} slice  null for one that only the server knows
  * @property {number} energy
  * @property {boolean} home  whether the window is the default one
  * @property {string[]} colours  of the channels
@@ -140,7 +140,7 @@ export class Preview {
   /** What is to be seen now; null if it cannot be computed here. @returns {import("./frames.js").Wish | null} */
   get wish() {
     const [view, system, window] = [this.#view, this.#system, this.#present]
-    if (!view || !system || view.system !== system.key) return null
+    if (!view?.slice || !system || view.system !== system.key) return null
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
     const highest = view.slice.axes[1] === "h" ? window.ordinateHigh : energy

@@ -120,8 +120,8 @@ class Downloads:
 
     def python_file(self) -> File:
         """A script that computes the map and the orbits."""
-        specs = [self._state.orbit_spec(one.start) for one in self._orbits]
-        states = [spec.state for spec in specs if spec is not None]
+        jobs = [self._state.orbit_job(one.start) for one in self._orbits]
+        states = [job.arguments[1] for job in jobs if job is not None]
         return self._named(".py"), python_lines(self._map().spec, self._state.system, states).encode
 
     def _saving(self, file: Callable[[], File]) -> Callable[[], None]:

@@ -21,6 +21,10 @@ def test_responses_without_nonce_allow_no_inline_script() -> None:
     assert not any("nonce" in source for source in directives(content_policy(()))["script-src"])
 
 
+def test_workers_are_files_of_this_server() -> None:
+    assert directives(content_policy(()))["worker-src"] == ["'self'"]
+
+
 def test_nonces_differ() -> None:
     assert new_nonce() != new_nonce()
 

@@ -22,6 +22,7 @@ from urllib.parse import urlencode
 import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
+from app.browser.module_files import ADDRESS
 from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
 
@@ -116,6 +117,16 @@ def test_responses_have_security_headers(served: Served, path: str) -> None:
     assert headers["Referrer-Policy"]
     assert headers["Permissions-Policy"]
     assert "Server" not in headers
+
+
+def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> None:
+    status, text, headers = served.get(f"/{ADDRESS}")
+    assert (status, headers["Content-Type"].endswith("/javascript")) == (200, True)
+    assert "import" in text
+    assert int(headers["Cache-Control"].partition("max-age=")[2]) > 1e7
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert served.get(f"/{ADDRESS.replace('main', 'nothing')}")[0] == 404
+    assert served.get("/browser/0123456789abcdef/main.js")[0] == 404
 
 
 def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None:
