@@ -66,7 +66,7 @@ def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(exp
     wait_for_preview(explorer, 0.46, least=112)
     window = explorer.window_of_pixels()
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.46, (112, 112), t_max=100.0)
-    np.testing.assert_allclose(window, list(vars(spec.window).values()), rtol=0.05)
+    np.testing.assert_allclose(window, list(vars(spec.find_window()).values()), rtol=0.05)
     explorer.page.mouse.up()
     explorer.wait_for_view("h=0.46&")
     expected = compute_map(spec).fate

@@ -189,7 +189,7 @@ export class Card {
     if (!system || !engine || !context) return
     const box = placeFor(over, pointer)
     const h = energy * unitOf(system.units, "h")
-    const window = windowAt(system.windows.X_Y, h)
+    const window = windowAt(system.windows.x_y, h)
     if (!window) return this.#hide()
     cover(this.#canvas, box)
     context.clearRect(0, 0, box.width, box.height)
