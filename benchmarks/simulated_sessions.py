@@ -242,7 +242,7 @@ class SimulatedSession:
         await asyncio.sleep(DRAG_SECONDS)
         self._await_map("slider", h=repr(stop))
         self._open_channel.emit(
-            "data_event", model={"id": self._models["energy"]}, data={"type": "map", "entries": [["energy", stop]]}
+            "data_event", model={"id": self._models["EnergySlider"]}, data={"type": "map", "entries": [["energy", stop]]}
         )
 
     async def _act_case(self) -> None:
