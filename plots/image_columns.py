@@ -40,7 +40,7 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
         "dh": [window.ordinate_high - window.ordinate_low],
-        "energy": [np.nan if isinstance(frame.spec.energy, tuple) else frame.spec.energy],
+        "energy": [np.nan if frame.spec.common_energy is None else frame.spec.common_energy],
         "complete": [frame.complete],
     }
 
