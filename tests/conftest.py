@@ -12,6 +12,8 @@ import pytest
 from hypothesis import settings
 from playwright.sync_api import Browser, Playwright, expect, sync_playwright
 
+from engine.service import compiled_operations
+
 # All processes of a run import the same modules. Without bytecode files each compiles them anew, which takes 9 s.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
@@ -30,6 +32,13 @@ settings.load_profile("random" if os.environ.get("CI") else "fixed")
 def pytest_collection_finish() -> None:
     """Spare garbage collections the imported modules, which stay until the end."""
     gc.freeze()
+
+
+@pytest.fixture(autouse=True)
+def _unlimited_compiled_code() -> Iterator[None]:
+    """The limit of a server state that a test makes is not that of the tests after it."""
+    yield
+    compiled_operations.most = None
 
 
 @pytest.fixture(scope="session")
