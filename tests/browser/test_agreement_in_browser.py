@@ -64,7 +64,9 @@ def test_buttons_are_enabled_shortly_after_their_orbits_were_cleared(explorer: E
     explorer.click("basins", 0.1, 0.05)
     expect(explorer.button("Clear all")).to_be_enabled()
     explorer.press("Clear all")
-    explorer.click("basins", 0.1, 0.05)
+    explorer.click("basins", -0.1, 0.05)
+    # Until then the buttons are those of the first orbit.
+    explorer.page.wait_for_url(re.compile("orbits=-0"))
     expect(explorer.button("Next frame")).to_be_enabled()
     explorer.press("Clear all")
     expect(explorer.button("Next frame")).to_be_hidden()
