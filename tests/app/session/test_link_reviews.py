@@ -89,6 +89,10 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
                 await check(built[0])
         finally:
             built[0].close()
+            # Callbacks under way must end before the loop does.
+            under_way = asyncio.all_tasks() - {asyncio.current_task()}
+            if under_way:
+                await asyncio.wait(under_way, timeout=10.0)
         return threading.get_ident()
 
     return run_on_new_loop(run)
