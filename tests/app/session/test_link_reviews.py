@@ -92,7 +92,7 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
             # Callbacks under way must end before the loop does.
             under_way = asyncio.all_tasks() - {asyncio.current_task()}
             if under_way:
-                await asyncio.wait(under_way, timeout=10.0)
+                await asyncio.wait(under_way, timeout=1.0)
         return threading.get_ident()
 
     return run_on_new_loop(run)
