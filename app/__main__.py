@@ -8,9 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.runtime.settings import Settings, read_settings
-
-INVALID_SETTING = 2
-"""Exit code."""
+from app.server.start_checks import INVALID_SETTING
 
 
 def serve(options: Sequence[str]) -> None:

@@ -6,6 +6,8 @@ import logging
 
 log = logging.getLogger(__name__)
 
+WINDOW_UNKNOWN = "The window is not known before the integrator is compiled."
+
 
 def sentence(error: Exception) -> str:
     """Message of a ValueError, which is written for users; for other errors a reference to the log, where they are logged."""

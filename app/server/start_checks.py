@@ -8,7 +8,8 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-_INVALID_ARGUMENTS = 2
+INVALID_SETTING = 2
+"""Exit code."""
 
 SEVERAL_PROCESSES = (
     "--num-procs: must be 1, as requests of a page could reach a process without its session; "
@@ -21,7 +22,7 @@ def refuse_to_start(sentence: str) -> NoReturn:
     sys.stderr.write(f"{sentence}\n")
     sys.stderr.flush()
     # SystemExit would first run the hooks of a server that has not started.
-    os._exit(_INVALID_ARGUMENTS)
+    os._exit(INVALID_SETTING)
 
 
 def asks_for_several_processes(arguments: Sequence[str]) -> bool:

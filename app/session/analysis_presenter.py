@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import panel as pn
 
+from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
@@ -214,7 +215,7 @@ class AnalysisPresenter:
 
     def _measure(self) -> None:
         if not is_ready_for_maps(self._state.potential):
-            self.measures.say("The window is not known before the integrator is compiled.")
+            self.measures.say(WINDOW_UNKNOWN)
             return
         self.measures.wait_for_exponent()
         self._exponent.submit(Job(compute_uncertainty_exponent, (self._state.map_spec(),)))

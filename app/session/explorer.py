@@ -13,6 +13,7 @@ import panel as pn
 from app.browser.browser_system import make_browser_system
 from app.browser.engine_component import BrowserEngine
 from app.browser.views import describe_view
+from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.map_requests import MapRequests
 from app.job_clients.orbit_requests import ChosenOrbit
@@ -358,7 +359,7 @@ class Explorer:
     def _window(self) -> Window:
         """The window in view; ValueError while it is not known, as the event loop must not compile the kernels that find it."""
         if self.state.window is None and not is_ready_for_maps(self.state.potential):
-            raise ValueError("The window is not known before the integrator is compiled.")
+            raise ValueError(WINDOW_UNKNOWN)
         return self.state.map_spec().find_window()
 
     def _escape(self) -> None:

@@ -20,11 +20,7 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine.service import (
-    SECTION,
-    IndicatorVerdict,
-    JobSubmitter,
-)
+from engine.service import SECTION, IndicatorVerdict, JobSubmitter
 from plots.orbit_curves import OrbitCurves, restrict_curves
 from plots.palette import Palette
 

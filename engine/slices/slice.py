@@ -163,21 +163,7 @@ class Slice:
         return energy if self.energy_axis is None else (x, ordinate)[self.energy_axis]
 
     def states(self, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
-        """The starts of points of the slice.
-
-        Parameters
-        ----------
-        potential
-            The potential.
-        energy
-            h, a number or (n,); ignored on a slice with an axis h.
-        x, ordinate
-            (n,) coordinates on the slice.
-
-        Returns
-        -------
-        (n, 4) x, y, px, py; the momentum that the energy decides is NaN where the start is forbidden.
-        """
+        """(n, 4) the starts of points of the slice; parameters as in `start_states`."""
         state = self._coordinates(x, ordinate)
         (other,) = (state[momentum] for momentum in _MOMENTA if momentum is not self.solved)
         with np.errstate(over="ignore", invalid="ignore"):

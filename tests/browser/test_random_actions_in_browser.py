@@ -11,6 +11,7 @@ from urllib.parse import parse_qsl, urlsplit
 
 import pytest
 from playwright.sync_api import TimeoutError as Late
+from playwright.sync_api import expect
 
 from app.state.presets import PRESETS
 from app.state.view_state import Analysis, ViewState
@@ -187,6 +188,8 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
         explorer.press("Gallery")
         page.get_by_role("button", name=preset.title).first.click()
         explorer.press("Close")
+        # Pressed while the drawer is still open, its button would close it again.
+        expect(explorer.button("Close")).to_be_hidden()
 
     def type_energy() -> None:
         if page.get_by_label("Exact h", exact=True).is_enabled():

@@ -10,6 +10,8 @@
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
  */
 
+import {energyAxis} from "./slice.js"
+
 /**
  * The columns of the pictures' data source for the pixels of a view, as the server makes them of a map.
  *
@@ -73,7 +75,7 @@ export const sameEnergy = (one, other) => Math.abs(one - other) <= SAME_ENERGY *
 export function showsWish({x, y, dw, dh, energy, fate, complete}, {window, energy: wanted, slice}, rows) {
   const near = (/** @type {number} */ low, /** @type {number} */ size, /** @type {number} */ from, /** @type {number} */ to) =>
     Math.abs(low - from) <= SAME_EDGE * (to - from) && size >= (1 - SAME_EDGE) * (to - from) && size <= WIDEST * (to - from)
-  const ofEnergy = slice.axes[1] === "h" || sameEnergy(energy[0], wanted)
+  const ofEnergy = energyAxis(slice) >= 0 || sameEnergy(energy[0], wanted)
   const sameWindow = near(x[0], dw[0], window.xLow, window.xHigh) && near(y[0], dh[0], window.ordinateLow, window.ordinateHigh)
   return ofEnergy && sameWindow && (complete[0] || fate[0].shape[0] >= rows)
 }

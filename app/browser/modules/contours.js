@@ -69,12 +69,8 @@ function joinCell(values, level, corner, join) {
   if (inside.every(Boolean) || !inside.some(Boolean)) return
   const sides = [2 * corner, 2 * (corner + 1) + 1, 2 * (corner + SAMPLES), 2 * corner + 1]
   const crossed = sides.filter((_, k) => inside[k] !== inside[(k + 1) % 4])
-  if (crossed.length === 2) join(crossed[0], crossed[1])
-  else {
-    // Two lines pass a saddle.
-    join(crossed[0], crossed[1])
-    join(crossed[2], crossed[3])
-  }
+  // Two lines pass a saddle.
+  for (let k = 0; k < crossed.length; k += 2) join(crossed[k], crossed[k + 1])
 }
 
 /**

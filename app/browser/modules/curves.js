@@ -3,7 +3,7 @@
 
 import {exitCurves, exitPoint} from "./exits.js"
 import {sampleGrid, levelLines} from "./contours.js"
-import {Starts, unitOf} from "./slice.js"
+import {energyAxis, Starts, unitOf} from "./slice.js"
 
 /** Points along an exit. */
 const EXIT_POINTS = 41
@@ -29,7 +29,7 @@ export class LimitingCurves {
       this.#grid = sampleGrid(window, (x, ordinate) => starts.requiredEnergy(x / unitX, ordinate / unitOrdinate))
       this.#key = key
     }
-    return levelLines(this.#grid, slice.axes[1] === "h" ? 0 : energy / unitOf(system.units, "h"))
+    return levelLines(this.#grid, energyAxis(slice) >= 0 ? 0 : energy / unitOf(system.units, "h"))
   }
 }
 

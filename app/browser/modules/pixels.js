@@ -3,7 +3,7 @@
 
 import {exitCurves} from "./exits.js"
 import {propagate} from "./propagate.js"
-import {pixelCentres, Starts, unitOf} from "./slice.js"
+import {energyAxis, pixelCentres, Starts, unitOf} from "./slice.js"
 
 /**
  * What a picture shows: a part of a slice at an energy, in units of the page.
@@ -72,18 +72,24 @@ export function computePixels(integrator, interior, potential, view, part) {
     time: new Float64Array(count).fill(NaN),
     crossings: new Uint16Array(count),
   }
-  // One set of exits, or one for each row.
-  const ofRows = slice.axes[1] === "h" ? Array.from(part.rows, row => exitCurves(system.exits, ordinate[row])) : null
-  const ofView = exitCurves(system.exits, energy)
+  // The exits of the only energy, or of each along an axis.
+  const axis = energyAxis(slice)
+  const energies = [x.subarray(0, part.columns), Array.from(part.rows, row => ordinate[row])][axis] ?? [energy]
+  const exits = Array.from(energies, each => exitCurves(system.exits, each))
+  const places = [
+    (/** @type {number} */ orbit) => orbit % part.columns,
+    (/** @type {number} */ orbit) => Math.floor(orbit / part.columns),
+  ]
+  const place = places[axis] ?? (() => 0)
+  const exitsOf = (/** @type {number} */ orbit) => exits[place(orbit)]
   const starts = new Starts(slice, potential, energy)
   const {found} = starts
   let todo = 0
   let orbit = 0
-  part.rows.forEach((row, place) => {
-    const exits = ofRows ? ofRows[place] : ofView
+  part.rows.forEach(row => {
     for (let column = 0; column < part.columns; column++, orbit++) {
       if (!starts.find(x[column], ordinate[row])) orbits.fate[orbit] = fates.forbidden
-      else if (interior.isOutside(exits, found.h, found.x, found.y)) orbits.fate[orbit] = fates.outside
+      else if (interior.isOutside(exitsOf(orbit), found.h, found.x, found.y)) orbits.fate[orbit] = fates.outside
       else {
         orbits.state[4 * orbit] = found.x
         orbits.state[4 * orbit + 1] = found.y
@@ -94,8 +100,7 @@ export function computePixels(integrator, interior, potential, view, part) {
     }
   })
   orbits.todo = orbits.todo.subarray(0, todo)
-  const exits = ofRows ? (/** @type {number} */ orbit) => ofRows[Math.floor(orbit / part.columns)] : () => ofView
-  propagate(integrator, {...orbits, exits}, view.horizon, toleranceFor(system, view), gatesOf(ofRows ?? [ofView]))
+  propagate(integrator, {...orbits, exits: exitsOf}, view.horizon, toleranceFor(system, view), gatesOf(exits))
   return {
     fate: orbits.fate,
     time: Float32Array.from(orbits.time, time => time * system.units.time),

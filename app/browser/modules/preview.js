@@ -8,7 +8,7 @@ import {pixelColumns, sameEnergy, showsWish} from "./columns.js"
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Local, LocalWhenPresent} from "./local.js"
 import {Potential} from "./potential.js"
-import {unitOf} from "./slice.js"
+import {energyAxis, unitOf} from "./slice.js"
 import {LEAST_SIDE} from "./frames.js"
 import {coversEnergy, windowAt} from "./system.js"
 
@@ -143,7 +143,7 @@ export class Preview {
     if (!view?.slice || !system || view.system !== system.key) return null
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
-    const highest = view.slice.axes[1] === "h" ? window.ordinateHigh : energy
+    const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
     return coversEnergy(system, highest / unitOf(system.units, "h"))
       ? {slice: view.slice, energy, window, most: view.resolution}
       : null

@@ -36,6 +36,13 @@ export function pixelCentres(low, high, count) {
   return Float64Array.from({length: count}, (_, i) => 0.5 * (low + high) + (high - low) * ((2 * i + 1 - count) / (2 * count)))
 }
 
+/**
+ * The axis along which the energy differs: 0 for the abscissa, 1 for the ordinate, -1 for neither.
+ *
+ * @param {Pick<import("./system.js").Slice, "axes">} slice
+ */
+export const energyAxis = ({axes}) => axes.indexOf("h")
+
 /** The starts of the points of a slice. */
 export class Starts {
   /**
@@ -78,7 +85,7 @@ export class Starts {
    */
   requiredEnergy(abscissa, ordinate) {
     this.#place(abscissa, ordinate)
-    return this.#restEnergy() - (this.#axes[1] === "h" ? ordinate : 0)
+    return this.#restEnergy() - ([abscissa, ordinate][energyAxis({axes: this.#axes})] ?? 0)
   }
 
   /**

@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import EscapeMap, Fate, MapSpec, Plane, Trust, Window, compute_map, compute_trust, default_window
+from engine import Coordinate, EscapeMap, Fate, MapSpec, Plane, Slice, Trust, Window, compute_map, compute_trust, default_window
 from engine.service import TYPED, System, make_portable_system
 from tests.node import needs_node, run_node
 
 SYSTEMS = (System("I"), System("II"), System("III"), System("C5"), System(TYPED, "½(x² + y²) − x²y² − x³/4"))
+SLICES = (*Plane, Slice(Coordinate.H, Coordinate.X), Slice(Coordinate.PX, Coordinate.Y, fixed=((Coordinate.X, 0.05),)))
 # Powers of ten.
 ZOOMS = (0, 2, 5, 9)
 SIDE, COARSE, HORIZON = 30, 10, 30.0
@@ -27,7 +28,7 @@ def random_specs(number: int) -> Iterator[MapSpec]:
     chance, system = np.random.default_rng(number), SYSTEMS[number]
     energies, potential = system.energies, system.potential
     for zooms in ZOOMS:
-        plane = list(Plane)[chance.integers(len(Plane))]
+        plane = SLICES[chance.integers(len(SLICES))]
         highest = potential.escape_energy + 0.9 * (energies.high - potential.escape_energy)
         ends = potential.escape_energy, highest
         energy = ends if plane.energy_axis is not None else chance.uniform(*ends)
