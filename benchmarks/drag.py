@@ -1,12 +1,12 @@
 """What the browser computes by itself: frames per second and delay of drags, the orbit under the cursor, memory of the page.
 
-Run alone on the machine: uv run python -m benchmarks.drag
+Run alone on the machine: uv run python -m benchmarks.drag --memory 10
 """
 
 from __future__ import annotations
 
+import argparse
 import statistics
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ VIEWS = (("I", 0.19), ("III", 0.45), ("III", 0.30))
 SPAN = 0.06
 DRAG_SECONDS = 4.0
 HOVERS = 60
-MEMORY_MINUTES = 3.0
+MEMORY_SAMPLES = 5
 SCRIPT = Path(__file__).with_name("drag.js")
 
 
@@ -69,15 +69,15 @@ def report_hover(browser: Browser, address: str) -> None:
     explorer.page.context.close()
 
 
-def report_memory(browser: Browser, address: str) -> None:
+def report_memory(browser: Browser, address: str, minutes: float) -> None:
     """Memory of the page's scripts after minutes of dragging."""
     explorer = ready_page(browser, address, "III", 0.45)
     session = explorer.page.context.new_cdp_session(explorer.page)
     sizes = [heap_megabytes(session)]
-    for _ in range(3):
-        drag(explorer, 0.45, 60.0 * MEMORY_MINUTES / 3)
+    for _ in range(MEMORY_SAMPLES):
+        drag(explorer, 0.45, 60.0 * minutes / MEMORY_SAMPLES)
         sizes.append(heap_megabytes(session))
-    print(f"\nMemory of scripts, dragging for {MEMORY_MINUTES:g} minutes, MB: {', '.join(f'{size:.1f}' for size in sizes)}")
+    print(f"\nMemory of scripts, dragging for {minutes:g} minutes, MB: {', '.join(f'{size:.1f}' for size in sizes)}")
     explorer.page.context.close()
 
 
@@ -88,15 +88,18 @@ def heap_megabytes(session: CDPSession) -> float:
     return float(usage["usedSize"] + usage.get("backingStorageSize", 0)) / 1e6
 
 
-def main(memory: bool) -> None:
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--memory", type=float, default=0.0, metavar="MINUTES", help="drag for as long, and measure the memory")
+    minutes = parser.parse_args().memory
     with tempfile.TemporaryDirectory() as folder, served_app(Path(folder) / "log") as address, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         report_drags(browser, address)
         report_hover(browser, address)
-        if memory:
-            report_memory(browser, address)
+        if minutes:
+            report_memory(browser, address, minutes)
         browser.close()
 
 
 if __name__ == "__main__":
-    main("--memory" in sys.argv)
+    main()
