@@ -1,6 +1,6 @@
 """Load test: simulated sessions drag the energy slider for minutes; waiting times, processor time, memory and remaining sessions.
 
-Run: ESCAPE_EXPLORER_ONLY_IDLE=yes uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 300
+Run: uv run python -m benchmarks.load --processes 2 --sessions 50 --seconds 300
 """
 
 from __future__ import annotations

@@ -14,7 +14,8 @@ import numpy as np
 
 # Smallest part of an index array that is worth a task.
 _LEAST_PART = 1000
-# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread.
+# Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. With idle priority
+# they could be stopped by another program while they hold the interpreter lock, for which all other threads would wait.
 _NICE_VALUE = 10
 
 
@@ -31,32 +32,15 @@ def default_executor() -> ThreadPoolExecutor:
     return create_thread_pool(count_cores())
 
 
-def create_thread_pool(threads: int, *, idle_priority: bool = False) -> ThreadPoolExecutor:
-    """A thread pool for kernels, of lower priority than the threads of this process that serve requests.
-
-    Parameters
-    ----------
-    threads
-        Number of threads, at least 1.
-    idle_priority
-        Linux only: run the threads only while a core is otherwise idle (``SCHED_IDLE``). Requests are then never delayed by a
-        computation, but any other program that keeps all cores busy stops the computations. By default the threads have nice
-        value 10, which gives them at least a tenth of a core.
-    """
-    initializer = _set_idle_priority if idle_priority else _lower_priority
-    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=initializer)
+def create_thread_pool(threads: int) -> ThreadPoolExecutor:
+    """A thread pool for kernels, of lower priority than the threads of this process that serve requests."""
+    return ThreadPoolExecutor(threads, thread_name_prefix="orbits", initializer=_lower_priority)
 
 
 def _lower_priority() -> None:
     """Raise the nice value of the calling thread; on other systems than Linux it belongs to the whole process."""
     if sys.platform == "linux":
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE_VALUE)
-
-
-def _set_idle_priority() -> None:
-    """Schedule the calling thread only on idle cores."""
-    if sys.platform == "linux":
-        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
 
 
 def count_workers(executor: Executor) -> int:

@@ -70,7 +70,6 @@ class ProcessState:
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,
             threads=self.settings.threads,
-            idle_priority=self.settings.only_idle,
         )
 
     def fair_share(self, document: Document) -> FairShare:

@@ -90,9 +90,6 @@ class Settings:
         Resident memory above which the server reports that it is not ready, in bytes; 0 for no limit.
     threads
         Number of compute threads; by default the number of cores available to the process.
-    only_idle
-        Whether compute threads have idle priority (Linux). Requests are then never delayed by a computation, but
-        another program that occupies all processors stops all computations.
     log
         Format of the log.
     longest_delay
@@ -119,7 +116,6 @@ class Settings:
     cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
-    only_idle: bool = _setting(False, _YES_OR_NO)
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
     longest_delay: float = _setting(0.5, _number(0.05, 3600.0))
     session_seconds: int = _setting(60, _integer(1, 86_400))

@@ -69,7 +69,7 @@ class OrbitBatch:
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
         states = np.full((n, 4), np.nan)
-        return cls(states, np.zeros(n), counts[0], counts[1], fate, curve_row.astype(np.int64), codes[0], codes[1])
+        return cls(states, np.zeros(n), counts[0], counts[1], fate, curve_row, codes[0], codes[1])
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
@@ -82,6 +82,13 @@ class OrbitBatch:
         """Set the states (m, 4) of the orbits `which` (m,) at t = 0; those with a non-finite state are forbidden."""
         self.state[which] = states
         self.fate[which[~np.isfinite(states).all(axis=1)]] = Fate.FORBIDDEN
+
+    def set_outcomes(
+        self, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outside: np.ndarray, certificate: np.ndarray
+    ) -> None:
+        """Set the outcomes (n,) of all orbits without their states."""
+        self.fate[:], self.crossings[:], self.outside[:], self.certificate[:] = fate, crossings, outside, certificate
+        self.t[:] = np.where(fate > 0, escape_time, 0.0)
 
     def mark_outside(
         self,
@@ -145,10 +152,6 @@ class OrbitBatch:
     def nbytes(self) -> int:
         """Total size of the arrays in bytes."""
         return sum(getattr(self, field.name).nbytes for field in fields(self))
-
-    def copy(self) -> OrbitBatch:
-        """A deep copy."""
-        return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
 
     def take(self, which: np.ndarray) -> OrbitBatch:
         """A copy of the orbits `which` (indices)."""

@@ -75,8 +75,6 @@ class Jobs:
         Most orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
         Size of a thread pool of its own; None for the default pool of this process.
-    idle_priority
-        Whether that pool of its own runs on idle cores only; see `engine.execution.create_thread_pool`.
     """
 
     def __init__(
@@ -85,12 +83,11 @@ class Jobs:
         cache_bytes: int = DEFAULT_CACHE_BYTES,
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
-        idle_priority: bool = False,
     ) -> None:
         self._executor = executor
-        self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads, idle_priority=idle_priority))
+        self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads))
         # Numba compiles one function at a time: more threads would only wait for each other, and orbits for all of them.
-        self._compilations = FairScheduler(create_thread_pool(1, idle_priority=idle_priority))
+        self._compilations = FairScheduler(create_thread_pool(1))
         self._semaphore = OrbitSemaphore(most_orbits)
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")

@@ -58,7 +58,7 @@ class EscapeMap(MapResult):
     started
         bool, the pixels whose orbits have been started.
     batch
-        Integration state for ``resume``, in units of the well; None in frames.
+        State of the orbits `continued_pixels` for ``resume``, in units of the well; None in frames.
     trust
         (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
 
@@ -101,6 +101,12 @@ class EscapeMap(MapResult):
     def interior(self) -> np.ndarray:
         """(rows, columns) bool, the pixels that are neither forbidden nor outside."""
         return find_interior(self.fate)
+
+    @property
+    def continued_pixels(self) -> np.ndarray:
+        """(n,) the pixels, numbered row by row, whose outcome a larger t_max can change."""
+        undecided = (self.fate == Fate.NOT_COMPUTED) | (self.certificate == Certificate.INTEGRATED)
+        return np.flatnonzero(self.started & undecided)
 
     @property
     def undecided(self) -> float:

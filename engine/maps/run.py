@@ -88,12 +88,25 @@ class MapRun:
         self._curve_row = spec.plane.energy_groups(*self.shape)
         self._curves = np.repeat(closed_channel_curves(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
-        if resume is None:
-            self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
-        else:
-            assert resume.batch is not None
-            self._batch, self._started = resume.batch.copy(), resume.started.ravel().copy()
-            self._batch.reopen_bounded()
+        self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
+        # Of orbits that an earlier map has finished, whose states are not kept; NaN for all others.
+        self._earlier_errors = np.full(self._curve_row.size, np.nan)
+        if resume is not None:
+            self._continue(resume)
+
+    def _continue(self, earlier: EscapeMap) -> None:
+        """Take over the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
+        assert earlier.batch is not None
+        continued, outcomes = earlier.continued_pixels, earlier.in_well_units()
+        self._started = earlier.started.ravel().copy()
+        self._earlier_errors = earlier.energy_error.ravel().copy()
+        self._earlier_errors[continued] = np.nan
+        self._batch.set_outcomes(
+            outcomes.fate.ravel(), outcomes.escape_time.ravel(), outcomes.crossings.ravel(),
+            outcomes.outside.ravel(), outcomes.certificate.ravel(),
+        )  # fmt: skip
+        self._batch.put(continued, earlier.batch)
+        self._batch.reopen_bounded()
 
     def run(
         self,
@@ -182,7 +195,8 @@ class MapRun:
 
     def result(self) -> EscapeMap:
         """The map so far, with the integration state for a later `resume`."""
-        return replace(self.frame(), batch=self._batch)
+        frame = self.frame()
+        return replace(frame, batch=self._batch.take(frame.continued_pixels))
 
     def frame(self) -> EscapeMap:
         """The map so far."""
@@ -207,7 +221,9 @@ class MapRun:
         if firsts.size:
             self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.mirror_channels)
             self._started[seconds[firsts]] = True
-        return collect_outcomes(self.spec.potential, self._energy, self._batch)
+        outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
+        errors = np.where(np.isnan(self._earlier_errors), outcomes.energy_error, self._earlier_errors)
+        return replace(outcomes, energy_error=errors)
 
     def progress(self) -> float:
         """Share of the work done: the time covered, as a share of t_max, averaged over the interior pixels."""

@@ -19,12 +19,12 @@ def test_variables_are_read() -> None:
             "ESCAPE_EXPLORER_LONGEST_T_MAX": "1e5",
             "ESCAPE_EXPLORER_MOST_SESSIONS": "3",
             "ESCAPE_EXPLORER_LOG": "json",
-            "ESCAPE_EXPLORER_ONLY_IDLE": "Yes",
+            "ESCAPE_EXPLORER_BOKEH_PATCHES": "No",
             "ESCAPE_EXPLORER_FRAME_ANCESTORS": "https://a.example",
         }
     )
     assert (settings.longest_t_max, settings.most_sessions, settings.log) == (1e5, 3, LogFormat.JSON)
-    assert settings.only_idle is True
+    assert settings.bokeh_patches is False
     assert settings.frame_ancestors == ("https://a.example",)
 
 
@@ -37,7 +37,6 @@ def test_variables_are_read() -> None:
         ("cache_bytes", "1e9"),
         ("threads", "two"),
         ("log", "xml"),
-        ("only_idle", "1"),
         ("frame_ancestors", "https://a.example; script-src *"),
         ("bokeh_patches", "maybe"),
     ],

@@ -327,6 +327,14 @@ def test_resuming_with_larger_t_max_equals_a_single_run(spec: MapSpec, first: fl
     assert_bit_identical(compute_map(spec, resume=short), compute_map(spec))
 
 
+def test_only_states_that_a_larger_t_max_can_change_are_kept() -> None:
+    escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.35, (20, 20), t_max=30.0))
+    assert escapes.batch is not None
+    bounded = np.isfinite(escapes.batch.state).all(axis=1) & (escapes.batch.fate == Fate.BOUNDED)
+    assert bounded.all()
+    assert bounded.size == np.sum(escapes.fate == Fate.BOUNDED) > 0
+
+
 def test_resuming_does_not_change_the_earlier_map() -> None:
     short = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.35, (20, 20), t_max=30.0))
     before = short.fate.copy(), short.batch.t.copy() if short.batch else None
