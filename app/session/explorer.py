@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
-from urllib.parse import parse_qsl
 
 import panel as pn
 
@@ -21,14 +20,12 @@ from app.runtime.disconnects import on_disconnect
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
 from app.session.analysis_presenter import AnalysisPresenter
+from app.session.link_presenter import LinkPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.state.history import History
 from app.state.navigation import window_moves
-from app.state.permalink import LINKED, fit_to_system, linked_system, read_link, refused_link, without_system, write_link
 from app.state.presets import Preset
-from app.state.system_review import SystemReview, is_known, review_catalogue_entry
-from app.state.view_state import SYSTEM, Analysis, ViewState
+from app.state.view_state import SYSTEM, Analysis
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.analysis_choice import AnalysisTabs
 from app.views.components.collapsible_section import Drawers, Stack
@@ -56,10 +53,10 @@ class Explorer:
         document = pn.state.curdoc
         assert document is not None, "an Explorer belongs to a session: start it with 'panel serve app'"
         parameters = _parameters()
-        self._link, self._problems = read_link(parameters)
+        self.links = LinkPresenter(document, parameters)
+        self.state = self.links.state
         # A tour over a shared view would hide it.
         self._offers_tour = not parameters
-        self.state = self._first_state()
         self._document = document
         self._countdown: Any = None
         callbacks = SessionCallbacks(document)
@@ -89,16 +86,14 @@ class Explorer:
         )
         self.progress = ProgressView(self._locked(self.map_requests.stop_map), self._locked(self.map_requests.request_map))
         self._requested_at: float | None = None
-        self._navigating = False
         self._connect()
         pn.state.on_session_destroyed(self.close)
-        pn.state.onload(self._begin)
+        pn.state.onload(lambda: self.links.begin(self._begin_view))
 
     def _make_views(self) -> None:
         state, locked = self.state, self._locked
-        self.history = History()
         self.maps = MapsView(
-            locked(self._add_start), locked(self._zoom_to), locked(self.history.end_gesture), locked(self._count_in)
+            locked(self._add_start), locked(self._zoom_to), locked(self.links.history.end_gesture), locked(self._count_in)
         )
         self.toolbar = MapToolbar(
             lambda: self.browser.go_back(),
@@ -111,7 +106,7 @@ class Explorer:
         self.browser = BrowserEvents(
             BrowserActions(
                 key=locked(self._press),
-                navigate=locked(self._navigate),
+                navigate=locked(self.links.navigate),
                 dark=locked(self.set_dark),
                 touch=locked(self._begin_touch),
                 first_visit=locked(self._welcome),
@@ -144,10 +139,9 @@ class Explorer:
         watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
         watch(lambda event: self._show_box(event.new), "box")
         watch(lambda event: self._show_analysis(), "analysis")
-        watch(self._write_link, list(LINKED))
+        self.links.connect(self.potential, self.browser, self.toolbar, self.progress, self.notice)
         self._set_palette()
         self.maps.lock_times(state.lock_times)
-        self._follow_history()
         self._show_analysis()
         self._show_box(state.box)
 
@@ -164,83 +158,10 @@ class Explorer:
             self.maps.set_dark(dark)
             self.orbits.plots.outlines.set_dark(dark)
 
-    def _first_state(self) -> ViewState:
-        """The view of the link, with the first system in place of one that must be reviewed."""
-        system = linked_system(self._link)
-        if not is_known(system):
-            return ViewState(**without_system(self._link))
-        fitting, problems = fit_to_system(self._link, review_catalogue_entry(system.case))
-        self._problems += problems
-        return ViewState(case=system.case, **fitting)
-
-    def _begin(self) -> None:
-        """Show the view of the link as soon as its system is reviewed."""
-        system = linked_system(self._link)
-        if is_known(system):
-            self._begin_view()
-        else:
-            self._open(system, self._begin_with, self._begin_without)
-
-    def _open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> None:
-        """Use a system once it is reviewed, and say so meanwhile."""
-        if self.potential.open(system, use, refuse):
-            self.progress.show_reviewing()
-
-    def _begin_with(self, reviewed: SystemReview) -> None:
-        """Show the view of a link with the system that it names."""
-        self._problems += self._show_linked(self._link, reviewed)
-        self.potential.panel.section.open(True)
-        self._show_problems()
-
-    def _begin_without(self, problem: str) -> None:
-        """Show the first view in place of a system that is refused."""
-        self._problems.append(refused_link(problem))
-        self._begin_view()
-
     def _begin_view(self) -> None:
         """Request the map and the orbits of the state, which later follow its changes."""
         self.map_requests.request_map()
         self.orbits.begin()
-        self._show_problems()
-
-    def _show_problems(self) -> None:
-        if self._problems:
-            self.notice.warn(" ".join(self._problems))
-
-    def _write_link(self, *events: Any) -> None:
-        """Show the state as the address; a choice among the orbits is not an entry of the browser's history."""
-        if not self._navigating:
-            entry = self.history.entry if {event.name for event in events} == {"chosen"} else self.history.record()
-            self.browser.write_link(write_link(self.state), entry)
-        self._follow_history()
-
-    def _follow_history(self) -> None:
-        self.toolbar.follow(self.history, zoomed=self.state.window is not None)
-
-    def _navigate(self, link: str, entry: int, steps: int) -> None:
-        """Show the state of a link in the browser's history."""
-        self.browser.follow_steps(steps)
-        values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
-        self.history.move_to(entry)
-        self._open(linked_system(values), partial(self._show_linked, values), self._warn_of_link)
-
-    def _warn_of_link(self, problem: str) -> None:
-        self.progress.fail()
-        self.notice.warn(refused_link(problem))
-
-    def _show_linked(self, values: dict[str, Any], reviewed: SystemReview) -> list[str]:
-        """Show the values of a link with its system; returns messages for invalid ones."""
-        fitting, problems = fit_to_system(values, reviewed)
-        shown = ViewState(**fitting)
-        self._navigating = True
-        try:
-            # A link can add figures and buttons: Bokeh searches the models of the page once for all of them.
-            with pn.io.hold(), self._document.models.freeze():
-                self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
-        finally:
-            self._navigating = False
-        self._follow_history()
-        return problems
 
     def _set_palette(self) -> None:
         palette = self.state.colours
@@ -302,7 +223,7 @@ class Explorer:
     # Callbacks of the views.
 
     def _zoom_to(self, window: Window | None) -> None:
-        self.history.begin_gesture()
+        self.links.history.begin_gesture()
         self.state.window = window
 
     def _add_start(self, x: float, ordinate: float) -> None:
@@ -333,7 +254,7 @@ class Explorer:
     def _show_preset(self, preset: Preset) -> None:
         self.engine.stop()
         show = partial(self.state.show, chosen=0, **preset.values())
-        self._open(System(preset.case), show, self._warn_of_link)
+        self.links.open(System(preset.case), show)
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")

@@ -85,7 +85,7 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
         session = await context.create_session_if_needed("session", request)  # type: ignore[arg-type]
         try:
             with set_curdoc(session.document):
-                built[0]._begin()
+                built[0].links.begin(built[0]._begin_view)
                 await check(built[0])
         finally:
             built[0].close()
@@ -120,7 +120,7 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(threads: dict[str, 
         assert (state.plane, state.energy, state.starts) == (Plane.X_Y, 0.4, ((0.1, 0.2),))
         assert state.window == Window(-1.0, 1.0, -0.5, 0.5)
         assert explorer.potential.panel.section.is_open
-        assert not explorer.history.can_go_back
+        assert not explorer.links.history.can_go_back
 
     loop = with_page(LEGAL | asked, check)
     assert all(loop not in found for found in threads.values())
@@ -138,7 +138,7 @@ def test_a_typed_potential_is_reviewed_on_another_thread(threads: dict[str, set[
 
 def test_an_entry_of_the_browsers_history_is_reviewed_on_another_thread(threads: dict[str, set[int]]) -> None:
     async def check(explorer: Explorer) -> None:
-        explorer._navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
+        explorer.links.navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
         assert explorer.state.case == "I"
         await wait_for(lambda: explorer.state.case == TYPED)
         assert explorer.state.energy == 0.5
@@ -158,7 +158,7 @@ def test_a_choice_made_during_a_review_is_kept() -> None:
 
 def test_a_refused_entry_of_the_history_leaves_the_view_with_a_reason() -> None:
     async def check(explorer: Explorer) -> None:
-        explorer._navigate("?" + urlencode(CIRCULAR | {"h": "0.5", "resolution": "112"}), 0, 0)
+        explorer.links.navigate("?" + urlencode(CIRCULAR | {"h": "0.5", "resolution": "112"}), 0, 0)
         assert "Reviewing" in explorer.progress.text.object
         await wait_for(lambda: "Ignored the potential in the link" in explorer.notice._pane.object)
         assert (explorer.state.case, explorer.state.energy, explorer.state.resolution) == ("I", 0.19, 224)
