@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.events import DoubleTap, SelectionGeometry
 from bokeh.models import (
     BasicTickFormatter,
@@ -23,8 +22,8 @@ from bokeh.plotting import figure
 
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
-from engine import CASES, CHAOS_THRESHOLD, MapSpec, Plane, Potential, integrate_orbit, start_states
-from engine.service import format_number
+from engine import CASES, CHAOS_THRESHOLD, MapSpec, Potential, integrate_orbit, start_states
+from engine.service import SECTION, SPACE, format_number
 from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves, moment
 from plots.palette import LIGHT, MARK_EDGE, PAPER, THRESHOLD, Palette
 
@@ -67,7 +66,7 @@ class OrbitPlots:
         self._outlined: tuple[Potential, float, Palette] | None = None
         self.set_palette(PAPER)
 
-    def build(self) -> list[pn.viewable.Viewable]:
+    def build(self) -> list[FigurePane]:
         """Make the figures: path, SALI, R² and Lyapunov exponent."""
         events = {SelectionGeometry: self._brushed, DoubleTap: lambda event: self._on_brush(None)}
         return [FigurePane(self._draw_path()), *(FigurePane(plot, events) for plot in self._draw_histories())]
@@ -175,7 +174,7 @@ class OrbitPlots:
         assert orbit.potential is not None
         outlined = (orbit.potential, orbit.energy, self._palette)
         if outlined != self._outlined:
-            self.outlines.show(MapSpec(orbit.potential, Plane.X_Y, orbit.energy, window=window))
+            self.outlines.show(MapSpec(orbit.potential, SPACE, orbit.energy, window=window))
             self._outlined = outlined
         for edges, low, high in ((x, window.x_low, window.x_high), (y, window.ordinate_low, window.ordinate_high)):
             set_range(edges, low, high)
@@ -195,7 +194,7 @@ class OrbitPlots:
 def prepare() -> None:
     """Draw a long path once, so that datashader compiles its code."""
     potential = CASES["III"]
-    state = start_states(potential, Plane.X_PX, 0.2, np.zeros(1), np.full(1, 0.1))[0]
+    state = start_states(potential, SECTION.plane, 0.2, np.zeros(1), np.full(1, 0.1))[0]
     compute_orbit_curves(potential, integrate_orbit(potential, state, 5000.0))
 
 
