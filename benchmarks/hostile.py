@@ -27,7 +27,7 @@ from urllib.parse import urlsplit
 from benchmarks.attacks import ATTACKS, do_nothing
 from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served, summary
 from benchmarks.simulated_sessions import NO_OPTIONS, Options, Record, SimulatedSession
-from tests.deploy.proxy import Proxy, authorization, free_port, nginx, proxied
+from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, free_port, nginx, proxied
 
 LONGEST_WAIT_SECONDS = 3.0
 """Longest permitted time to the first frame of the other visitor's map, and to the answer of ``/liveness``."""
@@ -67,8 +67,9 @@ class Effect:
 
 @asynccontextmanager
 async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
-    """A session with its page open."""
-    session = SimulatedSession(place.address, seed, record, place.options)
+    """A session with its page open, of a visitor with an address of its own behind the proxy."""
+    headers = {**place.options.get("headers", {}), ADDRESS_HEADER: f"10.0.0.{seed}"}
+    session = SimulatedSession(place.address, seed, record, {**place.options, "headers": headers})
     await session.open()
     while not session.is_open:
         await asyncio.sleep(1.0)
@@ -152,7 +153,7 @@ async def _find_places(proxy: Proxy, servers: Sequence[Server]) -> list[Place]:
     for number in itertools.count():
         headers = {**authorization(), "Cookie": f"explorer_visitor={number}"}
         place = Place(f"{proxy.origin}/app", {"headers": headers, "ssl_options": proxy.ssl_context()})
-        async with visiting(place, number, Record()):
+        async with visiting(place, 200 + number, Record()):
             found |= {index: place for index, server in enumerate(servers) if await asyncio.to_thread(server.sessions)}
         while sum([await asyncio.to_thread(server.sessions) for server in servers]):
             await asyncio.sleep(0.1)

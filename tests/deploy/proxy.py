@@ -1,4 +1,7 @@
-"""Run nginx with deploy/nginx.conf on the loopback interface; only names, paths and ports are replaced."""
+"""Run nginx with deploy/nginx.conf on the loopback interface; only names, paths and ports are replaced.
+
+Visitors of one machine can have addresses of their own, in the header `ADDRESS_HEADER`.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 NAME, PASSWORD = "visitor", "open sesame"
+ADDRESS_HEADER = "X-Visitor-Address"
 _CONFIGURATION = """
 daemon off;
 {user}
@@ -24,6 +28,8 @@ error_log {folder}/error.log;
 events {{}}
 http {{
     access_log off;
+    set_real_ip_from 127.0.0.1;
+    real_ip_header {header};
     client_body_temp_path {folder}/body;
     proxy_temp_path {folder}/proxy;
     fastcgi_temp_path {folder}/fastcgi;
@@ -75,7 +81,7 @@ def proxied(program: str, folder: Path, port: int, backends: tuple[int, int]) ->
     hashed = subprocess.run(["openssl", "passwd", "-apr1", PASSWORD], check=True, capture_output=True, text=True).stdout
     (folder / "passwords").write_text(f"{NAME}:{hashed}")
     (folder / "site.conf").write_text(_configured(proxy, folder, backends))
-    (folder / "nginx.conf").write_text(_CONFIGURATION.format(folder=folder, user=_user()))
+    (folder / "nginx.conf").write_text(_CONFIGURATION.format(folder=folder, user=_user(), header=ADDRESS_HEADER))
     process = subprocess.Popen([program, "-e", str(folder / "error.log"), "-c", str(folder / "nginx.conf")])
     try:
         _wait_for_port(port, process)
