@@ -48,9 +48,7 @@ def draw_curves(
     stem = output or Path(f"curves-{file_name_part(case)}-{plane}")
     with reserve_output(stem):
         with cancellable_run(threads) as run:
-            report = run.start_stage("energies")
-            on_frame = None if report is None else lambda curves: report(len(curves.points) / len(energies))
-            curves = compute_energy_curves(spec, on_frame=on_frame, cancel=run.cancel, executor=run.executor)
+            curves = compute_energy_curves(spec, execution=run.start_stage("energies"))
         netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
         head, rows = _tabulate(curves)
         table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"

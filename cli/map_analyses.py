@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import isnan
 from typing import Any
 
 from cli.run_context import RunContext
-from engine import EscapeMap, MapSpec, compute_map, compute_regularity, compute_trust, find_stable_manifolds
-from engine.service import (
-    MOST_IMAGES,
-    SECTION,
-    join_origin_fates,
-)
+from engine import EscapeMap, MapSpec, compute_regularity, compute_trust, find_stable_manifolds
+from engine.service import MOST_IMAGES, SECTION, join_origin_fates, run_map
 from plots.map_analyses import MapAnalyses
 
 
@@ -46,37 +41,29 @@ def compute_map_with_analyses(spec: MapSpec, wanted: AnalysisOptions, run: RunCo
     frame = compute_whole_map(spec, run, "map")
     found: dict[str, Any] = {}
     if wanted.judge:
-        run.start_stage("bounded orbits")
-        found["regularity"] = compute_regularity(frame, on_frame=None, cancel=run.cancel, executor=run.executor)
+        found["regularity"] = compute_regularity(frame, execution=run.start_stage("bounded orbits"))
     if wanted.origins:
         found["origins"] = join_origin_fates(frame, compute_whole_map(replace(spec, backward=True), run, "origins"))
     if wanted.trust:
-        run.start_stage("doubtful pixels")
-        found["trust"] = compute_trust(frame, on_frame=None, cancel=run.cancel, executor=run.executor)
+        found["trust"] = compute_trust(frame, execution=run.start_stage("doubtful pixels"))
     if wanted.images:
         assert spec.common_energy is not None
-        run.start_stage("stable manifolds")
         found["manifolds"] = find_stable_manifolds(
             spec.potential,
             spec.common_energy,
             images=wanted.images,
             window=spec.find_window(),
-            executor=run.executor,
-            cancel=run.cancel,
+            execution=run.start_stage("stable manifolds"),
         )
-    run.raise_if_cancelled()
+    run.execution.raise_if_cancelled()
     return frame, MapAnalyses(**found)
 
 
 def compute_whole_map(spec: MapSpec, run: RunContext, stage: str) -> EscapeMap:
     """Return the complete map; CancelledError if interrupted."""
-    frame = compute_map(spec, _report_frames(run.start_stage(stage)), run.cancel, run.executor)
-    run.raise_if_cancelled()
+    frame = run_map(spec, run.start_stage(stage))
+    run.execution.raise_if_cancelled()
     return frame
-
-
-def _report_frames(report: Callable[[float], None] | None) -> Callable[[EscapeMap], None] | None:
-    return None if report is None else lambda frame: report(frame.progress)
 
 
 def describe_analyses(analyses: MapAnalyses) -> list[str]:

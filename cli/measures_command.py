@@ -62,18 +62,17 @@ def _measure(frame: EscapeMap, exponent: bool, run: RunContext) -> dict[str, dic
     """Return the numbers of each measure with a sentence, by name."""
     from engine import compute_basin_entropy, compute_statistics, compute_uncertainty_exponent, compute_wada_test, fit_decay_laws
 
-    run.start_stage("entropy, boundaries and decay laws")
+    execution = run.start_stage("entropy, boundaries and decay laws")
     entropy = compute_basin_entropy(frame)
     merging = compute_wada_test(frame)
-    laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, cancel=run.cancel)
+    laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, execution=execution)
     measures = {"basin_entropy": _numbers(entropy, _ENTROPY), "merging": _numbers(merging, _MERGING)}
     measures["escape_laws"] = _numbers(laws, _LAWS) | {
         name: None if fit is None else {one: getattr(fit, one) for one in _FIT}
         for name, fit in (("exponential", laws.exponential), ("power_law", laws.power_law))
     }
     if exponent:
-        report = run.start_stage("uncertainty exponent")
-        found = compute_uncertainty_exponent(frame.spec, on_progress=report, executor=run.executor, cancel=run.cancel)
+        found = compute_uncertainty_exponent(frame.spec, execution=run.start_stage("uncertainty exponent"))
         measures["uncertainty_exponent"] = _numbers(found, _EXPONENT)
     return measures
 

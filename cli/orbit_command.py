@@ -60,9 +60,9 @@ def follow_orbit(
     with reserve_output(output):
         with cancellable_run() as run:
             run.start_stage("orbit")
-            orbit = integrate_orbit(potential, whole, t_max, cancel=run.cancel)
+            orbit = integrate_orbit(potential, whole, t_max, execution=run.execution)
             bounded = orbit.fate == Fate.BOUNDED
-            digits = compute_birkhoff_digits(potential, whole, t_max, cancel=run.cancel) if bounded else None
+            digits = compute_birkhoff_digits(potential, whole, t_max, execution=run.execution) if bounded else None
         verdict, files = judge_orbit(orbit, digits), []
         if output is not None:
             drawn = orbit_png(potential, orbit, colours, verdict.describe())

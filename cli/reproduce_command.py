@@ -73,7 +73,7 @@ def reproduce_paper(
     began, made = time.perf_counter(), list[_WrittenFigure]()
     try:
         with reserve_output(output), cancellable_run(threads) as run:
-            shelf = MapShelf(quality, run.executor, run.cancel)
+            shelf = MapShelf(quality, run.execution)
             for name in chosen:
                 run.start_stage(name)
                 made.append(_make(name, shelf, output))

@@ -4,54 +4,48 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Executor, ThreadPoolExecutor
+from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import FrameType
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from engine import Execution
+
 
 @dataclass(frozen=True)
 class RunContext:
-    """Executor, cancel event and progress bars of one run.
+    """How the computations of one run are executed, with its progress bars.
 
     Attributes
     ----------
-    cancel
-        Set by Ctrl-C.
-    executor
-        Executor of the computations; None for the default pool with one thread per core.
+    execution
+        Cancelled by Ctrl-C.
     progress
         Progress bars, disabled unless stderr is a terminal.
     """
 
-    cancel: threading.Event
-    executor: Executor | None
+    execution: Execution
     progress: Progress
 
-    def start_stage(self, stage: str) -> Callable[[float], None] | None:
-        """Show a new stage and return its progress callback, which takes a share from 0 to 1; None if bars are disabled.
+    def start_stage(self, stage: str) -> Execution:
+        """Show the bar of a new stage, unless bars are disabled, and return the execution that reports to it.
 
         Raises
         ------
         concurrent.futures.CancelledError
             If the run is already cancelled.
         """
-        self.raise_if_cancelled()
+        self.execution.raise_if_cancelled()
         if self.progress.disable:
-            return None
+            return self.execution
         for task in self.progress.tasks:
             self.progress.update(task.id, total=1.0, completed=1.0)
         task_id = self.progress.add_task(stage, total=None)
-        return lambda share: self.progress.update(task_id, total=1.0, completed=share)
-
-    def raise_if_cancelled(self) -> None:
-        """Raise `concurrent.futures.CancelledError` if Ctrl-C was pressed."""
-        if self.cancel.is_set():
-            raise CancelledError
+        return replace(self.execution, on_progress=lambda share: self.progress.update(task_id, total=1.0, completed=share))
 
 
 @contextmanager
@@ -76,9 +70,9 @@ def cancellable_run(threads: int | None = None, executor: Executor | None = None
     bars = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
     pool = nullcontext(executor) if executor is not None or threads is None else ThreadPoolExecutor(threads)
     with pool as chosen, _cancel_on_ctrl_c(cancel), bars:
-        context = RunContext(cancel, chosen, bars)
+        context = RunContext(Execution(chosen, cancel), bars)
         yield context
-        context.raise_if_cancelled()
+        context.execution.raise_if_cancelled()
 
 
 @contextmanager

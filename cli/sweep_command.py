@@ -70,10 +70,9 @@ def sweep_energies(
     try:
         with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
             if plan:
-                print_sentences(f"{plan_sweep(spec, executor=run.executor, cancel=run.cancel).describe()}.")
+                print_sentences(f"{plan_sweep(spec, execution=run.execution).describe()}.")
                 return
-            report = run.start_stage("energies")
-            dataset = run_sweep(spec, store, on_progress=report, cancel=run.cancel, executor=run.executor)
+            dataset = run_sweep(spec, store, execution=run.start_stage("energies"))
     except CancelledError:
         raise CancelledError(
             f"interrupted; completed energies and row blocks are kept in {store}, and the same command resumes from there"

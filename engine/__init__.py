@@ -17,12 +17,10 @@ These are the public names of the library. All results show themselves in notebo
 
 from typing import Any
 
-from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
-from engine.basins.wada import WadaTest, compute_wada_test
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
+from engine.execution import Execution
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.maps.compute import compute_map
@@ -31,6 +29,14 @@ from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
+from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.measures.decay_law_fits import fit_decay_laws
+from engine.measures.decay_laws import DecayLaws
+from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
+from engine.measures.published_fits import PAPER_FITS
+from engine.measures.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
+from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
+from engine.measures.wada import WadaTest, compute_wada_test
 from engine.potentials.catalogue import POTENTIALS, channel_family
 from engine.potentials.formula_parser import parse_formula, write_formula
 from engine.potentials.potential import CASES, Potential
@@ -40,11 +46,6 @@ from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
 from engine.slices.slice import Coordinate, Plane, Slice, start_states
 from engine.slices.window import Window
-from engine.statistics.decay_law_fits import fit_decay_laws
-from engine.statistics.decay_laws import DecayLaws
-from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
-from engine.statistics.published_fits import PAPER_FITS
-from engine.statistics.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from engine.sweeps.crossing_statistics import compute_crossing_statistics
 from engine.sweeps.energy_curves import EnergyCurves, EnergyCurvesSpec, compute_energy_curves
 from engine.sweeps.run import run_sweep
@@ -71,6 +72,7 @@ __all__ = [
     "EnergyCurvesSpec",
     "EscapeMap",
     "EscapeStatistics",
+    "Execution",
     "Fate",
     "LyapunovOrbit",
     "MapSpec",

@@ -1,13 +1,17 @@
-"""Executors for parallel computations, and cancellation."""
+"""How computations run: executors, cancellation and progress."""
 
 from __future__ import annotations
 
+import functools
+import inspect
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
-from functools import cache
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +21,11 @@ _LEAST_PART = 1000
 # Nice value of compute threads: under contention they get about a tenth of the CPU time of a normal thread. With idle priority
 # they could be stopped by another program while they hold the interpreter lock, for which all other threads would wait.
 _NICE_VALUE = 10
+# Shorter calls show no bar, in seconds.
+_DELAY = 1.0
+_FORMAT = "{desc}: {percentage:3.0f}% |{bar}| {elapsed}<{remaining}"
+# Whether a bar is shown: calls within a call show none.
+_shown = threading.Event()
 
 
 def count_cores() -> int:
@@ -26,7 +35,7 @@ def count_cores() -> int:
     return count() or 1
 
 
-@cache
+@functools.cache
 def default_executor() -> ThreadPoolExecutor:
     """The thread pool shared by this process, one thread per core; kernels release the GIL."""
     return create_thread_pool(count_cores())
@@ -52,29 +61,6 @@ def count_workers(executor: Executor) -> int:
     return int(getattr(executor, "_max_workers", 2))
 
 
-def run_parts(
-    work: Callable[..., Any],
-    indices: np.ndarray,
-    select: Callable[[np.ndarray], tuple[Any, ...]],
-    *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
-) -> Iterator[tuple[np.ndarray, Any]]:
-    """Run ``work(*select(part))`` in parallel for the parts of an index array; each part of `indices` with its result.
-
-    Parts that never ran because of `cancel` are left out. `work` must be a module-level function, so that it can be pickled for
-    other processes, and should release the GIL.
-    """
-    executor = executor or default_executor()
-    count = min(2 * count_workers(executor), -(-indices.size // _LEAST_PART))
-    parts = np.array_split(indices, count) if count else []
-    futures = [executor.submit(work, *select(part)) for part in parts]
-    for part, future in zip(parts, futures, strict=True):
-        result = collect_result(future, cancel)
-        if result is not None:
-            yield part, result
-
-
 class SerialExecutor(Executor):
     """Runs each call at once in the calling thread: for single orbits, or inside a worker of another pool."""
 
@@ -88,28 +74,145 @@ class SerialExecutor(Executor):
         return future
 
 
-def is_cancelled(cancel: threading.Event | None) -> bool:
-    """Whether a cancel event was given and is set."""
-    return cancel is not None and cancel.is_set()
+@dataclass(frozen=True)
+class Execution:
+    """How a computation runs: where its parts are computed, how it is cancelled, and who follows it.
 
+    Results do not depend on it: they are the same to the last bit for every executor, interruption and resumption.
 
-def raise_if_cancelled(cancel: threading.Event | None) -> None:
-    """Raise `concurrent.futures.CancelledError` if a cancel event was given and is set."""
-    if is_cancelled(cancel):
-        raise CancelledError
-
-
-def collect_result[T](future: Future[T], cancel: threading.Event | None) -> T | None:
-    """The result of a call, after waiting for it; None if it never ran because the computation was cancelled.
-
-    Raises
-    ------
-    concurrent.futures.BrokenExecutor
-        When the executor has dropped the call although nobody cancelled it, as a cluster does that loses its scheduler.
+    Parameters
+    ----------
+    executor
+        Any `concurrent.futures.Executor`, including that of a Dask client; None for the thread pool of this process.
+    cancel
+        When set, the computation ends within about 0.2 s; None for one that cannot be cancelled.
+    on_progress
+        Called in the calling thread with the share done, 0 to 1; None for a progress bar in a terminal or a notebook.
     """
+
+    executor: Executor | None = None
+    cancel: threading.Event | None = None
+    on_progress: Callable[[float], None] | None = None
+
+    @property
+    def workers(self) -> int:
+        """How many calls run at once."""
+        return count_workers(self.executor or default_executor())
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether the computation has been cancelled."""
+        return self.cancel is not None and self.cancel.is_set()
+
+    def raise_if_cancelled(self) -> None:
+        """Raise `concurrent.futures.CancelledError` if the computation has been cancelled."""
+        if self.is_cancelled:
+            raise CancelledError
+
+    def in_this_thread(self) -> Execution:
+        """The same without other threads, for single orbits, or inside a worker of another pool."""
+        return replace(self, executor=SerialExecutor())
+
+    def report(self, share: Callable[[], float]) -> None:
+        """Tell the share done, 0 to 1, which is only computed if somebody follows."""
+        if self.on_progress is not None:
+            self.on_progress(share())
+
+    def part(self, number: int, count: int) -> Execution:
+        """The execution of one of `count` parts of equal work, which reports its share of the progress."""
+        report = self.on_progress
+        return self if report is None else replace(self, on_progress=lambda share: report((number + share) / count))
+
+    def submit[T](self, function: Callable[..., T], *arguments: Any) -> Future[T]:
+        """Queue a call."""
+        return (self.executor or default_executor()).submit(function, *arguments)
+
+    def collect[T](self, future: Future[T]) -> T | None:
+        """The result of a call, after waiting for it; None if it never ran because the computation was cancelled.
+
+        Raises
+        ------
+        concurrent.futures.BrokenExecutor
+            When the executor has dropped the call although nobody cancelled it, as a cluster does that loses its scheduler.
+        """
+        try:
+            return future.result()
+        except CancelledError:
+            if self.is_cancelled:
+                return None
+            raise BrokenExecutor("the executor has dropped a part of the computation; run it again") from None
+
+
+DEFAULT_EXECUTION = Execution()
+"""In the thread pool of this process, not to be cancelled."""
+
+
+def run_parts(
+    work: Callable[..., Any], indices: np.ndarray, select: Callable[[np.ndarray], tuple[Any, ...]], execution: Execution
+) -> Iterator[tuple[np.ndarray, Any]]:
+    """Run ``work(*select(part))`` in parallel for the parts of an index array; each part of `indices` with its result.
+
+    Parts that never ran because of a cancellation are left out. `work` must be a module-level function, so that it can be pickled
+    for other processes, and should release the GIL.
+    """
+    count = min(2 * execution.workers, -(-indices.size // _LEAST_PART))
+    parts = np.array_split(indices, count) if count else []
+    futures = [execution.submit(work, *select(part)) for part in parts]
+    for part, future in zip(parts, futures, strict=True):
+        result = execution.collect(future)
+        if result is not None:
+            yield part, result
+
+
+def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Decorator for functions with a parameter ``execution``: a bar where nobody else follows its progress, or its frames.
+
+    Calls of the main thread in a terminal or a notebook show it after a second. The environment variable ``TQDM_DISABLE=1`` turns
+    all bars off.
+    """
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        signature = inspect.signature(function)
+
+        @functools.wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> T:
+            given = signature.bind_partial(*args, **kwargs).arguments
+            execution = given.get("execution", DEFAULT_EXECUTION)
+            follows = execution.on_progress is not None or given.get("on_frame") is not None
+            if follows or _shown.is_set() or not _is_interactive():
+                return function(*args, **kwargs)
+            with _bar(label) as report:
+                arguments = signature.bind(*args, **kwargs)
+                arguments.arguments["execution"] = replace(execution, on_progress=report)
+                return function(*arguments.args, **arguments.kwargs)
+
+        return call
+
+    return decorate
+
+
+def _is_interactive() -> bool:
+    """Whether a person waits for this call."""
+    if threading.current_thread() is not threading.main_thread():
+        return False
+    return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())
+
+
+@contextmanager
+def _bar(label: str) -> Iterator[Callable[[float], None]]:
+    with warnings.catch_warnings():
+        # Without Jupyter's widgets a bar of text is shown, with a warning.
+        warnings.simplefilter("ignore")
+        from tqdm.autonotebook import tqdm
+
+        bar = tqdm(total=1.0, desc=label, delay=_DELAY, leave=False, bar_format=_FORMAT)
+
+    def report(share: float) -> None:
+        bar.update(max(share - bar.n, 0.0))
+
+    _shown.set()
     try:
-        return future.result()
-    except CancelledError:
-        if is_cancelled(cancel):
-            return None
-        raise BrokenExecutor("the executor has dropped a part of the computation; run it again") from None
+        with bar:
+            yield report
+    finally:
+        _shown.clear()

@@ -3,12 +3,10 @@
 They are not part of the public interface of `engine` and may change with any version.
 """
 
-from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
-from engine.basins.uncertainty_exponent import fit_uncertainty
 from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
 from engine.dynamics.portable_system import PortableSystem, make_portable_system
-from engine.execution import count_cores, raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, count_cores
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
 from engine.jobs.job import Job, Queue
@@ -25,10 +23,17 @@ from engine.jobs.map_jobs import (
 )
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
+from engine.maps.compute import run_map
 from engine.maps.origin_fates import join_origin_fates
 from engine.maps.result import describe_codes
 from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
+from engine.measures.decay_laws import DecayLaw, LawFit
+from engine.measures.escape_statistics import compute_survival
+from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
+from engine.measures.published_fits import HyperbolicTangent, PaperFits, Polynomial
+from engine.measures.share_fits import Deviation
+from engine.measures.uncertainty_exponent import fit_uncertainty
 from engine.potentials.catalogue import PotentialEntry
 from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange
 from engine.potentials.formula_parser import LONGEST_TEXT
@@ -38,11 +43,7 @@ from engine.potentials.validation_report import CriticalPoint, PointKind
 from engine.results.wording import format_number, format_time, format_whole
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.slices.section import SECTION
-from engine.slices.slice import checked_slice, common_energy
-from engine.statistics.decay_laws import DecayLaw, LawFit
-from engine.statistics.escape_statistics import compute_survival
-from engine.statistics.published_fits import HyperbolicTangent, PaperFits, Polynomial
-from engine.statistics.share_fits import Deviation
+from engine.slices.slice import SPACE, checked_slice, common_energy
 from engine.storage.output_lock import hold_lock
 from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
@@ -61,6 +62,7 @@ from engine.warmup import (
 )
 
 __all__ = [
+    "DEFAULT_EXECUTION",
     "DEFAULT_RESOLUTION",
     "ENTROPY_COUNTS_BOUNDED",
     "FREQUENCIES",
@@ -76,6 +78,7 @@ __all__ = [
     "PARAMETERS",
     "SECTION",
     "SHOWN_DIGITS",
+    "SPACE",
     "STRENGTHS",
     "TYPED",
     "WADA_COUNTS_BOUNDED",
@@ -137,8 +140,8 @@ __all__ = [
     "prepare_for_certificates",
     "prepare_for_maps",
     "prepare_kernels",
-    "raise_if_cancelled",
     "regularity_job",
+    "run_map",
     "seconds_until_ready_for_maps",
     "tabulate_crossing_statistics",
     "trace_equipotentials",

@@ -14,12 +14,12 @@ from types import ModuleType
 import numpy as np
 
 from engine.dynamics.section_points import find_section_points
-from engine.execution import SerialExecutor
+from engine.execution import DEFAULT_EXECUTION
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.invariant_sets.birkhoff_averages import count_agreeing_digits
 from engine.invariant_sets.invariant_curves import LEAST_POINTS, find_invariant_curve
 from engine.invariant_sets.stable_manifolds import find_stable_manifolds
-from engine.maps.compute import compute_map
+from engine.maps.compute import run_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
@@ -34,7 +34,7 @@ from engine.trajectories.trajectory import integrate_orbit
 _T_MAX = 10.0
 
 # Compiles in the calling thread, since the threads of pools have low priority.
-_EXECUTOR = SerialExecutor()
+_EXECUTION = DEFAULT_EXECUTION.in_this_thread()
 
 # Kernels of the first frame of a map and of the Lyapunov orbits it needs, with the seconds that it takes to compile them on one
 # core of an AMD EPYC (Zen 4): those of each potential per operation, those of all potentials together. "propagate" includes the
@@ -162,8 +162,8 @@ def prepare_for_certificates(potential: Potential) -> None:
     """
     well, start = potential.in_well_units, _bounded_start(potential) / potential.units.state
     _make_in_turn(
-        lambda: count_agreeing_digits(well, start, _T_MAX, executor=_EXECUTOR),
-        lambda: find_section_points(well, start, 1, _T_MAX, executor=_EXECUTOR),
+        lambda: count_agreeing_digits(well, start, _T_MAX, execution=_EXECUTION),
+        lambda: find_section_points(well, start, 1, _T_MAX, execution=_EXECUTION),
         lambda: find_invariant_curve(np.zeros((LEAST_POINTS, 2))),
     )
 
@@ -181,13 +181,13 @@ def prepare_kernels(potential: Potential) -> None:
     _make_in_turn(
         lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX * potential.units.time),
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
-        lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), executor=_EXECUTOR),
-        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, images=1, executor=_EXECUTOR),
+        lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), execution=_EXECUTION),
+        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, images=1, execution=_EXECUTION),
     )
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
-    return compute_map(MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time), executor=_EXECUTOR)
+    return run_map(MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time), _EXECUTION)
 
 
 def _bounded_start(potential: Potential) -> np.ndarray:

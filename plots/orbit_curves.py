@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine import Orbit, Plane, Potential, Window, default_window, find_section_crossings
+from engine import Orbit, Potential, Window, default_window, find_section_crossings
+from engine.service import SPACE
 
 History = tuple[np.ndarray, np.ndarray]
 """Times and values."""
@@ -83,9 +84,9 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
 def _find_window(potential: Potential, energy: float) -> Window:
     """The window of the interior; below the minimum of the well, where an orbit can only be outside, that of the whole well."""
     try:
-        return default_window(potential, Plane.X_Y, energy)
+        return default_window(potential, SPACE, energy)
     except ValueError:
-        return default_window(potential, Plane.X_Y, potential.escape_energy)
+        return default_window(potential, SPACE, potential.escape_energy)
 
 
 def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurves:

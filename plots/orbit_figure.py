@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from engine import CHAOS_THRESHOLD, Plane, Potential
-from engine.service import format_number
+from engine import CHAOS_THRESHOLD, Potential
+from engine.service import SPACE, format_number
 from plots.figure_axes import label_axes, name_panel, style_axes
 from plots.map_figure import draw_curve, draw_limits, draw_pixels, show_window
 from plots.orbit_curves import LEAST_SALI, OrbitCurves
@@ -23,7 +23,7 @@ def draw_path(axes: Axes, potential: Potential, curves: OrbitCurves, palette: Pa
     else:
         pixels = curves.shaded(colour)[::-1]
         draw_pixels(axes, pixels.view(np.uint8).reshape(*pixels.shape, 4), window, window)
-    draw_limits(axes, potential, Plane.X_Y, orbit.energy, window, palette.channels)
+    draw_limits(axes, potential, SPACE, orbit.energy, window, palette.channels)
     show_window(axes, window, "x", "y", equal=True)
     name_panel(axes, "Path")
 

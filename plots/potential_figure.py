@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from engine import Plane, Potential, Window
-from engine.service import trace_equipotentials
+from engine import Potential, Window
+from engine.service import SPACE, trace_equipotentials
 from plots.palette import LIGHT
 
 # Equipotentials in units of the escape energy: dense inside the well, sparse outside.
@@ -18,9 +18,9 @@ _ENLARGED = 1.35
 def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
     """Draw equipotentials of a potential with exits in axes with equal scales."""
     escape = potential.escape_energy
-    for pieces in trace_equipotentials(potential, Plane.X_Y, [escape * level for level in _LEVELS], window):
+    for pieces in trace_equipotentials(potential, SPACE, [escape * level for level in _LEVELS], window):
         draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
-    (critical,) = trace_equipotentials(potential, Plane.X_Y, [escape], window)
+    (critical,) = trace_equipotentials(potential, SPACE, [escape], window)
     draw_pieces(axes, critical, LIGHT.critical_equipotential, 1.6)
 
 

@@ -21,7 +21,6 @@ from engine import (
     LyapunovOrbit,
     Orbit,
     OriginFateMap,
-    Plane,
     Potential,
     PotentialReview,
     RegularityMap,
@@ -37,6 +36,7 @@ from engine import (
 )
 from engine.service import (
     SECTION,
+    SPACE,
     RadiusEnvelope,
     SuperStickySearch,
     format_number,
@@ -202,7 +202,7 @@ def _draw_stable_manifolds(result: StableManifolds, axes: Axes, palette: Palette
 def _draw_potential(result: Potential, axes: Axes, palette: Palette) -> None:
     if not result.channels:
         raise TypeError(f"the potential {result.name} has no exits and therefore no window to draw")
-    window = enlarge(default_window(result, Plane.X_Y, result.escape_energy))
+    window = enlarge(default_window(result, SPACE, result.escape_energy))
     draw_equipotentials(axes, result, window)
     for channel, (x, y) in enumerate(result.saddles.tolist(), 1):
         axes.plot(x, y, "o", color=palette.channels[channel - 1], markeredgecolor=LIGHT.halo, zorder=3)

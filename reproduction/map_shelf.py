@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import CancelledError
 from dataclasses import replace
 
 import xarray as xr
@@ -12,17 +11,17 @@ import xarray as xr
 from engine import (
     CASES,
     EscapeMap,
+    Execution,
     MapSpec,
     Plane,
     RegularityMap,
     Slice,
     UncertaintyExponent,
     Window,
-    compute_map,
     compute_regularity,
     compute_uncertainty_exponent,
 )
-from engine.service import SuperStickySearch, find_super_sticky_orbits, tabulate_crossing_statistics
+from engine.service import DEFAULT_EXECUTION, SuperStickySearch, find_super_sticky_orbits, run_map, tabulate_crossing_statistics
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
 
@@ -34,10 +33,8 @@ class MapShelf:
     ----------
     quality
         Resolution.
-    executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
-    cancel
-        Event that cancels computations; they then raise CancelledError.
+    execution
+        How the computations run; when it is cancelled, they raise CancelledError.
     on_map
         Called with each computed map.
     """
@@ -45,13 +42,11 @@ class MapShelf:
     def __init__(
         self,
         quality: Quality,
-        executor: Executor | None = None,
-        cancel: threading.Event | None = None,
+        execution: Execution = DEFAULT_EXECUTION,
         on_map: Callable[[EscapeMap], None] = lambda frame: None,
     ) -> None:
         self.quality = quality
-        self.executor = executor
-        self.cancel = cancel
+        self.execution = execution
         self._on_map = on_map
         self._maps: dict[MapSpec, EscapeMap] = {}
         self._curves: dict[tuple[str, Slice], xr.Dataset] = {}
@@ -101,7 +96,7 @@ class MapShelf:
             If cancelled.
         """
         if frame.spec not in self._regularities:
-            regularity = compute_regularity(frame, cancel=self.cancel, executor=self.executor)
+            regularity = compute_regularity(frame, execution=self.execution)
             if not regularity.complete:
                 raise CancelledError
             self._regularities[frame.spec] = regularity
@@ -137,9 +132,7 @@ class MapShelf:
         """
         spec = self._spec(case, plane, energy)
         if spec not in self._exponents:
-            self._exponents[spec] = compute_uncertainty_exponent(
-                spec, work=self.quality.exponent_work, executor=self.executor, cancel=self.cancel
-            )
+            self._exponents[spec] = compute_uncertainty_exponent(spec, work=self.quality.exponent_work, execution=self.execution)
         return self._exponents[spec]
 
     def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
@@ -147,7 +140,7 @@ class MapShelf:
         if spec not in self._searches:
             frame = self._stored(spec)
             self._searches[spec] = find_super_sticky_orbits(
-                frame, self.regularity(frame), self.quality.search_t_max, executor=self.executor, cancel=self.cancel
+                frame, self.regularity(frame), self.quality.search_t_max, execution=self.execution
             )
         return self._searches[spec]
 
@@ -166,7 +159,7 @@ class MapShelf:
         return self._maps[spec]
 
     def _compute(self, spec: MapSpec) -> EscapeMap:
-        computed = compute_map(spec, cancel=self.cancel, executor=self.executor)
+        computed = run_map(spec, self.execution)
         if not computed.complete:
             raise CancelledError
         self._on_map(computed)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import hashlib
-import threading
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from engine import Plane, Potential, Slice, default_window
-from engine.service import PortableSystem, make_portable_system, raise_if_cancelled
+from engine import Execution, Plane, Potential, Slice, default_window
+from engine.service import PortableSystem, make_portable_system
 
 # Energies at which default windows are tabulated: below the escape energy, where they change slowly, and above it.
 _ENERGIES_BELOW, _ENERGIES_ABOVE = 5, 13
@@ -49,14 +48,14 @@ def system_key(potential: Potential) -> str:
     return hashlib.sha256(repr(potential.terms).encode()).hexdigest()[:16]
 
 
-def make_browser_system(potential: Potential, low: float, high: float, *, cancel: threading.Event) -> BrowserSystem:
+def make_browser_system(potential: Potential, low: float, high: float, *, execution: Execution) -> BrowserSystem:
     """Compile the module, and tabulate exits and windows for energies between `low` and `high`."""
     planes = [plane for plane in Plane if plane.energy_axis is None]
-    windows = {plane.key: _tabulate_windows(potential, plane, (low, high), cancel) for plane in planes}
+    windows = {plane.key: _tabulate_windows(potential, plane, (low, high), execution) for plane in planes}
     return BrowserSystem(system_key(potential), make_portable_system(potential, high), windows)
 
 
-def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], cancel: threading.Event) -> dict[str, Any]:
+def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], execution: Execution) -> dict[str, Any]:
     """Default windows up to the highest energy that has one."""
     low, high = ends
     escape = min(max(potential.escape_energy, low), high)
@@ -68,7 +67,7 @@ def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, flo
     ).tolist()
     windows: list[list[float]] = []
     for energy in energies:
-        raise_if_cancelled(cancel)
+        execution.raise_if_cancelled()
         try:
             window = default_window(potential, plane, energy)
         except ValueError:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
-from engine.execution import collect_result, count_workers, default_executor, is_cancelled, run_parts
+from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.exits.interior import find_outside_starts
 from engine.exits.lyapunov_orbits import exit_gates
 from engine.potentials.compiled import kernels_of
@@ -96,8 +95,7 @@ class OrbitBatch:
         which: np.ndarray,
         curves: np.ndarray,
         *,
-        executor: Executor | None = None,
-        cancel: threading.Event | None = None,
+        execution: Execution = DEFAULT_EXECUTION,
     ) -> np.ndarray:
         """Set `outside` and `fate` of those starts among `which` (indices) that lie outside the exits.
 
@@ -106,7 +104,7 @@ class OrbitBatch:
         tested = [which[:0]]
         for part, channel in run_parts(
             _find_outside, which, lambda part: (potential, self.state[part], curves, self.curve_row[part]),
-            executor=executor, cancel=cancel,
+            execution=execution,
         ):  # fmt: skip
             self.outside[part] = channel
             self.fate[part[channel > 0]] = Fate.OUTSIDE
@@ -254,9 +252,8 @@ def propagate_batch(
     horizon: float,
     *,
     final: bool,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
-    on_progress: Callable[[], None] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
+    on_tiles: Callable[[], None] = lambda: None,
     tolerance: float = TOLERANCE,
 ) -> bool:
     """Integrate the undecided orbits among `which` until they escape or reach `horizon`; the batch is changed in place.
@@ -278,11 +275,9 @@ def propagate_batch(
         Time at which to stop, dimensionless.
     final
         Whether the horizon is t_max: orbits that reach it become bounded.
-    executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
-    cancel
-        When set, the propagation stops early; it can be continued by another call.
-    on_progress
+    execution
+        How the computation runs. When it is cancelled, the propagation stops early; it can be continued by another call.
+    on_tiles
         Called after each group of completed tiles.
     tolerance
         Tolerance of the Taylor steps.
@@ -291,8 +286,7 @@ def propagate_batch(
     -------
     Whether the propagation was completed; False if it was cancelled.
     """
-    executor = executor or default_executor()
-    workers = count_workers(executor)
+    workers = execution.workers
     gates = exit_gates(curves)
     undecided = which[(batch.fate[which] == Fate.NOT_COMPUTED) & (batch.t[which] < horizon)]
     pool = OrbitPool(undecided, workers)
@@ -303,18 +297,17 @@ def propagate_batch(
         while pool.waiting and len(running) < (2 * workers if pool.waiting > LARGEST_TILE else workers):
             tile = Tile.copy_from(batch, pool.take())
             least = _FULL_LANES if pool.waiting and tile.orbits.size > _FULL_LANES else 0
-            running.add(executor.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least))
+            running.add(execution.submit(_advance_tile, potential, curves, gates, tile, horizon, final, tolerance, least))
 
     keep_workers_busy()
     while running:
         done, running = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
-            propagated = collect_result(future, cancel)
+            propagated = execution.collect(future)
             if propagated is not None:
                 batch.put(propagated.orbits, propagated.batch)
                 pool.give_back(propagated)
-        if not is_cancelled(cancel):
+        if not execution.is_cancelled:
             keep_workers_busy()
-            if on_progress is not None:
-                on_progress()
-    return not is_cancelled(cancel)
+            on_tiles()
+    return not execution.is_cancelled

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,6 +9,7 @@ import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.exits.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.potential import Potential
 from engine.results.result import Result
@@ -60,8 +59,7 @@ def classify_orbits(
     states: Any,
     t_max: float = 1e5,
     *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> Outcomes:
     """Fate, escape time and number of crossings of orbits of one energy.
 
@@ -75,10 +73,8 @@ def classify_orbits(
         (n, 4) x, y, px, py; finite, with that energy to within 1e-9 in units of the well.
     t_max
         Largest integration time, 0 < t_max ≤ 1e8, dimensionless.
-    executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
-    cancel
-        When set, orbits without a result stay `Fate.NOT_COMPUTED`.
+    execution
+        How the computation runs. When it is cancelled, orbits without a result stay `Fate.NOT_COMPUTED`.
 
     Raises
     ------
@@ -101,7 +97,7 @@ def classify_orbits(
     batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
     batch.mark_outside(scaled, every_orbit, curves)
-    propagate_batch(scaled, curves, batch, every_orbit, t_max / units.time, final=True, executor=executor, cancel=cancel)
+    propagate_batch(scaled, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution)
     outcomes = collect_outcomes(scaled, np.full(len(states), energy / units.energy), batch)
     return replace(outcomes, escape_time=outcomes.escape_time * units.time)
 

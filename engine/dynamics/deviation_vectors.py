@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import Executor
-
 import numpy as np
 
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import fixed_step_size, kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -27,8 +25,7 @@ def propagate_deviations(
     orbits: np.ndarray,
     duration: float,
     *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
     """Integrate orbits with their deviation vectors at a fixed step, and update the smallest SALI of each (Zotos 2014, eq. 9).
 
@@ -40,17 +37,15 @@ def propagate_deviations(
         (n, 13) as from `attach_deviations`.
     duration
         Integration time, dimensionless, rounded to at least one step.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    cancel
-        When set, orbits not processed yet get NaN.
+    execution
+        How the computation runs. When it is cancelled, orbits not processed yet get NaN.
 
     Returns
     -------
     (n, 13); the smallest SALI of an orbit stays as it is once the orbit has run off to infinity.
     """
     steps = max(1, round(duration / fixed_step_size(potential)))
-    return map_tiles(_propagate_tile, potential, orbits, steps, shape=orbits.shape[1:], executor=executor, cancel=cancel)
+    return map_tiles(_propagate_tile, potential, orbits, steps, shape=orbits.shape[1:], execution=execution)
 
 
 def _propagate_tile(potential: Potential, tile: np.ndarray, steps: int) -> np.ndarray:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import threading
 from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
 
-from engine.execution import collect_result, count_workers, default_executor, is_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import VECTOR
 from engine.taylor.source.recurrence import LANES
@@ -22,8 +21,7 @@ def map_tiles(
     states: np.ndarray,
     *arguments: Any,
     shape: tuple[int, ...] = (),
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
     tiles_per_task: int = 1,
 ) -> np.ndarray:
     """Apply a function to many states in parallel, tile by tile.
@@ -41,20 +39,18 @@ def map_tiles(
         Further arguments of `work`.
     shape
         Shape of the result for one orbit.
-    executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
-    cancel
-        When set, no further tiles are submitted.
+    execution
+        How the computation runs. When it is cancelled, no further tiles are submitted.
     tiles_per_task
         Largest number of tiles that a worker computes in one call; above 1 where a tile takes less than a millisecond.
 
     Returns
     -------
-    (n, *shape) the results; NaN for orbits that were not computed because of `cancel`.
+    (n, *shape) the results; NaN for orbits that were not computed because of a cancellation.
     """
     results = np.full((len(states), *shape), np.nan)
-    options: dict[str, Any] = {"executor": executor, "cancel": cancel, "tiles_per_task": tiles_per_task}
-    for begin, result in run_tiles(work, potential, states, *arguments, **options):
+    tiles = run_tiles(work, potential, states, *arguments, execution=execution, tiles_per_task=tiles_per_task)
+    for begin, result in tiles:
         results[begin : begin + len(result)] = result
     return results
 
@@ -64,16 +60,14 @@ def run_tiles(
     potential: Potential,
     states: np.ndarray,
     *arguments: Any,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
     tiles_per_task: int = 1,
 ) -> Iterator[tuple[int, Any]]:
     """Run a function on tiles of states in parallel; the first state of each tile and its result, without repeated lanes.
 
     The parameters are those of `map_tiles`; `work` may return any sequence with one entry per lane.
     """
-    executor = executor or default_executor()
-    workers = count_workers(executor)
+    workers = execution.workers
     lanes = _lanes_per_tile(len(states), workers)
     # Two tasks for each worker if there are enough tiles.
     per_task = lanes * min(tiles_per_task, max(len(states) // (2 * workers * lanes), 1))
@@ -82,17 +76,17 @@ def run_tiles(
     def completed(left_running: int) -> Iterator[tuple[int, Any]]:
         while len(running) > left_running:
             begin, future = running.popleft()
-            results: list[Any] | None = collect_result(future, cancel)
+            results: list[Any] | None = execution.collect(future)
             for number, result in enumerate(results or ()):
                 tile = begin + number * lanes
                 yield tile, result[: len(states) - tile]
 
     for begin in range(0, len(states), per_task):
         yield from completed(2 * workers - 1)
-        if is_cancelled(cancel):
+        if execution.is_cancelled:
             break
         tiles = [_copy_tile(states, tile, lanes) for tile in range(begin, min(begin + per_task, len(states)), lanes)]
-        running.append((begin, executor.submit(_run_on_each, work, potential, tiles, *arguments)))
+        running.append((begin, execution.submit(_run_on_each, work, potential, tiles, *arguments)))
     yield from completed(0)
 
 

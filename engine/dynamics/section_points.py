@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import Executor
-
 import numpy as np
 
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import fixed_step_size, kernels_of
 from engine.potentials.potential import Potential
 
@@ -18,8 +16,7 @@ def find_section_points(
     count: int,
     duration: float,
     *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
     """The first `count` upward crossings of y = 0 of each orbit, not counting the start.
 
@@ -35,16 +32,14 @@ def find_section_points(
         Largest number of points per orbit, at least 1.
     duration
         Integration time, dimensionless.
-    executor
-        Any `concurrent.futures.Executor`; None for the pool of this process.
-    cancel
-        When set, the points of orbits not yet computed stay NaN.
+    execution
+        How the computation runs. When it is cancelled, the points of orbits not yet computed stay NaN.
 
     Returns
     -------
     (n, count, 2) x and px; NaN for points that were not found.
     """
-    return map_tiles(trace_section_points, potential, states, count, duration, shape=(count, 2), executor=executor, cancel=cancel)
+    return map_tiles(trace_section_points, potential, states, count, duration, shape=(count, 2), execution=execution)
 
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:

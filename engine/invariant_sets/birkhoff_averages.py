@@ -15,12 +15,11 @@ within T, against 30 for the other.
 from __future__ import annotations
 
 import functools
-import threading
-from concurrent.futures import Executor
 
 import numpy as np
 
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import fixed_step_size, kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -45,8 +44,7 @@ def count_agreeing_digits(
     states: np.ndarray,
     window: float,
     *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
     """Count the digits to which weighted averages of x² and y² over two consecutive windows, and one between them, agree.
 
@@ -58,17 +56,15 @@ def count_agreeing_digits(
         (n, 4) x, y, px, py at the start of the first window; finite, in units of the well.
     window
         Length T of each window, dimensionless, at least 10.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    cancel
-        When set, orbits not processed yet get NaN.
+    execution
+        How the computation runs. When it is cancelled, orbits not processed yet get NaN.
 
     Returns
     -------
     (n,) −log10 of the largest relative difference of the averages, from 0 to 16; 0 for an orbit that escapes or whose energy
     is not conserved. An orbit with `CERTIFIED_DIGITS` or more counts as quasi-periodic.
     """
-    return compare_averages(potential, states, window, executor=executor, cancel=cancel)[:, 1]
+    return compare_averages(potential, states, window, execution=execution)[:, 1]
 
 
 def compare_averages(
@@ -76,14 +72,13 @@ def compare_averages(
     states: np.ndarray,
     window: float,
     *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> np.ndarray:
     """(n, 2) digits to which the averages over the two consecutive windows agree, and those to which all three agree.
 
     The parameters are those of `count_agreeing_digits`.
     """
-    return map_tiles(_agreeing_digits, potential, states, window, shape=(2,), executor=executor, cancel=cancel)
+    return map_tiles(_agreeing_digits, potential, states, window, shape=(2,), execution=execution)
 
 
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:

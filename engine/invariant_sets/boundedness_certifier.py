@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import pickle
-import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +12,7 @@ import numpy as np
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fixed_step_batches import run_tiles
 from engine.dynamics.section_points import find_section_points, trace_section_points
-from engine.execution import is_cancelled, run_parts
+from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, compare_averages
 from engine.invariant_sets.exit_entry_points import find_entry_points
 from engine.invariant_sets.invariant_curves import InvariantCurve, find_invariant_curve
@@ -57,10 +55,8 @@ class BoundednessCertifier:
         (n, 2) row and column of each orbit's pixel.
     time_left
         Time each orbit would otherwise be integrated, dimensionless; the cost that a certificate saves.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    cancel
-        When set, the work stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Attributes
     ----------
@@ -75,27 +71,25 @@ class BoundednessCertifier:
         states: np.ndarray,
         grid_indices: np.ndarray,
         time_left: float,
-        executor: Executor | None = None,
-        cancel: threading.Event | None = None,
+        execution: Execution = DEFAULT_EXECUTION,
     ) -> None:
         self.potential, self.states, self.grid_indices = potential, states, grid_indices
-        self._cancel, self._time_left = cancel, time_left
-        self._execution: dict[str, Any] = {"executor": executor, "cancel": cancel}
+        self._execution, self._time_left = execution, time_left
         self.certificate = np.zeros(len(states), np.int8)
         self._digits = np.full(len(states), np.inf)
         self._entry_points = () if energy is None else find_entry_points(potential, energy)
         self._use_curves = bool(self._entry_points) and all(map(len, self._entry_points))
         if self._use_curves:
-            self._points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, **self._execution)[:, 0]
+            self._points = find_section_points(potential, states, 1, _FIRST_POINT_TIME, execution=self._execution)[:, 0]
             self._on_section = np.isfinite(self._points).all(axis=1)
             self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
     def run(self, on_round: Callable[[], None]) -> None:
         """Certify as many orbits as possible; `on_round` is called after each round of tests."""
         for window, tested in self._rounds():
-            if is_cancelled(self._cancel):
+            if self._execution.is_cancelled:
                 return
-            two, three = compare_averages(self.potential, self.states[tested], window, **self._execution).T
+            two, three = compare_averages(self.potential, self.states[tested], window, execution=self._execution).T
             self._digits[tested] = two
             self.certificate[tested[three >= CERTIFIED_DIGITS]] = Certificate.QUASI_PERIODIC
             if self._use_curves:
@@ -148,9 +142,9 @@ class BoundednessCertifier:
         regular = regular[self._on_section[regular]]
         regular = regular[:: -(-regular.size // _MAX_CURVES_PER_ROUND) or 1]
         arguments = (self.potential.mirror_in_x, self._entry_points)
-        tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, **self._execution)
+        tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, execution=self._execution)
         found = [barrier for _, tile in tiles for barrier in tile]
-        if is_cancelled(self._cancel):
+        if self._execution.is_cancelled:
             return
         barriers = _without_enclosed(found, self._points[regular], self._separated[regular])
         left = np.flatnonzero(self._on_section & ~self._separated.all(axis=1))
@@ -167,7 +161,7 @@ class BoundednessCertifier:
         def select(part: np.ndarray) -> tuple[Any, ...]:
             return pickled, self._points[part], self._separated[part]
 
-        for part, separated in run_parts(_separated_by_pickled, orbits, select, **self._execution):
+        for part, separated in run_parts(_separated_by_pickled, orbits, select, self._execution):
             self._separated[part] = separated
 
 

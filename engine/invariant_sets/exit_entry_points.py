@@ -7,7 +7,7 @@ import functools
 import numpy as np
 
 from engine.dynamics.section_points import find_section_points
-from engine.execution import SerialExecutor
+from engine.execution import DEFAULT_EXECUTION
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.potentials.potential import Potential
@@ -43,7 +43,8 @@ def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, 
 
 def _entry_points(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
     states = _inward_states(potential, energy, orbit)
-    points: np.ndarray = find_section_points(potential, states, 1, _MAX_ENTRY_TIME, executor=SerialExecutor())[:, 0]
+    execution = DEFAULT_EXECUTION.in_this_thread()
+    points: np.ndarray = find_section_points(potential, states, 1, _MAX_ENTRY_TIME, execution=execution)[:, 0]
     return read_only(points[_is_interior(potential, energy, points)])
 
 

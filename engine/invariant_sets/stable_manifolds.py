@@ -10,13 +10,13 @@ downward passage (x, px) of y = 0 gives a point (x, −px) of the stable manifol
 from __future__ import annotations
 
 import itertools
-import threading
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
@@ -113,8 +113,7 @@ def find_stable_manifolds(
     *,
     images: int = 3,
     window: Window | None = None,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> StableManifolds:
     """Find the curves on (x, px) that separate orbits leaving through a channel from orbits turning back before it.
 
@@ -134,10 +133,8 @@ def find_stable_manifolds(
     window
         Part of (x, px) to resolve in a zoom: the spacing of points follows from its size, as far as the number of orbits allows,
         and curves beyond it are left out. None for the whole plane.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    cancel
-        When set, the work stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Returns
     -------
@@ -175,7 +172,7 @@ def find_stable_manifolds(
     # Each thread waits for the tiles of its channel most of the time.
     with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
         found = threads.map(
-            lambda channel: _find_arcs(potential, orbits[channel], given_energy, images, spacing, executor, cancel), firsts
+            lambda channel: _find_arcs(potential, orbits[channel], given_energy, images, spacing, execution), firsts
         )
         arcs = dict(zip(firsts, found, strict=True))
     truncated = any(unfinished for _, unfinished in arcs.values())
@@ -206,8 +203,7 @@ def _find_arcs(
     energy: float,
     images: int,
     spacing: _PointSpacing,
-    executor: Executor | None,
-    cancel: threading.Event | None,
+    execution: Execution,
 ) -> tuple[list[ManifoldArc], bool]:
     """The arcs of one channel, and whether any of them is incomplete; `energy` is the one that an error names."""
     try:
@@ -215,9 +211,7 @@ def _find_arcs(
     except ValueError as error:
         raise ValueError(f"energy={energy}: {error}") from None
     count = tube.near_passages + images
-    passages = _refine(
-        lambda phases: tube.find_passages(phases, count, executor, cancel), count, spacing, images * ORBITS_PER_IMAGE
-    )
+    passages = _refine(lambda phases: tube.find_passages(phases, count, execution), count, spacing, images * ORBITS_PER_IMAGE)
     arcs = []
     unfinished = False
     for image in range(1, images + 1):

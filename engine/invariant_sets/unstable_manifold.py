@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-import threading
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.dynamics.fixed_step_batches import map_tiles
-from engine.execution import raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.exits.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
@@ -105,9 +103,7 @@ class UnstableManifold:
             displacement += float(left_eigenvector @ (target - trial) / (left_eigenvector @ self.direction))
         return displacement
 
-    def find_passages(
-        self, phases: np.ndarray, count: int, executor: Executor | None = None, cancel: threading.Event | None = None
-    ) -> np.ndarray:
+    def find_passages(self, phases: np.ndarray, count: int, execution: Execution = DEFAULT_EXECUTION) -> np.ndarray:
         """Find the first downward passages of y = 0 of the orbits with these phases, until they escape.
 
         Parameters
@@ -116,10 +112,8 @@ class UnstableManifold:
             (n,) from 0 to 1.
         count
             Number of passages per orbit, at least 1.
-        executor
-            Any `concurrent.futures.Executor`; None for the default pool of this process.
-        cancel
-            When set, the work stops within about 0.1 s.
+        execution
+            How the computation runs.
 
         Returns
         -------
@@ -137,9 +131,9 @@ class UnstableManifold:
         duration = count * _MAX_PERIODS_PER_PASSAGE * self.orbit.period - growth_time * math.log(self.min_displacement)
         passages = map_tiles(
             _passages, self.potential, self.start_states(displacements), count, curves, exit_gates(curves), duration,
-            shape=(count, 3), executor=executor, cancel=cancel, tiles_per_task=_TILES_PER_TASK,
+            shape=(count, 3), execution=execution, tiles_per_task=_TILES_PER_TASK,
         )  # fmt: skip
-        raise_if_cancelled(cancel)
+        execution.raise_if_cancelled()
         passages[:, :, 2] += growth_time * np.log(displacements)[:, None]
         return passages
 

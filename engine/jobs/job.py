@@ -32,8 +32,8 @@ class Queue(Enum):
 class Job[Result]:
     """A function and its arguments, hashable; equal jobs are computed once.
 
-    The manager adds those of these options that the function has parameters for: ``executor``, ``cancel``, ``on_frame`` for
-    partial results, ``resume``, and ``find_result``, which returns the result of another job.
+    The manager adds those of these options that the function has parameters for: ``execution``, ``on_frame`` for partial
+    results, ``resume``, and ``find_result``, which returns the result of another job.
 
     Attributes
     ----------

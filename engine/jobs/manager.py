@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from engine.execution import count_workers, create_thread_pool, is_cancelled, raise_if_cancelled
+from engine.execution import Execution, count_workers, create_thread_pool
 from engine.jobs.cache import ABSENT, ResultCache
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_priority import MapPriority
@@ -185,8 +185,9 @@ class Jobs:
         error: Exception | None = None
         result: Any = ABSENT
         try:
-            with self._semaphore.acquire(run.job.orbits_held, run.cancel):
-                raise_if_cancelled(run.cancel)
+            execution = Execution(cancel=run.cancel)
+            with self._semaphore.acquire(run.job.orbits_held, execution):
+                execution.raise_if_cancelled()
                 run.executors = self._create_executors(run)
                 result = self._compute(run.job, run, partial(self._publish, run))
         except CancelledError:
@@ -205,8 +206,7 @@ class Jobs:
         arguments = [self._find_result(run, each) if isinstance(each, Job) else each for each in job.arguments]
         executors: Mapping[Queue, Executor] = dict.fromkeys(Queue, self._executor) if self._executor else run.executors
         offered = {
-            "executor": executors[Queue.BACKGROUND],
-            "cancel": run.cancel,
+            "execution": Execution(executors[Queue.BACKGROUND], run.cancel),
             "on_frame": publish,
             "find_result": partial(self._find_result, run),
             "resume": job.find_earlier(job, self.cache) if job.find_earlier is not None else None,
@@ -244,7 +244,7 @@ class Jobs:
                 self.cache.put(run.job, result)
             if self._in_flight.get(run.job) is run:
                 del self._in_flight[run.job]
-            self._ended["failed" if error else "cancelled" if is_cancelled(run.cancel) else "done"] += 1
+            self._ended["failed" if error else "cancelled" if run.cancel.is_set() else "done"] += 1
             return run.release()
 
     def _publish(self, run: _Run, result: Any) -> None:

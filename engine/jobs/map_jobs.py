@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
-from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.basins.wada import WadaTest, compute_wada_test
+from engine.execution import Execution
 from engine.jobs.cache import ResultCache
 from engine.jobs.job import Job, Queue
-from engine.maps.compute import LARGEST_RUN, compute_map
+from engine.maps.compute import LARGEST_RUN, run_map
 from engine.maps.origin_fates import OriginFateMap, join_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.maps.trust import TrustMap, compute_trust
+from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.measures.decay_law_fits import fit_decay_laws
+from engine.measures.decay_laws import DecayLaws
+from engine.measures.escape_statistics import compute_statistics
+from engine.measures.wada import WadaTest, compute_wada_test
 from engine.slices.window import Window
-from engine.statistics.decay_law_fits import fit_decay_laws
-from engine.statistics.decay_laws import DecayLaws
-from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.energy_curves import (
     EnergyCurves,
     EnergyCurvesSpec,
@@ -56,7 +55,7 @@ def map_job(spec: MapSpec) -> Job[EscapeMap]:
     """The job of a map; it continues an interrupted map, or one with a shorter t_max."""
     columns, rows = spec.resolution
     orbits = min(columns * rows, LARGEST_RUN)
-    return Job(compute_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
+    return Job(run_map, (spec,), queue=Queue.FIRST_FRAME, orbits=orbits, find_earlier=_find_shorter_map)
 
 
 def regularity_job(spec: MapSpec) -> Job[RegularityMap]:
@@ -97,7 +96,7 @@ def energy_curves_job(spec: EnergyCurvesSpec) -> Job[EnergyCurves]:
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
     """The cached map that differs by the smallest reduction of t_max and can be resumed."""
     (spec,) = job.arguments
-    maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is compute_map)
+    maps = (key.arguments[0] for key in cache if isinstance(key, Job) and key.function is run_map)
     # Compare energies first: cheap, and there may be thousands of maps.
     same_energy = (key for key in maps if key.energy == spec.energy)
     shorter = [key for key in same_energy if key.t_max <= spec.t_max and replace(key, t_max=spec.t_max) == spec]
@@ -109,23 +108,22 @@ def _measure_basins(escape_map: EscapeMap) -> BasinMeasures:
     return BasinMeasures(compute_basin_entropy(escape_map), compute_wada_test(escape_map))
 
 
-def _fit_laws(escape_map: EscapeMap, box: Window | None, *, cancel: threading.Event) -> DecayLaws:
-    return fit_decay_laws(compute_statistics(escape_map, box), escape_map.spec.t_max, cancel=cancel)
+def _fit_laws(escape_map: EscapeMap, box: Window | None, *, execution: Execution) -> DecayLaws:
+    return fit_decay_laws(compute_statistics(escape_map, box), escape_map.spec.t_max, execution=execution)
 
 
-def _measure_point(spec: EnergyPointSpec, frame: EscapeMap, *, cancel: threading.Event, executor: Executor) -> EnergyPoint:
-    return compute_energy_point(spec, cancel=cancel, executor=executor, frame=frame)
+def _measure_point(spec: EnergyPointSpec, frame: EscapeMap, *, execution: Execution) -> EnergyPoint:
+    return compute_energy_point(spec, execution=execution, frame=frame)
 
 
 def _compute_curves(
     spec: EnergyCurvesSpec,
     *,
     on_frame: Callable[[EnergyCurves], None],
-    cancel: threading.Event,
-    executor: Executor,
+    execution: Execution,
     find_result: Callable[[Job[EnergyPoint]], EnergyPoint],
 ) -> EnergyCurves:
     def measure(point_spec: EnergyPointSpec) -> EnergyPoint:
         return find_result(energy_point_job(point_spec))
 
-    return compute_energy_curves(spec, on_frame=on_frame, cancel=cancel, executor=executor, measure=measure)
+    return compute_energy_curves(spec, on_frame=on_frame, execution=execution, measure=measure)

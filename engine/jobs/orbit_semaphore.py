@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from engine.execution import raise_if_cancelled
+from engine.execution import Execution
 
 SMALL_JOB = 2**16
 """Jobs of at most this many orbits, such as a map of 256 × 256, are not counted and never wait."""
@@ -29,13 +29,13 @@ class OrbitSemaphore:
         self._released = threading.Condition()
 
     @contextmanager
-    def acquire(self, orbits: int, cancel: threading.Event) -> Iterator[None]:
-        """Hold this many orbits while the context is active; CancelledError if `cancel` is set during the wait."""
+    def acquire(self, orbits: int, execution: Execution) -> Iterator[None]:
+        """Hold this many orbits while the context is active; CancelledError if cancelled during the wait."""
         orbits = orbits if orbits > SMALL_JOB else 0
         with self._released:
             while orbits and self.held and self.held + orbits > self.limit:
                 self._released.wait(_CANCEL_POLL_SECONDS)
-                raise_if_cancelled(cancel)
+                execution.raise_if_cancelled()
             self.held += orbits
         try:
             yield

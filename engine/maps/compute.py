@@ -7,18 +7,18 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from engine.dynamics.fates import Fate
-from engine.execution import is_cancelled
+from engine.execution import Execution, shows_progress
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.maps.trust import compute_trust
-from engine.progress import shows_progress
 from engine.results.arrays import read_only
 
 LARGEST_RUN = 2**20
@@ -29,7 +29,6 @@ _MIN_PAUSE, _MAX_PAUSE = 0.1, 1.0
 _PAUSE_SHARE = 0.3
 
 
-@shows_progress("escape map")
 def compute_map(
     spec: MapSpec,
     on_frame: Callable[[EscapeMap], None] | None = None,
@@ -79,15 +78,29 @@ def compute_map(
     >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
     (True, 1.0)
     """
+    return run_map(spec, Execution(executor, cancel, on_progress), on_frame, resume=resume, with_trust=with_trust)
+
+
+@shows_progress("escape map")
+def run_map(
+    spec: MapSpec,
+    execution: Execution,
+    on_frame: Callable[[EscapeMap], None] | None = None,
+    *,
+    resume: EscapeMap | None = None,
+    with_trust: bool = False,
+) -> EscapeMap:
+    """`compute_map` with its execution as one object."""
     if resume is not None:
         _check_resumable(spec, resume)
+    part = execution.part(0, 2) if with_trust else execution
     if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
-        result = _compute_in_blocks(spec, on_frame, cancel, executor, on_progress)
+        result = _compute_in_blocks(spec, part, on_frame)
     else:
-        result = _compute_at_once(spec, on_frame, cancel, executor, resume, on_progress)
+        result = _compute_at_once(spec, part, on_frame, resume)
     if not (with_trust and result.complete):
         return result
-    return replace(result, trust=compute_trust(result, cancel=cancel, executor=executor).trust)
+    return replace(result, trust=compute_trust(result, execution=execution.part(1, 2)).trust)
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
@@ -98,12 +111,7 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
 
 
 def _compute_at_once(
-    spec: MapSpec,
-    on_frame: Callable[[EscapeMap], None] | None,
-    cancel: threading.Event | None,
-    executor: Executor | None,
-    resume: EscapeMap | None,
-    on_progress: Callable[[float], None] | None,
+    spec: MapSpec, execution: Execution, on_frame: Callable[[EscapeMap], None] | None, resume: EscapeMap | None
 ) -> EscapeMap:
     run = MapRun(spec, resume, coarse_first=on_frame is not None)
     throttle = _FrameThrottle(run, on_frame) if on_frame is not None else None
@@ -111,10 +119,9 @@ def _compute_at_once(
     def publish(stage_over: bool) -> None:
         if throttle is not None:
             throttle(stage_over)
-        if on_progress is not None:
-            on_progress(run.progress())
+        execution.report(run.progress)
 
-    run.run(executor, cancel, publish)
+    run.run(execution, publish)
     result = run.result()
     if on_frame is None:
         return result
@@ -148,30 +155,23 @@ def frame_pause(elapsed: float) -> float:
     return min(max(_MIN_PAUSE, _PAUSE_SHARE * elapsed), _MAX_PAUSE)
 
 
-def _compute_in_blocks(
-    spec: MapSpec,
-    on_frame: Callable[[EscapeMap], None] | None,
-    cancel: threading.Event | None,
-    executor: Executor | None,
-    on_progress: Callable[[float], None] | None,
-) -> EscapeMap:
+def _compute_in_blocks(spec: MapSpec, execution: Execution, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
     whole = _empty_map(spec)
     rows_done = 0
     for rows in row_blocks(spec, LARGEST_RUN):
         run = MapRun(spec, rows=rows)
-        run.run(executor, cancel)
+        run.run(execution)
         block = run.frame()
         for name in PIXEL_ARRAYS:
             getattr(whole, name)[rows] = getattr(block, name)
         rows_done += rows.size
-        cancelled = is_cancelled(cancel)
+        cancelled = execution.is_cancelled
         whole = replace(whole, progress=rows_done / spec.resolution[1], horizon=block.horizon)
         if cancelled:
             break
         if on_frame is not None:
             on_frame(_read_only_views(whole))
-        if on_progress is not None:
-            on_progress(whole.progress)
+        execution.report(partial(getattr, whole, "progress"))
     return replace(_read_only_views(whole), complete=not np.any(whole.fate == Fate.NOT_COMPUTED))
 
 

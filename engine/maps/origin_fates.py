@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError, Executor
+from concurrent.futures import CancelledError
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.dynamics.fates import Fate
-from engine.maps.compute import compute_map
+from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.maps.compute import run_map
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import MapSpec
@@ -71,9 +71,7 @@ class OriginFateMap(PixelAnalysis):
         return xr.Dataset(variables, coordinates, self.spec.provenance())
 
 
-def compute_origin_fates(
-    spec: MapSpec, *, cancel: threading.Event | None = None, executor: Executor | None = None
-) -> OriginFateMap:
+def compute_origin_fates(spec: MapSpec, *, execution: Execution = DEFAULT_EXECUTION) -> OriginFateMap:
     """Follow the orbit through each pixel in both time directions.
 
     As H is even in the momenta, the past of (x, y, px, py) is the future of (x, y, −px, −py).
@@ -82,10 +80,8 @@ def compute_origin_fates(
     ----------
     spec
         The request for the map of fates; its `backward` is ignored.
-    cancel
-        When set, the work stops within about 0.1 s.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
+    execution
+        How the computation runs.
 
     Raises
     ------
@@ -104,7 +100,7 @@ def compute_origin_fates(
            [410,  34,  18,  34],
            [ 34, 410,  34,  18]])
     """
-    forward, backward = (compute_map(replace(spec, backward=way), None, cancel, executor) for way in (False, True))
+    forward, backward = (run_map(replace(spec, backward=way), execution.part(int(way), 2)) for way in (False, True))
     if not (forward.complete and backward.complete):
         raise CancelledError
     return join_origin_fates(forward, backward)

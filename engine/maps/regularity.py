@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
 from engine.dynamics.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
-from engine.execution import is_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
-from engine.progress import shows_progress
 
 # SALI is computed up to these times, with a test for tori after each: the SALI of strongly chaotic orbits falls early, most
 # regular orbits are found to be on a torus, and only the few remaining ones are integrated to t_max.
@@ -62,9 +59,7 @@ def compute_regularity(
     escape_map: EscapeMap,
     *,
     on_frame: Callable[[RegularityMap], None] | None = None,
-    cancel: threading.Event | None = None,
-    executor: Executor | None = None,
-    on_progress: Callable[[float], None] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> RegularityMap:
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
@@ -78,12 +73,8 @@ def compute_regularity(
         A complete map.
     on_frame
         Called in this thread with the result so far.
-    cancel
-        When set, orbits not judged yet stay `Regularity.NOT_JUDGED`.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    on_progress
-        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
+    execution
+        How the computation runs. When it is cancelled, orbits not judged yet stay `Regularity.NOT_JUDGED`.
 
     Raises
     ------
@@ -98,26 +89,24 @@ def compute_regularity(
     0.23
     """
     escape_map.check_complete("escape_map")
-    classification = _RegularityClassification(escape_map, cancel, executor)
+    classification = _RegularityClassification(escape_map, execution)
     for step in classification.steps():
-        if is_cancelled(cancel):
+        if execution.is_cancelled:
             break
         step()
         if on_frame is not None:
             on_frame(classification.result())
-        if on_progress is not None:
-            on_progress(classification.progress())
+        execution.report(classification.progress)
     return classification.result()
 
 
 class _RegularityClassification:
     """The orbits not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
 
-    def __init__(self, escape_map: EscapeMap, cancel: threading.Event | None, executor: Executor | None) -> None:
-        self._given_spec, self._cancel = escape_map.spec, cancel
+    def __init__(self, escape_map: EscapeMap, execution: Execution) -> None:
+        self._given_spec, self._execution = escape_map.spec, execution
         escape_map = escape_map.in_well_units()
         self._spec = escape_map.spec
-        self._execution: dict[str, Any] = {"cancel": cancel, "executor": executor}
         codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
         codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
@@ -140,15 +129,15 @@ class _RegularityClassification:
         """Integrate the deviation vectors up to `time`, and judge orbits by their smallest SALI."""
         if not self._pixels.size:
             return
-        orbits = propagate_deviations(self._spec.potential, self._orbits, time - self._time, **self._execution)
-        if is_cancelled(self._cancel):
+        orbits = propagate_deviations(self._spec.potential, self._orbits, time - self._time, execution=self._execution)
+        if self._execution.is_cancelled:
             return
         self._orbits, self._time = orbits, time
         self._judge(is_chaotic(orbits[:, -1]), Regularity.CHAOTIC)
 
     def _find_tori(self, window: float) -> None:
         """Judge quasi-periodic orbits as regular."""
-        digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, **self._execution)
+        digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=self._execution)
         self._judge(digits >= CERTIFIED_DIGITS, Regularity.REGULAR)
 
     def _judge_rest_regular(self) -> None:

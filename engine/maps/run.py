@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +12,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
-from engine.execution import is_cancelled, run_parts
+from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.pixels import MirrorPixels
@@ -110,23 +108,22 @@ class MapRun:
 
     def run(
         self,
-        executor: Executor | None = None,
-        cancel: threading.Event | None = None,
-        on_progress: Callable[[bool], None] = lambda stage_over: None,
+        execution: Execution = DEFAULT_EXECUTION,
+        on_change: Callable[[bool], None] = lambda stage_over: None,
     ) -> None:
-        """Run all stages until done or cancelled; `on_progress(stage_over)` is called whenever pixels may have changed."""
-        self._find_starts(executor, cancel)
+        """Run all stages until done or cancelled; `on_change(stage_over)` is called whenever pixels may have changed."""
+        self._find_starts(execution)
         for pixels, stride, horizon in self._stages():
-            if is_cancelled(cancel):
+            if execution.is_cancelled:
                 break
             if certifies_before(self.spec, self.horizon, horizon):
-                self._certify(executor, cancel, lambda: on_progress(False))
-            self._begin_stage(pixels, stride, horizon, executor, cancel)
+                self._certify(execution, lambda: on_change(False))
+            self._begin_stage(pixels, stride, horizon, execution)
             propagate_batch(
                 self.spec.potential, self._curves, self._batch, pixels[self._started[pixels]], horizon,
-                final=horizon == self.spec.t_max, executor=executor, cancel=cancel, on_progress=lambda: on_progress(False),
+                final=horizon == self.spec.t_max, execution=execution, on_tiles=lambda: on_change(False),
             )  # fmt: skip
-            on_progress(True)
+            on_change(True)
 
     def _stages(self) -> Iterator[tuple[np.ndarray, int, float]]:
         """(pixels, stride, horizon): every refinement at the shortest horizon, then all pixels at longer ones."""
@@ -146,21 +143,19 @@ class MapRun:
             stride //= 2
         yield self._mirror.firsts_of(numbers.ravel()), 1
 
-    def _find_starts(self, executor: Executor | None, cancel: threading.Event | None) -> None:
+    def _find_starts(self, execution: Execution) -> None:
         """Find the initial states of all pixels that have none."""
         missing = self._mirror.firsts_among(np.flatnonzero((self._batch.fate == Fate.NOT_COMPUTED) & ~self._started))
         axes = self.spec, self.x, self.ordinate
-        for part, states in run_parts(_start_states, missing, lambda part: (*axes, part), executor=executor, cancel=cancel):
+        for part, states in run_parts(_start_states, missing, lambda part: (*axes, part), execution=execution):
             self._batch.set_starts(part, states)
 
-    def _begin_stage(
-        self, pixels: np.ndarray, stride: int, horizon: float, executor: Executor | None, cancel: threading.Event | None
-    ) -> None:
+    def _begin_stage(self, pixels: np.ndarray, stride: int, horizon: float, execution: Execution) -> None:
         """Compute the exits that the pixels need, and start pixels not started yet."""
         self.stride, self.horizon = stride, horizon
         self._find_exits(pixels)
         fresh = pixels[~self._started[pixels]]
-        tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, executor=executor, cancel=cancel)
+        tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, execution=execution)
         self._started[tested] = True
 
     def _find_exits(self, pixels: np.ndarray) -> None:
@@ -175,7 +170,7 @@ class MapRun:
                 self._curves[row] = exit_curves_in_well_units(potential, energy)
                 self._rows_without_exits.discard(row)
 
-    def _certify(self, executor: Executor | None, cancel: threading.Event | None, on_round: Callable[[], None]) -> None:
+    def _certify(self, execution: Execution, on_round: Callable[[], None]) -> None:
         """Mark undecided orbits as bounded that have a certificate."""
         spec, batch = self.spec, self._batch
         undecided = self._mirror.firsts_among(np.flatnonzero(batch.fate == Fate.NOT_COMPUTED))
@@ -184,7 +179,7 @@ class MapRun:
         undecided = undecided[~closed]
         grid_indices = np.column_stack(np.divmod(undecided, self.shape[1]))
         certifier = BoundednessCertifier(
-            spec.potential, spec.common_energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, executor, cancel
+            spec.potential, spec.common_energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, execution
         )
 
         def mark_certified() -> None:

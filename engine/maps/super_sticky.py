@@ -6,9 +6,6 @@ practical integration time.
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,13 +13,12 @@ import numpy as np
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.classification import collect_outcomes
 from engine.dynamics.fates import Fate, Regularity
-from engine.execution import raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.maps.pixels import MirrorPixels
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.progress import shows_progress
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.validation import checked_t_max
@@ -103,9 +99,7 @@ def find_super_sticky_orbits(
     regularity: RegularityMap,
     t_max: float,
     *,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
-    on_progress: Callable[[float], None] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> SuperStickySearch:
     """Integrate the chaotic bounded orbits of a map until they escape or a much longer t_max.
 
@@ -118,12 +112,8 @@ def find_super_sticky_orbits(
     t_max
         Integration time from the start, dimensionless, at least t_max of the map and at most 1e8. The last orbit of Zotos (2014)
         escapes at 3.5e6.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    cancel
-        When set, the work stops within about 0.1 s.
-    on_progress
-        Called in this thread with the share of the work done, 0 to 1.
+    execution
+        How the computation runs.
 
     Returns
     -------
@@ -148,7 +138,7 @@ def find_super_sticky_orbits(
     mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
     partner = mirror.partner[pixels]
     batch = OrbitBatch.from_starts(states, np.zeros(pixels.size, np.int64))
-    _propagate(spec, batch, np.flatnonzero(pixels <= partner), t_max / units.time, executor, cancel, on_progress)
+    _propagate(spec, batch, np.flatnonzero(pixels <= partner), t_max / units.time, execution)
     if mirror.symmetric:
         firsts = np.flatnonzero(pixels < partner)
         batch.copy_to_images(firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_channels)
@@ -173,21 +163,20 @@ def _propagate(
     batch: OrbitBatch,
     which: np.ndarray,
     t_max: float,
-    executor: Executor | None,
-    cancel: threading.Event | None,
-    on_progress: Callable[[float], None] | None,
+    execution: Execution,
 ) -> None:
     """Integrate the orbits `which` of a batch to t_max; raises CancelledError when cancelled."""
 
-    def report() -> None:
-        if on_progress is not None:
-            covered = np.where(batch.fate[which] == Fate.NOT_COMPUTED, np.minimum(batch.t[which] / t_max, 1.0), 1.0)
-            on_progress(float(covered.mean()))
+    def progress() -> float:
+        covered = np.where(batch.fate[which] == Fate.NOT_COMPUTED, np.minimum(batch.t[which] / t_max, 1.0), 1.0)
+        return float(covered.mean())
 
     assert spec.common_energy is not None
     curves = exit_curves(spec.potential, spec.common_energy)[None]
-    propagate_batch(spec.potential, curves, batch, which, t_max, final=True, executor=executor, cancel=cancel, on_progress=report)
-    raise_if_cancelled(cancel)
+    propagate_batch(
+        spec.potential, curves, batch, which, t_max, final=True, execution=execution, on_tiles=lambda: execution.report(progress)
+    )
+    execution.raise_if_cancelled()
 
 
 def _check(escape_map: EscapeMap, regularity: RegularityMap, t_max: float) -> None:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
-from engine.execution import is_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
@@ -22,7 +21,6 @@ from engine.maps.result import EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.potentials.compiled import kernels_of
-from engine.progress import shows_progress
 from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE
 
@@ -104,9 +102,7 @@ def compute_trust(
     escape_map: EscapeMap,
     *,
     on_frame: Callable[[TrustMap], None] | None = None,
-    cancel: threading.Event | None = None,
-    executor: Executor | None = None,
-    on_progress: Callable[[float], None] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> TrustMap:
     """Find the pixels of a complete map whose outcome changes under a perturbation far smaller than a pixel.
 
@@ -125,12 +121,8 @@ def compute_trust(
         A complete map.
     on_frame
         Called in this thread with the result so far.
-    cancel
-        When set, pixels whose test is not finished stay `Trust.NOT_TESTED`.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
-    on_progress
-        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
+    execution
+        How the computation runs. When it is cancelled, pixels whose test is not finished stay `Trust.NOT_TESTED`.
 
     Raises
     ------
@@ -145,7 +137,7 @@ def compute_trust(
     (0.54, 0.03)
     """
     escape_map.check_complete("escape_map")
-    test = _TrustTest(escape_map, on_frame, cancel, executor)
+    test = _TrustTest(escape_map, on_frame, execution)
     spec, reached = escape_map.spec.in_well_units(), 0.0
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
@@ -154,8 +146,7 @@ def compute_trust(
             test.certify(reached)
         test.propagate(horizon)
         reached = horizon
-        if on_progress is not None:
-            on_progress(test.progress())
+        execution.report(test.progress)
     return test.result()
 
 
@@ -262,13 +253,11 @@ class _TrustTest:
         self,
         escape_map: EscapeMap,
         on_frame: Callable[[TrustMap], None] | None,
-        cancel: threading.Event | None,
-        executor: Executor | None,
+        execution: Execution,
     ) -> None:
-        self._given_spec, self._on_frame, self._cancel = escape_map.spec, on_frame, cancel
+        self._given_spec, self._on_frame, self._execution = escape_map.spec, on_frame, execution
         escape_map = escape_map.in_well_units()
         self._spec = escape_map.spec
-        self._execution: dict[str, Any] = {"cancel": cancel, "executor": executor}
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         uncertified = _find_uncertified(escape_map)
         codes[uncertified | find_unlike_neighbours(escape_map.fate, escape_map.crossings)] = Trust.NOT_TESTED
@@ -304,7 +293,7 @@ class _TrustTest:
 
     def is_finished(self) -> bool:
         """Whether all pixels are decided or the test was cancelled."""
-        return not self._undecided.size or is_cancelled(self._cancel)
+        return not self._undecided.size or self._execution.is_cancelled
 
     def propagate(self, horizon: float) -> None:
         """Integrate both reruns of all undecided pixels to the horizon."""
@@ -312,14 +301,14 @@ class _TrustTest:
         with ThreadPoolExecutor(len(self._reruns)) as threads:
             list(threads.map(partial(self._propagate_rerun, horizon), self._reruns))
         self._update_codes()
-        if not is_cancelled(self._cancel):
+        if not self._execution.is_cancelled:
             self._find_chaotic(horizon)
             self._update_codes()
 
     def _propagate_rerun(self, horizon: float, rerun: _Rerun) -> None:
         propagate_batch(
             self._spec.potential, self._curves, rerun.batch, self._undecided, horizon,
-            final=horizon == self._spec.t_max, tolerance=rerun.tolerance, **self._execution,
+            final=horizon == self._spec.t_max, tolerance=rerun.tolerance, execution=self._execution,
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
@@ -344,7 +333,7 @@ class _TrustTest:
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
         certifier = BoundednessCertifier(
             self._spec.potential, self._spec.common_energy, first.batch.state[tested], grid_indices, self._spec.t_max - reached,
-            **self._execution,
+            execution=self._execution,
         )  # fmt: skip
 
         def mark_certified() -> None:

@@ -240,6 +240,10 @@ class Plane(Slice, Enum):
     Y_PY = Coordinate.Y, Coordinate.PY, Coordinate.PX
 
 
+SPACE = Plane.X_Y
+"""The plane of the positions, in which V, paths and exits are drawn."""
+
+
 def common_energy(energy: Energy) -> float | None:
     """h of all starts of a map; None on a slice with an axis h."""
     return None if isinstance(energy, tuple) else energy

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from engine.dynamics.fates import Fate
-from engine.maps.compute import compute_map
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.maps.compute import run_map
 from engine.maps.result import EscapeMap, describe_codes
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
+from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.potentials.potential import Potential
-from engine.progress import shows_progress
 from engine.slices.slice import Slice
 from engine.slices.window import Window
-from engine.statistics.escape_statistics import EscapeStatistics, compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_curves import EnergyCurvesSpec
 
@@ -39,9 +37,7 @@ def compute_crossing_statistics(
     window: Window | None = None,
     count_outside: bool = False,
     most_crossings: int | None = None,
-    on_progress: Callable[[float], None] | None = None,
-    cancel: threading.Event | None = None,
-    executor: Executor | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> xr.Dataset:
     """Compute a map at each energy and tabulate how many orbits escape after how many crossings.
 
@@ -63,12 +59,8 @@ def compute_crossing_statistics(
         Window of all maps; None for the default window of each energy.
     count_outside, most_crossings
         As in `tabulate_crossing_statistics`.
-    on_progress
-        Called in this thread with the fraction of the work that is finished, 0 to 1.
-    cancel
-        When set, the computation stops within about 0.1 s.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
+    execution
+        How the computation runs.
 
     Returns
     -------
@@ -91,7 +83,7 @@ def compute_crossing_statistics(
     sweep = EnergyCurvesSpec(potential, plane, tuple(energies), resolution, t_max, exponent=False)
     specs = [replace(sweep.point(h).map_spec, window=window) if window else sweep.point(h).map_spec for h in sweep.energies]
     _check_most_crossings(most_crossings)
-    maps = _compute_maps(specs, on_progress, cancel, executor)
+    maps = _compute_maps(specs, execution)
     return tabulate_crossing_statistics(maps, count_outside=count_outside, most_crossings=most_crossings)
 
 
@@ -155,19 +147,9 @@ class _Row:
     worst_energy_error: float
 
 
-def _compute_maps(
-    specs: Sequence[MapSpec],
-    on_progress: Callable[[float], None] | None,
-    cancel: threading.Event | None,
-    executor: Executor | None,
-) -> Iterator[EscapeMap]:
+def _compute_maps(specs: Sequence[MapSpec], execution: Execution) -> Iterator[EscapeMap]:
     for index, spec in enumerate(specs):
-
-        def report(frame: EscapeMap, finished: int = index) -> None:
-            if on_progress is not None:
-                on_progress((finished + frame.progress) / len(specs))
-
-        yield require_complete(compute_map(spec, report if on_progress is not None else None, cancel, executor))
+        yield require_complete(run_map(spec, execution.part(index, len(specs))))
 
 
 def _check_most_crossings(most_crossings: int | None) -> None:

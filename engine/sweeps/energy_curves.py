@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import Executor
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from engine.basins.basin_entropy import compute_basin_entropy
-from engine.basins.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.dynamics.fates import Fate
-from engine.maps.compute import compute_map
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.maps.compute import run_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.measures.basin_entropy import compute_basin_entropy
+from engine.measures.escape_statistics import compute_statistics
+from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.potentials.potential import Potential
-from engine.progress import shows_progress
 from engine.results.result import Result
 from engine.slices.slice import Slice
-from engine.statistics.escape_statistics import compute_statistics
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.energy_grid import checked_sweep
 
@@ -187,10 +185,8 @@ def compute_energy_curves(
     spec: EnergyCurvesSpec,
     *,
     on_frame: Callable[[EnergyCurves], None] | None = None,
-    cancel: threading.Event | None = None,
-    executor: Executor | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
     measure: Callable[[EnergyPointSpec], EnergyPoint] | None = None,
-    on_progress: Callable[[float], None] | None = None,
 ) -> EnergyCurves:
     """Measure exits and basins at many energies, in an order from coarse to fine.
 
@@ -200,14 +196,10 @@ def compute_energy_curves(
         The request.
     on_frame
         Called in this thread after each energy with the points so far.
-    cancel
-        When set, the computation stops within about 0.2 s.
-    executor
-        Any `concurrent.futures.Executor`; None for the default pool of this process.
+    execution
+        How the computation runs.
     measure
         Replaces `compute_energy_point`, for example to use a cache; None to compute all energies.
-    on_progress
-        Called in this thread with the share done, 0 to 1. None for a progress bar in a terminal or a notebook.
 
     Raises
     ------
@@ -229,22 +221,19 @@ def compute_energy_curves(
     points: list[EnergyPoint] = []
     for index in _coarse_to_fine(len(spec.energies)):
         point_spec = spec.point(spec.energies[index])
-        points.append(
-            measure(point_spec) if measure is not None else compute_energy_point(point_spec, cancel=cancel, executor=executor)
-        )
+        part = execution.part(len(points), len(spec.energies))
+        points.append(measure(point_spec) if measure is not None else compute_energy_point(point_spec, execution=part))
         curves = EnergyCurves(spec, tuple(sorted(points, key=lambda point: point.energy)))
         if on_frame is not None:
             on_frame(curves)
-        if on_progress is not None:
-            on_progress(len(points) / len(spec.energies))
+        execution.report(lambda: len(points) / len(spec.energies))
     return curves
 
 
 def compute_energy_point(
     spec: EnergyPointSpec,
     *,
-    cancel: threading.Event | None = None,
-    executor: Executor | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
     frame: EscapeMap | None = None,
 ) -> EnergyPoint:
     """Measure one energy.
@@ -253,7 +242,7 @@ def compute_energy_point(
     ----------
     spec
         The request.
-    cancel, executor
+    execution
         As in `compute_energy_curves`.
     frame
         The complete map of `spec.map_spec`; None to compute it.
@@ -264,12 +253,12 @@ def compute_energy_point(
         When cancelled.
     """
     if frame is None:
-        frame = compute_map(spec.map_spec, None, cancel, executor)
+        frame = run_map(spec.map_spec, execution.part(0, 2))
     point = _evaluate_map(require_complete(frame))
     open_channels = spec.map_spec.potential.open_channels(point.energy)
     if not (spec.exponent and open_channels):
         return point
-    found = compute_uncertainty_exponent(spec.map_spec, work=_WORK, executor=executor, cancel=cancel)
+    found = compute_uncertainty_exponent(spec.map_spec, work=_WORK, execution=execution.part(1, 2))
     return replace(point, exponent=found.exponent, exponent_low=found.low, exponent_high=found.high)
 
 

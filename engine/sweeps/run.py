@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import threading
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,14 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.execution import SerialExecutor, count_workers, default_executor
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.lyapunov_orbits import exit_curves
-from engine.maps.compute import LARGEST_RUN, compute_map
+from engine.maps.compute import LARGEST_RUN, run_map
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
-from engine.progress import shows_progress
 from engine.results.wording import format_count
 from engine.storage.output_lock import hold_lock
 from engine.sweeps.complete_map import require_complete
@@ -45,9 +42,7 @@ def run_sweep(
     spec: SweepSpec,
     store: Path,
     *,
-    on_progress: Callable[[float], None] | None = None,
-    cancel: threading.Event | None = None,
-    executor: Executor | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> xr.Dataset:
     """Compute the maps of a sweep, or those that are missing, into a store.
 
@@ -61,12 +56,8 @@ def run_sweep(
         The request.
     store
         Folder of the Zarr group (format 3): new, empty, or of an earlier run of the same request.
-    on_progress
-        Called in this thread with the fraction of the work that is finished, 0 to 1.
-    cancel
-        When set, the computation stops within about 0.2 s; the store can be resumed.
-    executor
-        Any `concurrent.futures.Executor`, including the executor of a Dask client; None for the default pool of this process.
+    execution
+        How the computation runs; the store of a cancelled one can be resumed.
 
     Returns
     -------
@@ -101,47 +92,31 @@ def run_sweep(
     if sweep is None or sweep.pending():
         with hold_lock(path):
             sweep = _find_store(spec, path) or _create_store(spec, path)
-            _compute_pending(spec, sweep, on_progress, cancel, executor)
-    if on_progress is not None:
-        on_progress(1.0)
+            _compute_pending(spec, sweep, execution)
+    execution.report(lambda: 1.0)
     return sweep.open_dataset()
 
 
-def _compute_pending(
-    spec: SweepSpec,
-    sweep: SweepStore,
-    on_progress: Callable[[float], None] | None,
-    cancel: threading.Event | None,
-    executor: Executor | None,
-) -> None:
+def _compute_pending(spec: SweepSpec, sweep: SweepStore, execution: Execution) -> None:
     """Compute the unfinished energies, one after the other."""
     pending, count = sweep.pending(), len(spec.energies)
     sweep.prepare_writing()
     for finished, index in enumerate(pending, start=count - len(pending)):
-        _compute_energy(spec, sweep, index, _start_progress(on_progress, finished, count), cancel, executor)
+        part = execution.part(finished, count)
+        part.report(lambda: 0.0)
+        _compute_energy(spec, sweep, index, part)
 
 
-def _compute_energy(
-    spec: SweepSpec,
-    sweep: SweepStore,
-    index: int,
-    report: Callable[[float], None] | None,
-    cancel: threading.Event | None,
-    executor: Executor | None,
-) -> None:
+def _compute_energy(spec: SweepSpec, sweep: SweepStore, index: int, execution: Execution) -> None:
     """Compute the missing row blocks of the map at one energy into the store."""
     map_spec = spec.map_spec(spec.energies[index])
     blocks = list(row_blocks(map_spec, spec.piece or LARGEST_RUN))
     for number in sweep.unfinished_blocks(index, blocks):
-        if len(blocks) == 1:
-            on_frame = None if report is None else lambda frame: report(frame.progress)
-            block = require_complete(compute_map(map_spec, on_frame, cancel, executor))
-        else:
-            block = _compute_block(map_spec, blocks[number], cancel, executor)
+        part = execution.part(number, len(blocks))
+        block = _compute_block(map_spec, blocks[number], part) if len(blocks) > 1 else require_complete(run_map(map_spec, part))
         with _name_in_errors(sweep.path):
             sweep.write(index, blocks[number], block)
-        if report is not None:
-            report((number + 1) / len(blocks))
+        part.report(lambda: 1.0)
     with _name_in_errors(sweep.path):
         sweep.mark_done(index)
 
@@ -157,10 +132,10 @@ def _name_in_errors(path: Path) -> Iterator[None]:
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
-def _compute_block(spec: MapSpec, rows: np.ndarray, cancel: threading.Event | None, executor: Executor | None) -> EscapeMap:
+def _compute_block(spec: MapSpec, rows: np.ndarray, execution: Execution) -> EscapeMap:
     """The given rows of a map. Raises CancelledError when cancelled."""
     run = MapRun(spec, rows=rows)
-    run.run(executor, cancel)
+    run.run(execution)
     return require_complete(run.frame())
 
 
@@ -183,14 +158,6 @@ def _create_store(spec: SweepSpec, path: Path) -> SweepStore:
     with _name_in_errors(path):
         create_store(path, template, fill_values, spec.coordinates(), spec.provenance(), chunk_rows)
     return SweepStore(path)
-
-
-def _start_progress(on_progress: Callable[[float], None] | None, finished: int, count: int) -> Callable[[float], None] | None:
-    """Report the finished energies, and return a callback for the finished fraction of the next; None without `on_progress`."""
-    if on_progress is None:
-        return None
-    on_progress(finished / count)
-    return lambda fraction: on_progress((finished + fraction) / count)
 
 
 @dataclass(frozen=True)
@@ -223,9 +190,7 @@ class SweepPlan:
         return f"{self.orbits:.3g} orbits: about {took} on {cores} ({spent}), at most {self.bytes / 1e9:.3g} GB"
 
 
-def plan_sweep(
-    spec: SweepSpec, *, cores: int | None = None, executor: Executor | None = None, cancel: threading.Event | None = None
-) -> SweepPlan:
+def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Execution = DEFAULT_EXECUTION) -> SweepPlan:
     """Estimate the cost of a sweep from the processor time of coarse maps, 48 and 96 pixels a side, at twelve energies.
 
     For larger maps the cost grows at most linearly with the number of pixels, and more slowly where invariant curves enclose many
@@ -237,12 +202,10 @@ def plan_sweep(
     spec
         The request.
     cores
-        Number of workers, 1 or more; None for those of `executor`.
-    executor
-        Where the sweep is to run; it is only asked for its number of workers, which are assumed to be as fast as this core. None
-        for the default pool of this process.
-    cancel
-        When set, planning stops within about 0.2 s.
+        Number of workers, 1 or more; None for those of `execution`.
+    execution
+        How the sweep is to run: its executor is only asked for the number of its workers, which are assumed to be as fast as this
+        core.
 
     Raises
     ------
@@ -253,28 +216,28 @@ def plan_sweep(
     """
     if cores is not None:
         cores = checked_count("cores", cores, 1, MOST_CORES)
-    workers = cores or count_workers(executor or default_executor())
+    workers = cores or execution.workers
     prepare_kernels(spec.potential)
     count = len(spec.energies)
     indices = np.unique(((np.arange(_PLANNED_ENERGIES) + 0.5) * count / _PLANNED_ENERGIES).astype(int))
-    seconds = [_predict_seconds(spec.map_spec(spec.energies[index]), cancel) for index in indices]
+    seconds = [_predict_seconds(spec.map_spec(spec.energies[index]), execution) for index in indices]
     pixel_bytes = sum(np.dtype(dtype).itemsize for name, (dtype, _) in PIXEL_ARRAYS.items() if name != "started")
     return SweepPlan(spec.orbits, count * float(np.mean(seconds)) / workers, spec.orbits * pixel_bytes, workers)
 
 
-def _predict_seconds(spec: MapSpec, cancel: threading.Event | None) -> float:
+def _predict_seconds(spec: MapSpec, execution: Execution) -> float:
     """Processor time of one map in seconds, extrapolated linearly from two coarse ones."""
     pixels = np.prod(spec.resolution)
     small, large = (side * side for side in _COARSE_SIDES)
-    first, second = (_measure_seconds(replace(spec, resolution=(side, side)), cancel) for side in _COARSE_SIDES)
+    first, second = (_measure_seconds(replace(spec, resolution=(side, side)), execution) for side in _COARSE_SIDES)
     slope = (second - first) / (large - small)
     # A slope that is not positive is measurement noise.
     rate = min(slope, second / large) if slope > 0.0 else second / large
     return second + rate * max(float(pixels) - large, 0.0)
 
 
-def _measure_seconds(spec: MapSpec, cancel: threading.Event | None) -> float:
+def _measure_seconds(spec: MapSpec, execution: Execution) -> float:
     begun = time.thread_time()
     # In this thread, whose processor time is measured.
-    require_complete(compute_map(spec, None, cancel, SerialExecutor()))
+    require_complete(run_map(spec, execution.in_this_thread()))
     return time.thread_time() - begun

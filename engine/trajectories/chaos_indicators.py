@@ -9,7 +9,6 @@ III at 0.24 and 0.26). "Tori" are the orbits among them certified by 8 agreeing 
 
 from __future__ import annotations
 
-import threading
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -18,7 +17,7 @@ import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regularity, describe_fate, judge_regularity
-from engine.execution import SerialExecutor, raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -103,7 +102,7 @@ class IndicatorVerdict:
 
 
 def compute_birkhoff_digits(
-    potential: Potential, state: Any, t_max: float, *, cancel: threading.Event | None = None
+    potential: Potential, state: Any, t_max: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> BirkhoffDigits:
     """Compare weighted Birkhoff averages of x² and y² over two consecutive windows, for increasing window lengths.
 
@@ -120,8 +119,8 @@ def compute_birkhoff_digits(
         (4,) x, y, px, py at the start of the first window; finite, dimensionless.
     t_max
         Largest total time of two windows, 0 < t_max ≤ 1e8, dimensionless. No window uses more than 128 000.
-    cancel
-        When set, the computation stops after the current window, which takes at most about 0.2 s.
+    execution
+        How the computation runs.
 
     Returns
     -------
@@ -146,10 +145,10 @@ def compute_birkhoff_digits(
     t_max = checked_t_max(t_max) / units.time
     digits: list[float] = []
     for window in WINDOWS:
-        if 2.0 * window > t_max or not _is_bounded(potential, start, 2.0 * window, cancel):
+        if 2.0 * window > t_max or not _is_bounded(potential, start, 2.0 * window, execution):
             break
-        found = count_agreeing_digits(potential, start[None], window, executor=SerialExecutor(), cancel=cancel)[0]
-        raise_if_cancelled(cancel)
+        found = count_agreeing_digits(potential, start[None], window, execution=execution.in_this_thread())[0]
+        execution.raise_if_cancelled()
         if found == 0.0:
             break
         digits.append(float(found))
@@ -159,11 +158,11 @@ def compute_birkhoff_digits(
     return BirkhoffDigits(read_only(windows), read_only(np.array(digits)), units.time)
 
 
-def _is_bounded(potential: Potential, start: np.ndarray, t_end: float, cancel: threading.Event | None) -> bool:
+def _is_bounded(potential: Potential, start: np.ndarray, t_end: float, execution: Execution) -> bool:
     """Whether the orbit has not escaped by `t_end`."""
     energy = float(potential.energy(start))
-    fate = classify_orbits(potential, energy, start[None], t_end, executor=SerialExecutor(), cancel=cancel).fate[0]
-    raise_if_cancelled(cancel)
+    fate = classify_orbits(potential, energy, start[None], t_end, execution=execution.in_this_thread()).fate[0]
+    execution.raise_if_cancelled()
     return bool(fate == Fate.BOUNDED)
 
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
-from engine.execution import raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.results.result import Result
@@ -65,8 +63,7 @@ def find_divergent_start(
     t_max: float = 1e5,
     *,
     furthest: float | None = None,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> DivergentStart | None:
     """Find the nearest neighbour of a start that escapes through another channel, or at all if the start is bounded.
 
@@ -91,10 +88,8 @@ def find_divergent_start(
         bounded until then are not divergent.
     furthest
         Largest distance to search, finite, above 1e-13 length units of the well, dimensionless; None for one such unit.
-    executor
-        Any `concurrent.futures.Executor`; None for the shared pool of this process.
-    cancel
-        When set, the search stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Returns
     -------
@@ -126,7 +121,7 @@ def find_divergent_start(
     find_lyapunov_orbits(potential, h)
     scale = np.array(plane.axis_units(units))
     centre = np.array([x, ordinate]) / scale
-    search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, executor, cancel)
+    search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
         fate, inside = Fate(search.centre_fate).name.lower(), plane.limiting_curve.replace("=", "≤")
@@ -170,11 +165,10 @@ class _Search:
         plane: Slice,
         h: float,
         centre: np.ndarray,
-        executor: Executor | None,
-        cancel: threading.Event | None,
+        execution: Execution,
     ) -> None:
         self.potential, self.plane, self.h, self.centre = potential, plane, h, centre
-        self.executor, self.cancel = executor, cancel
+        self.execution = execution
 
     def classify_centre(self, t_max: float) -> None:
         """Set the fate of the centre and the integration time of its neighbours."""
@@ -212,8 +206,8 @@ class _Search:
         x, ordinate = points.reshape(-1, 2).T
         states = self.plane.states(self.potential, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
-        outcomes = classify_orbits(self.potential, self.h, states[exists], t_max, executor=self.executor, cancel=self.cancel)
-        raise_if_cancelled(self.cancel)
+        outcomes = classify_orbits(self.potential, self.h, states[exists], t_max, execution=self.execution)
+        self.execution.raise_if_cancelled()
         fate, escape_time = np.full(x.size, Fate.FORBIDDEN, np.int8), np.full(x.size, np.nan)
         fate[exists], escape_time[exists] = outcomes.fate, outcomes.escape_time
         return fate.reshape(points.shape[:-1]), escape_time.reshape(points.shape[:-1])

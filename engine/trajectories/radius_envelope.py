@@ -6,7 +6,6 @@ R² oscillates twice per revolution along a bounded orbit and grows beyond the L
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +14,7 @@ import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
-from engine.execution import SerialExecutor, raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -58,7 +57,7 @@ class RadiusEnvelope(Result):
 
 
 def compute_radius_envelope(
-    potential: Potential, state: Any, t_max: float, *, intervals: int = 1000, cancel: threading.Event | None = None
+    potential: Potential, state: Any, t_max: float, *, intervals: int = 1000, execution: Execution = DEFAULT_EXECUTION
 ) -> RadiusEnvelope:
     """Integrate one orbit until it escapes or `t_max` and return the smallest and largest R² in each interval of time.
 
@@ -75,8 +74,8 @@ def compute_radius_envelope(
         Longest integration time, 0 < t_max ≤ 1e8, dimensionless.
     intervals
         Number of intervals, 1 to 100 000.
-    cancel
-        When set, the integration stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Raises
     ------
@@ -88,15 +87,15 @@ def compute_radius_envelope(
     start, t_max = checked_state("state", state), checked_t_max(t_max)
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
     energy = float(potential.energy(start))
-    outcome = classify_orbits(potential, energy, start[None], t_max, executor=SerialExecutor(), cancel=cancel)
+    outcome = classify_orbits(potential, energy, start[None], t_max, execution=execution.in_this_thread())
     fate, escape_time = int(outcome.fate[0]), float(outcome.escape_time[0])
-    raise_if_cancelled(cancel)
+    execution.raise_if_cancelled()
     if fate == Fate.OUTSIDE:
         raise ValueError(f"state={short_repr(state)}: lies beyond a Lyapunov orbit; must lie inside")
     t = np.linspace(0.0, escape_time if fate >= 1 else t_max, intervals + 1)
     low, high = np.full(intervals, np.inf), np.full(intervals, -np.inf)
     units = potential.units
-    for times, r2 in _sample_r2(potential.in_well_units, start / units.state, t / units.time, cancel):
+    for times, r2 in _sample_r2(potential.in_well_units, start / units.state, t / units.time, execution):
         # A boundary belongs to the intervals on both sides.
         for side in ("left", "right"):
             interval = np.clip(np.searchsorted(t, units.time * times, side=side) - 1, 0, intervals - 1)
@@ -107,16 +106,16 @@ def compute_radius_envelope(
 
 
 def _sample_r2(
-    potential: Potential, start: np.ndarray, boundaries: np.ndarray, cancel: threading.Event | None
+    potential: Potential, start: np.ndarray, boundaries: np.ndarray, execution: Execution
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Sample times and R² for successive parts of the orbit: at most `_SAMPLE_INTERVAL` apart, and at every boundary.
 
     All quantities are in units of the well.
     """
     kernels = kernels_of(potential)
-    for steps, until in trace_pieces(kernels, start, float(boundaries[-1]), potential.channels, cancel):
+    for steps, until in trace_pieces(kernels, start, float(boundaries[-1]), potential.channels, execution):
         begin = steps[0, 4]
         even = np.linspace(begin, until, int(np.ceil((until - begin) / _SAMPLE_INTERVAL)) + 1)
         times = np.union1d(even, boundaries[(boundaries >= begin) & (boundaries <= until)])
-        x, y, _, _ = sample_path(kernels, steps, times, cancel)
+        x, y, _, _ = sample_path(kernels, steps, times, execution)
         yield times, x * x + y * y

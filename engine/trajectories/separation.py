@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -44,7 +44,7 @@ class Separation(Result):
 
 
 def compute_separation(
-    potential: Potential, first: Any, second: Any, t_end: float, *, cancel: threading.Event | None = None
+    potential: Potential, first: Any, second: Any, t_end: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> Separation:
     """Compute the distance of two orbits at 2000 evenly spaced times.
 
@@ -60,8 +60,8 @@ def compute_separation(
     t_end
         Last time, 0 < t_end ≤ 1e8, dimensionless; not after the escape of either orbit. Times beyond `LONGEST_SEPARATION` are
         left out.
-    cancel
-        When set, the integration stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def compute_separation(
     paths = []
     for name, state in (("first", first), ("second", second)):
         start = checked_state(name, state) / units.state
-        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, cancel)
-        paths.append(sample_path(kernels, steps, times, cancel))
+        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, execution)
+        paths.append(sample_path(kernels, steps, times, execution))
     distance = units.length * np.linalg.norm(paths[1] - paths[0], axis=0)
     return Separation(read_only(units.time * times), read_only(distance))

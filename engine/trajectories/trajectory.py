@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +11,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
-from engine.execution import SerialExecutor, raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -86,7 +85,7 @@ class Orbit(Result):
         return sum(array.nbytes for array in (self.t, *state, self.sali, self.lyapunov_exponent, self.r2))
 
 
-def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, cancel: threading.Event | None = None) -> Orbit:
+def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, execution: Execution = DEFAULT_EXECUTION) -> Orbit:
     """Integrate one orbit until it escapes or `t_max`.
 
     Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4 of
@@ -103,8 +102,8 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     t_max
         Longest integration time, 0 < t_max ≤ 1e7, dimensionless. Beyond about 1e5 samples are up to one integration step apart
         and take about 300 bytes per time unit.
-    cancel
-        When set, the integration stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Raises
     ------
@@ -123,12 +122,12 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, can
     start = checked_state("state", state)
     t_max = checked_t_max(t_max, MAX_ORBIT_TIME)
     energy = float(potential.energy(start))
-    outcome = classify_orbits(potential, energy, start[None], t_max, executor=SerialExecutor(), cancel=cancel)
-    raise_if_cancelled(cancel)
+    outcome = classify_orbits(potential, energy, start[None], t_max, execution=execution.in_this_thread())
+    execution.raise_if_cancelled()
     fate = int(outcome.fate[0])
     t_end = 0.0 if fate == Fate.OUTSIDE else float(outcome.escape_time[0]) if fate >= 1 else t_max
     units = potential.units
-    times, path, sali, exponent = _sample_orbit(potential.in_well_units, start / units.state, t_end / units.time, cancel)
+    times, path, sali, exponent = _sample_orbit(potential.in_well_units, start / units.state, t_end / units.time, execution)
     x, y, px, py = units.state[:, None] * path
     times, exponent = units.time * times, exponent / units.time
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
@@ -146,16 +145,16 @@ def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
 
 
 def _sample_orbit(
-    potential: Potential, start: np.ndarray, t_end: float, cancel: threading.Event | None
+    potential: Potential, start: np.ndarray, t_end: float, execution: Execution
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to `t_end`, all in units of the well."""
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = kernels_of(potential)
-    steps = trace_steps(kernels, start, t_end, potential.channels, cancel)
+    steps = trace_steps(kernels, start, t_end, potential.channels, execution)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
-    path = sample_path(kernels, steps, times, cancel)
-    sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, cancel)
+    path = sample_path(kernels, steps, times, execution)
+    sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, execution)
     exponent = np.full_like(times, np.nan)
     with np.errstate(over="ignore"):
         # The reciprocal of a very short time can overflow.

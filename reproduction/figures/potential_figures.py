@@ -68,7 +68,10 @@ def _draw_escapes(axes: Axes, shelf: MapShelf, case: str, window: Window) -> Non
     _draw_forbidden(axes, potential, energy, window)
     draw_pieces(axes, trace_zero_velocity_curve(potential, Plane.X_Y, energy, window), LIGHT.limiting_curve, 1.0)
     for channel, start in find_sample_starts(shelf.map(case, Plane.X_PX, energy)).items():
-        orbit, colour = integrate_orbit(potential, start, shelf.quality.t_max, cancel=shelf.cancel), PAPER.channels[channel - 1]
+        orbit, colour = (
+            integrate_orbit(potential, start, shelf.quality.t_max, execution=shelf.execution),
+            PAPER.channels[channel - 1],
+        )
         axes.plot(orbit.x, orbit.y, color=colour, linewidth=1.1)
         axes.plot(orbit.x[0], orbit.y[0], "o", color=colour, markersize=4.5, markeredgecolor=LIGHT.halo, zorder=3)
         _draw_arrow(axes, orbit.x[-1], orbit.y[-1], orbit.px[-1], orbit.py[-1], colour, window)

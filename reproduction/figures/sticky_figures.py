@@ -84,7 +84,7 @@ def _follow_late_orbit(search: SuperStickySearch, shelf: MapShelf) -> RadiusEnve
     if place is None:
         return None
     return compute_radius_envelope(
-        search.spec.potential, search.states[place], search.t_max, intervals=_INTERVALS, cancel=shelf.cancel
+        search.spec.potential, search.states[place], search.t_max, intervals=_INTERVALS, execution=shelf.execution
     )
 
 

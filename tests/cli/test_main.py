@@ -14,7 +14,8 @@ import pytest
 
 from cli import map_analyses
 from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
-from engine import CASES, EscapeMap, compute_map
+from engine import CASES, EscapeMap
+from engine.service import run_map
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -95,7 +96,7 @@ def test_failed_computation_writes_nothing(run: Run, tmp_path: Path, monkeypatch
     def fail(*arguments: Any) -> EscapeMap:
         raise RuntimeError("first line\nsecond line")
 
-    monkeypatch.setattr(map_analyses, "compute_map", fail)
+    monkeypatch.setattr(map_analyses, "run_map", fail)
     assert run(*MAP, "--output", tmp_path / "map") == (
         FAILED, "", "escape-explorer: RuntimeError: first line second line\n",
     )  # fmt: skip
@@ -105,9 +106,9 @@ def test_failed_computation_writes_nothing(run: Run, tmp_path: Path, monkeypatch
 def test_ctrl_c_cancels_a_map_and_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*arguments: Any) -> EscapeMap:
         signal.raise_signal(signal.SIGINT)
-        return compute_map(*arguments)
+        return run_map(*arguments)
 
-    monkeypatch.setattr(map_analyses, "compute_map", interrupted)
+    monkeypatch.setattr(map_analyses, "run_map", interrupted)
     before = signal.getsignal(signal.SIGINT)
     code, out, err = run(*MAP, "--trust", "--output", tmp_path / "map")
     assert (code, out) == (INTERRUPTED, "")
@@ -122,7 +123,7 @@ def test_second_ctrl_c_interrupts_at_once(run: Run, tmp_path: Path, monkeypatch:
         signal.raise_signal(signal.SIGINT)
         raise AssertionError("not reached")
 
-    monkeypatch.setattr(map_analyses, "compute_map", never_stops)
+    monkeypatch.setattr(map_analyses, "run_map", never_stops)
     assert run(*MAP, "--output", tmp_path / "map") == (INTERRUPTED, "", "escape-explorer: interrupted; nothing was written\n")
     assert not any(tmp_path.iterdir())
 

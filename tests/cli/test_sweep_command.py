@@ -6,8 +6,8 @@ import json
 import signal
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ import xarray as xr
 
 import engine
 from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
-from engine import CASES, Plane, SweepSpec
+from engine import CASES, Execution, Plane, SweepSpec
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -45,12 +45,12 @@ def test_listed_energies_equal_spaced_ones(run: Run, tmp_path: Path) -> None:
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run_sweep = engine.run_sweep
 
-    def interrupted(spec: SweepSpec, store: Path, *, on_progress: Any, cancel: Any, executor: Any) -> xr.Dataset:
+    def interrupted(spec: SweepSpec, store: Path, *, execution: Execution) -> xr.Dataset:
         def stop_later(share: float) -> None:
-            if share >= 1 / 3 and not cancel.is_set():
+            if share >= 1 / 3 and not execution.is_cancelled:
                 signal.raise_signal(signal.SIGINT)
 
-        return run_sweep(spec, store, on_progress=stop_later, cancel=cancel, executor=executor)
+        return run_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
 
     store = tmp_path / "store.zarr"
     with monkeypatch.context() as patch:

@@ -6,7 +6,8 @@ from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from engine.execution import collect_result, run_parts
+from engine import CASES, MapSpec, Plane, compute_map, compute_regularity, compute_trust, execution
+from engine.execution import DEFAULT_EXECUTION, Execution, run_parts, shows_progress
 
 
 def doubled(values: np.ndarray) -> np.ndarray:
@@ -18,14 +19,14 @@ def doubled(values: np.ndarray) -> np.ndarray:
 def test_parts_cover_all_indices_in_order(count: int, workers: int) -> None:
     indices = 3 * np.arange(count)
     with ThreadPoolExecutor(workers) as pool:
-        parts = list(run_parts(doubled, indices, lambda part: (part,), executor=pool))
+        parts = list(run_parts(doubled, indices, lambda part: (part,), Execution(pool)))
     np.testing.assert_array_equal(np.concatenate([indices[:0], *(part for part, _ in parts)]), indices)
     assert all(np.array_equal(result, 2 * part) for part, result in parts)
 
 
 def test_many_indices_are_shared_among_all_workers() -> None:
     with ThreadPoolExecutor(3) as pool:
-        assert len(list(run_parts(doubled, np.arange(100_000), lambda part: (part,), executor=pool))) >= 3
+        assert len(list(run_parts(doubled, np.arange(100_000), lambda part: (part,), Execution(pool)))) >= 3
 
 
 class CancelledWhileWaiting(Future[None]):
@@ -40,9 +41,73 @@ class CancelledWhileWaiting(Future[None]):
 def test_call_cancelled_while_waited_for_has_no_result() -> None:
     cancel = threading.Event()
     cancel.set()
-    assert collect_result(CancelledWhileWaiting(), cancel) is None
+    assert Execution(cancel=cancel).collect(CancelledWhileWaiting()) is None
 
 
 def test_call_dropped_while_waited_for_is_an_error() -> None:
     with pytest.raises(BrokenExecutor):
-        collect_result(CancelledWhileWaiting(), threading.Event())
+        Execution(cancel=threading.Event()).collect(CancelledWhileWaiting())
+
+
+def test_parts_report_their_share_of_the_progress() -> None:
+    shares: list[float] = []
+    Execution(on_progress=shares.append).part(1, 4).part(0, 2).report(lambda: 1.0)
+    assert shares == [0.375]
+
+
+def test_a_share_that_nobody_follows_is_not_computed() -> None:
+    Execution().part(0, 2).report(lambda: 1 / 0)
+
+
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.36, (24, 24), t_max=200.0)
+
+
+@shows_progress("test")
+def long_call(*, on_frame: object = None, execution: Execution = DEFAULT_EXECUTION) -> object:
+    return execution.on_progress
+
+
+@pytest.fixture
+def terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
+
+
+@pytest.mark.usefixtures("terminal")
+class TestBar:
+    def test_is_shown_in_a_terminal(self) -> None:
+        assert callable(long_call())
+
+    def test_is_not_shown_beside_other_reports(self) -> None:
+        assert long_call(on_frame=print) is None
+        assert long_call(execution=Execution(on_progress=print)) is print
+
+    def test_is_not_shown_by_other_threads(self) -> None:
+        found: list[object] = []
+        thread = threading.Thread(target=lambda: found.append(long_call()))
+        thread.start()
+        thread.join()
+        assert found == [None]
+
+    def test_calls_within_a_call_show_none(self) -> None:
+        with execution._bar("outer"):
+            assert long_call() is None
+
+
+def test_without_a_terminal_there_is_no_bar() -> None:
+    assert long_call() is None
+
+
+def test_progress_rises_to_one_and_changes_no_result() -> None:
+    shares: list[float] = []
+    found = compute_map(SPEC, on_progress=shares.append)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    assert (found.fate == compute_map(SPEC).fate).all()
+
+
+def test_analyses_report_progress() -> None:
+    found = compute_map(SPEC)
+    for analyse in (compute_trust, compute_regularity):
+        shares: list[float] = []
+        analyse(found, execution=Execution(on_progress=shares.append))
+        assert shares[-1] == 1.0

@@ -7,7 +7,7 @@ import pytest
 import engine
 from engine import service
 
-OPTIONS = {"t_max", "executor", "cancel", "on_frame", "on_progress"}
+OPTIONS = {"t_max", "execution", "executor", "cancel", "on_frame", "on_progress"}
 # Their parameters may be given by position, as in earlier releases.
 STABLE = {"classify_orbits", "compute_map", "integrate_orbit"}
 
@@ -26,11 +26,6 @@ def test_optional_parameters_are_keywords(name: str) -> None:
     parameters = inspect.signature(getattr(engine, name)).parameters.values()
     optional = [one.name for one in parameters if one.default is not one.empty and one.kind is one.POSITIONAL_OR_KEYWORD]
     assert name in STABLE or not (set(optional) & OPTIONS - {"t_max"})
-
-
-@pytest.mark.parametrize("name", ["compute_map", "compute_trust", "compute_regularity", "compute_energy_curves", "run_sweep"])
-def test_long_calls_report_their_progress(name: str) -> None:
-    assert "on_progress" in inspect.signature(getattr(engine, name)).parameters
 
 
 def test_name_that_moved_works_with_a_warning() -> None:

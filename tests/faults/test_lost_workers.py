@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from cli.clusters import _describing_losses
 from cli.main import FAILED, main
 from engine import CASES, Plane, SweepSpec, run_sweep
 from engine.dynamics.fixed_step_batches import map_tiles
+from engine.execution import Execution
 from tests.forgetful_pool import ForgetfulPool
 from tests.forked import Finished, run
 
@@ -47,14 +49,14 @@ def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(
     good_calls: int, tmp_path: Path, straight: dict[str, bytes]
 ) -> None:
     with ForgetfulPool(good_calls) as pool, pytest.raises(BrokenExecutor):
-        run_sweep(SPEC, tmp_path / "store", executor=pool)
+        run_sweep(SPEC, tmp_path / "store", execution=Execution(pool))
     run_sweep(SPEC, tmp_path / "store")
     assert files_of(tmp_path / "store") == straight
 
 
 def test_dropped_call_is_no_missing_result() -> None:
     with ForgetfulPool(0) as pool, pytest.raises(BrokenExecutor):
-        map_tiles(lambda *_: np.ones(1), CASES["I"], np.zeros((1, 4)), executor=pool)
+        map_tiles(lambda *_: np.ones(1), CASES["I"], np.zeros((1, 4)), execution=Execution(pool))
 
 
 @pytest.mark.parametrize(
@@ -88,7 +90,9 @@ def sweep_and_lose(folder: Path, lose: Callable[[Any], None] | None) -> None:
                 lost.append(share)
                 lose(cluster)
 
-        engine.run_sweep = lambda *arguments, **named: run_whole(*arguments, **{**named, "on_progress": on_progress})
+        engine.run_sweep = lambda spec, store, *, execution: run_whole(
+            spec, store, execution=replace(execution, on_progress=on_progress)
+        )
         sys.exit(main((*SWEEP, "--scheduler", cluster.scheduler_address)))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map, compute_regularity
+from engine.execution import Execution
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import curve_energies, nine_energies
 from reproduction.quality import Quality
@@ -59,6 +60,6 @@ def test_the_super_sticky_search_has_its_own_resolution() -> None:
 def test_a_cancelled_shelf_returns_no_incomplete_map() -> None:
     cancel = threading.Event()
     cancel.set()
-    shelf = MapShelf(TINY, cancel=cancel)
+    shelf = MapShelf(TINY, execution=Execution(cancel=cancel))
     with pytest.raises(CancelledError):
         shelf.map("I", Plane.X_PX, 0.13)

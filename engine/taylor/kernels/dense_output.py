@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from threading import Event
 from types import ModuleType
 
 import numpy as np
 
-from engine.execution import raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.taylor.jit.decorator import kernel
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 
@@ -16,7 +15,12 @@ _CHUNK = 8192
 
 
 def trace_pieces(
-    kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
+    kernels: ModuleType,
+    state: np.ndarray,
+    t_end: float,
+    channels: int,
+    execution: Execution = DEFAULT_EXECUTION,
+    tolerance: float = TOLERANCE,
 ) -> Iterator[tuple[np.ndarray, float]]:
     """The steps of an orbit from t = 0 to `t_end`, in pieces of limited length.
 
@@ -28,7 +32,7 @@ def trace_pieces(
     gates[:, :2] = 0.0
     begin, start, full = 0.0, state, True
     while full:
-        raise_if_cancelled(cancel)
+        execution.raise_if_cancelled()
         piece = np.empty((_CHUNK, 5))
         count = kernels.record_steps(start, begin, t_end, tolerance, gates, piece)
         # The last row of a full piece is the first of the next.
@@ -38,18 +42,25 @@ def trace_pieces(
 
 
 def trace_steps(
-    kernels: ModuleType, state: np.ndarray, t_end: float, channels: int, cancel: Event | None = None, tolerance: float = TOLERANCE
+    kernels: ModuleType,
+    state: np.ndarray,
+    t_end: float,
+    channels: int,
+    execution: Execution = DEFAULT_EXECUTION,
+    tolerance: float = TOLERANCE,
 ) -> np.ndarray:
     """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
-    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, cancel, tolerance)])
+    return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution, tolerance)])
 
 
-def sample_path(kernels: ModuleType, steps: np.ndarray, times: np.ndarray, cancel: Event | None = None) -> np.ndarray:
+def sample_path(
+    kernels: ModuleType, steps: np.ndarray, times: np.ndarray, execution: Execution = DEFAULT_EXECUTION
+) -> np.ndarray:
     """(4, n) x, y, px, py at increasing `times`, from the series of the steps (m, 5) that contain them."""
     row = np.searchsorted(steps[:, 4], times, side="right") - 1
     path = np.empty((4, times.size))
     for begin in range(0, len(steps), _CHUNK):
-        raise_if_cancelled(cancel)
+        execution.raise_if_cancelled()
         part = np.ascontiguousarray(steps[begin : begin + _CHUNK].T)
         jets = np.empty((2, ORDER + 1, part.shape[1]))
         kernels.jets(part.shape[1], *part[:4], *jets)
@@ -85,7 +96,7 @@ def _evaluate(jets, row, tau):
 
 
 def sample_deviations(
-    kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, cancel: Event | None = None
+    kernels: ModuleType, path: np.ndarray, times: np.ndarray, vectors: np.ndarray, execution: Execution = DEFAULT_EXECUTION
 ) -> tuple[np.ndarray, np.ndarray]:
     """SALI (n,) and the growth ln(|w1(t)|/|w1(0)|) (n,) of the first of two deviation vectors, at `times` along a path (4, n).
 
@@ -97,7 +108,7 @@ def sample_deviations(
     w = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     sali[0] = min(np.linalg.norm(w[0] - w[1]), np.linalg.norm(w[0] + w[1]))
     for begin in range(0, times.size - 1, _CHUNK):
-        raise_if_cancelled(cancel)
+        execution.raise_if_cancelled()
         end = min(begin + _CHUNK, times.size - 1)
         matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
         _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])

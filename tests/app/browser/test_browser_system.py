@@ -8,11 +8,12 @@ import numpy as np
 
 from app.browser.browser_system import make_browser_system, system_key
 from engine import CASES, Plane, default_window
+from engine.execution import Execution
 from engine.service import System
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:
-    system = make_browser_system(CASES["III"], 0.2, 1.0, cancel=threading.Event())
+    system = make_browser_system(CASES["III"], 0.2, 1.0, execution=Execution(cancel=threading.Event()))
     table = system.windows[Plane.X_PX.key]
     for energy in (0.3, 0.45, 0.8):
         window = default_window(CASES["III"], Plane.X_PX, energy)

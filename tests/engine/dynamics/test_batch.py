@@ -10,7 +10,7 @@ import pytest
 
 from engine import CASES, Fate, Plane, start_states
 from engine.dynamics.batch import OrbitBatch, OrbitPool, Tile, propagate_batch
-from engine.execution import create_thread_pool, default_executor
+from engine.execution import Execution, create_thread_pool, default_executor
 from engine.exits.lyapunov_orbits import exit_curves
 
 POTENTIAL, ENERGY = CASES["III"], 0.4
@@ -62,7 +62,7 @@ def test_worker_errors_are_raised(batch: OrbitBatch, curves: np.ndarray) -> None
             return super().submit(lambda: 1 / 0)
 
     with Broken(1) as pool, pytest.raises(ZeroDivisionError):
-        propagate_batch(POTENTIAL, curves, batch, np.arange(60), 20.0, final=True, executor=pool)
+        propagate_batch(POTENTIAL, curves, batch, np.arange(60), 20.0, final=True, execution=Execution(pool))
 
 
 def test_default_executor_is_shared() -> None:
@@ -101,5 +101,5 @@ def test_orbits_that_are_given_back_are_propagated_last(batch: OrbitBatch) -> No
 @pytest.mark.parametrize("count", [10, 40, 60])
 def test_orbits_that_do_not_fill_the_lanes_are_propagated_to_the_end(batch: OrbitBatch, curves: np.ndarray, count: int) -> None:
     with CountingPool(2) as pool:
-        propagate_batch(POTENTIAL, curves, batch, np.arange(count), 50.0, final=True, executor=pool)
+        propagate_batch(POTENTIAL, curves, batch, np.arange(count), 50.0, final=True, execution=Execution(pool))
     assert pool.calls <= 2

@@ -8,6 +8,7 @@ import pytest
 from engine import CASES, Plane, integrate_orbit, start_states
 from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
 from engine.dynamics.fates import is_chaotic
+from engine.execution import Execution
 from engine.potentials.compiled import fixed_step_size
 
 STATES = start_states(CASES["II"], Plane.X_PX, 0.16, np.array([0.0, 0.1, -0.3]), np.array([0.0, 0.05, 0.1]))
@@ -42,4 +43,4 @@ def test_sali_at_or_below_the_threshold_and_nan_are_chaotic() -> None:
 def test_cancelling_leaves_nan() -> None:
     cancel = threading.Event()
     cancel.set()
-    assert np.isnan(propagate_deviations(CASES["II"], attach_deviations(STATES), 10.0, cancel=cancel)).all()
+    assert np.isnan(propagate_deviations(CASES["II"], attach_deviations(STATES), 10.0, execution=Execution(cancel=cancel))).all()

@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, start_states
 from engine.dynamics.section_points import find_section_points
+from engine.execution import Execution
 
 POTENTIAL, ENERGY = CASES["III"], 0.24
 
@@ -50,7 +51,7 @@ def test_points_after_t_max_are_nan(states: np.ndarray) -> None:
 
 def test_the_executor_does_not_affect_the_result(states: np.ndarray) -> None:
     with ThreadPoolExecutor(3) as pool:
-        found_points = find_section_points(POTENTIAL, states, 3, 60.0, executor=pool)
+        found_points = find_section_points(POTENTIAL, states, 3, 60.0, execution=Execution(pool))
     np.testing.assert_array_equal(found_points, find_section_points(POTENTIAL, states, 3, 60.0))
     np.testing.assert_array_equal(found_points[-1:], find_section_points(POTENTIAL, states[-1:], 3, 60.0))
 
@@ -62,6 +63,6 @@ def test_an_empty_list_has_no_points() -> None:
 def test_cancelled_points_are_nan(states: np.ndarray) -> None:
     cancel = threading.Event()
     cancel.set()
-    points = find_section_points(POTENTIAL, states, 3, 60.0, cancel=cancel)
+    points = find_section_points(POTENTIAL, states, 3, 60.0, execution=Execution(cancel=cancel))
     assert points.shape == (len(states), 3, 2)
     assert np.isnan(points).all()

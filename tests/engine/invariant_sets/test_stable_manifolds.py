@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 
 from engine import CASES, MapSpec, Plane, Potential, Window, classify_orbits, compute_map, find_lyapunov_orbits, start_states
 from engine.dynamics.section_points import find_section_points
+from engine.execution import Execution
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, StableManifolds, find_stable_manifolds
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from tests.peers.dop853 import equations
@@ -273,7 +274,7 @@ def test_non_finite_energy_raises(energy: float) -> None:
 
 def test_result_does_not_depend_on_the_executor() -> None:
     with ThreadPoolExecutor(3) as pool:
-        found = find_stable_manifolds(CASES["I"], 0.15, images=2, executor=pool)
+        found = find_stable_manifolds(CASES["I"], 0.15, images=2, execution=Execution(pool))
     for arc, other in zip(found.arcs, manifolds(CASES["I"], 0.15).arcs, strict=True):
         np.testing.assert_array_equal([arc.x, arc.px], [other.x, other.px])
 
@@ -282,7 +283,7 @@ def test_cancelling_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        find_stable_manifolds(CASES["I"], 0.15, cancel=cancel)
+        find_stable_manifolds(CASES["I"], 0.15, execution=Execution(cancel=cancel))
 
 
 def test_arrays_are_read_only() -> None:

@@ -7,14 +7,15 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 
 import pytest
 
+from engine.execution import Execution
 from engine.jobs.orbit_semaphore import SMALL_JOB, OrbitSemaphore
 
 LARGE = 4 * SMALL_JOB
 
 
 def test_small_jobs_never_wait() -> None:
-    semaphore, cancel = OrbitSemaphore(LARGE), threading.Event()
-    with semaphore.acquire(LARGE, cancel), semaphore.acquire(SMALL_JOB, cancel):
+    semaphore = OrbitSemaphore(LARGE)
+    with semaphore.acquire(LARGE, Execution()), semaphore.acquire(SMALL_JOB, Execution()):
         assert semaphore.held == LARGE
 
 
@@ -22,11 +23,11 @@ def test_large_job_waits_for_the_release_of_another() -> None:
     semaphore, released = OrbitSemaphore(LARGE), threading.Event()
 
     def second() -> bool:
-        with semaphore.acquire(LARGE, threading.Event()):
+        with semaphore.acquire(LARGE, Execution()):
             return released.is_set()
 
     with ThreadPoolExecutor(1) as threads:
-        with semaphore.acquire(LARGE, threading.Event()):
+        with semaphore.acquire(LARGE, Execution()):
             waiting = threads.submit(second)
             assert not waiting.done()
             released.set()
@@ -36,13 +37,13 @@ def test_large_job_waits_for_the_release_of_another() -> None:
 
 def test_job_above_the_limit_runs_alone() -> None:
     semaphore = OrbitSemaphore(LARGE)
-    with semaphore.acquire(3 * LARGE, threading.Event()):
+    with semaphore.acquire(3 * LARGE, Execution()):
         assert semaphore.held == 3 * LARGE
 
 
 def test_cancel_ends_the_wait() -> None:
     semaphore, cancel = OrbitSemaphore(LARGE), threading.Event()
     cancel.set()
-    with semaphore.acquire(LARGE, threading.Event()), pytest.raises(CancelledError), semaphore.acquire(LARGE, cancel):
+    with semaphore.acquire(LARGE, Execution()), pytest.raises(CancelledError), semaphore.acquire(LARGE, Execution(cancel=cancel)):
         pass
     assert semaphore.held == 0

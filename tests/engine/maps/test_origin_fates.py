@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, MapSpec, OriginFateMap, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
+from engine.execution import Execution
 from engine.service import join_origin_fates
 
 # Channel numbers under y → −y; 0 is bounded.
@@ -118,4 +119,4 @@ def test_cancelling_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.26), cancel=cancel)
+        compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.26), execution=Execution(cancel=cancel))

@@ -19,6 +19,7 @@ from engine import (
     integrate_orbit,
     start_states,
 )
+from engine.execution import Execution
 from engine.service import judge_regularity
 
 
@@ -87,7 +88,7 @@ def test_cancelling_leaves_the_rest_not_judged() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.16, (13, 13), t_max=2e4))
     cancel = threading.Event()
     cancel.set()
-    result = compute_regularity(whole, cancel=cancel)
+    result = compute_regularity(whole, execution=Execution(cancel=cancel))
     assert not result.complete
     assert Regularity.NOT_JUDGED in result.character
 

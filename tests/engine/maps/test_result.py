@@ -24,6 +24,7 @@ from engine import (
     start_states,
 )
 from engine.dynamics import batch as orbit_batch
+from engine.execution import Execution
 from engine.maps.compute import frame_pause
 from engine.maps.run import COARSE_PIXELS
 from tests.forgetful_pool import ForgetfulPool
@@ -417,7 +418,7 @@ def test_start_beyond_a_lyapunov_orbit_is_outside() -> None:
 def test_cancelled_orbits_stay_undecided(starts: np.ndarray) -> None:
     cancel = threading.Event()
     cancel.set()
-    fate = classify_orbits(SPEC.potential, 0.35, starts[:2000], 1e7, cancel=cancel).fate
+    fate = classify_orbits(SPEC.potential, 0.35, starts[:2000], 1e7, execution=Execution(cancel=cancel)).fate
     assert Fate.NOT_COMPUTED in fate
 
 

@@ -20,6 +20,7 @@ from engine import (
     compute_map,
     compute_regularity,
 )
+from engine.execution import Execution
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
 
 LONG = 2e4
@@ -93,7 +94,7 @@ def test_description_without_chaotic_orbits() -> None:
 
 def test_progress_increases_to_one() -> None:
     seen: list[float] = []
-    find_super_sticky_orbits(*map_and_regularity(), LONG, on_progress=seen.append)
+    find_super_sticky_orbits(*map_and_regularity(), LONG, execution=Execution(on_progress=seen.append))
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
 
@@ -102,7 +103,7 @@ def test_cancelling_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        find_super_sticky_orbits(*map_and_regularity(), LONG, cancel=cancel)
+        find_super_sticky_orbits(*map_and_regularity(), LONG, execution=Execution(cancel=cancel))
 
 
 def test_regularity_of_another_map_raises() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.execution import SerialExecutor
+from engine.execution import Execution, SerialExecutor
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.maps.spec import FINEST_PIXEL
 from engine.maps.trust import (
@@ -234,7 +234,7 @@ def test_pixels_below_the_escape_energy_are_never_doubtful() -> None:
 
 def test_result_does_not_depend_on_the_executor() -> None:
     whole, trust = map_and_trust("II", 0.2)
-    np.testing.assert_array_equal(compute_trust(whole, executor=SerialExecutor()).trust, trust.trust)
+    np.testing.assert_array_equal(compute_trust(whole, execution=Execution(SerialExecutor())).trust, trust.trust)
 
 
 def test_later_frames_keep_the_decided_pixels() -> None:
@@ -252,7 +252,7 @@ def test_later_frames_keep_the_decided_pixels() -> None:
 def test_cancelling_leaves_the_rest_not_tested() -> None:
     whole, trust = map_and_trust()
     cancel = threading.Event()
-    partial = compute_trust(whole, on_frame=lambda _frame: cancel.set(), cancel=cancel)
+    partial = compute_trust(whole, on_frame=lambda _frame: cancel.set(), execution=Execution(cancel=cancel))
     assert not partial.complete
     assert Trust.NOT_TESTED in partial.trust
     decided = partial.trust != Trust.NOT_TESTED

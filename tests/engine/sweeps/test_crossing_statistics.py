@@ -12,8 +12,9 @@ import pytest
 import xarray as xr
 
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Window, compute_crossing_statistics, compute_map, compute_statistics
+from engine.execution import Execution
+from engine.measures.published_fits import PAPER_FITS
 from engine.service import tabulate_crossing_statistics
-from engine.statistics.published_fits import PAPER_FITS
 
 SIDE = 50
 T_MAX = 1000.0
@@ -187,7 +188,9 @@ def test_window_applies_to_all_energies() -> None:
 
 def test_progress_reaches_1() -> None:
     reported: list[float] = []
-    compute_crossing_statistics(CASES["II"], Plane.X_PX, (0.3, 0.4), (20, 20), 100.0, on_progress=reported.append)
+    compute_crossing_statistics(
+        CASES["II"], Plane.X_PX, (0.3, 0.4), (20, 20), 100.0, execution=Execution(on_progress=reported.append)
+    )
     assert reported[-1] == 1.0
     assert 0.5 in reported
 
@@ -196,7 +199,7 @@ def test_cancel_raises() -> None:
     cancel = threading.Event()
     with pytest.raises(CancelledError):
         compute_crossing_statistics(
-            CASES["II"], Plane.X_PX, (0.3, 0.4), (20, 20), on_progress=lambda _: cancel.set(), cancel=cancel
+            CASES["II"], Plane.X_PX, (0.3, 0.4), (20, 20), execution=Execution(cancel=cancel, on_progress=lambda _: cancel.set())
         )
 
 

@@ -19,6 +19,7 @@ from engine import (
     compute_map,
     compute_statistics,
 )
+from engine.execution import Execution
 from engine.service import EnergyPoint, EnergyPointSpec, compute_energy_point
 
 SPEC = EnergyCurvesSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), 500.0, exponent=False)
@@ -103,4 +104,4 @@ def test_cancel_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_energy_curves(EnergyCurvesSpec(CASES["III"], Plane.X_PX, (0.26, 0.27)), cancel=cancel)
+        compute_energy_curves(EnergyCurvesSpec(CASES["III"], Plane.X_PX, (0.26, 0.27)), execution=Execution(cancel=cancel))

@@ -20,7 +20,7 @@ import pytest
 import xarray as xr
 
 from engine import CASES, Fate, MapSpec, Plane, SweepSpec, Window, compute_map, run_sweep
-from engine.execution import count_workers
+from engine.execution import Execution, count_workers
 from engine.service import SweepPlan, plan_sweep
 from engine.slices.default_window import default_window
 from tests.forked import Finished, run
@@ -49,7 +49,7 @@ def run_and_die(store: Path, killed_after: float) -> None:
         if killed_after <= share < 1.0:
             interrupt_writing(4, lambda: os.kill(os.getpid(), signal.SIGKILL))
 
-    run_sweep(LONG_SPEC, store, on_progress=on_progress)
+    run_sweep(LONG_SPEC, store, execution=Execution(on_progress=on_progress))
 
 
 def interrupt_writing(number: int, interrupt: Callable[[], None]) -> None:
@@ -105,7 +105,7 @@ def stacked_maps(spec: SweepSpec) -> xr.Dataset:
 def progress_of(spec: SweepSpec, store: Path) -> list[float]:
     """Run a sweep and return its progress: the finished share at first, and after each row block."""
     seen: list[float] = []
-    run_sweep(spec, store, on_progress=seen.append)
+    run_sweep(spec, store, execution=Execution(on_progress=seen.append))
     return seen
 
 
@@ -113,7 +113,11 @@ def run_until(spec: SweepSpec, store: Path, share: float) -> None:
     """Run a sweep that is cancelled at the given progress."""
     cancel = threading.Event()
     with pytest.raises(CancelledError):
-        run_sweep(spec, store, on_progress=lambda progress: cancel.set() if progress >= share else None, cancel=cancel)
+        run_sweep(
+            spec,
+            store,
+            execution=Execution(cancel=cancel, on_progress=lambda progress: cancel.set() if progress >= share else None),
+        )
 
 
 class TestRequest:
@@ -265,7 +269,7 @@ class TestResuming:
         with monkeypatch.context() as patch:
             patch.setattr(os, "fsync", os.fsync)
             with pytest.raises(KeyboardInterrupt):
-                run_sweep(IN_BLOCKS, tmp_path / "store", on_progress=on_progress)
+                run_sweep(IN_BLOCKS, tmp_path / "store", execution=Execution(on_progress=on_progress))
         assert progress_of(IN_BLOCKS, tmp_path / "store") == [straight[0], *straight[2:]]
         assert files_of(tmp_path / "store") == files_of(tmp_path / "straight")
 
@@ -337,7 +341,7 @@ class TestStoreThatCannotBeWritten:
         seen: list[float] = []
         (tmp_path / "file").touch()
         with pytest.raises(OSError, match="file"):
-            run_sweep(SPEC, tmp_path / "file" / "store", on_progress=seen.append)
+            run_sweep(SPEC, tmp_path / "file" / "store", execution=Execution(on_progress=seen.append))
         assert not seen
 
     def test_read_only_store_fails_before_computing(
@@ -351,7 +355,7 @@ class TestStoreThatCannotBeWritten:
         marks(tmp_path / "store")[0].unlink()
         monkeypatch.setattr("tempfile.TemporaryFile", refused)
         with pytest.raises(PermissionError):
-            run_sweep(SPEC, tmp_path / "store", on_progress=seen.append)
+            run_sweep(SPEC, tmp_path / "store", execution=Execution(on_progress=seen.append))
         assert not seen
 
 
@@ -364,7 +368,7 @@ class TestCluster:
         cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=processes, **options)
         with cluster, distributed.Client(cluster) as client:
             assert count_workers(client.get_executor()) == 2
-            spread = run_sweep(LONG_SPEC, tmp_path / "cluster", executor=client.get_executor())
+            spread = run_sweep(LONG_SPEC, tmp_path / "cluster", execution=Execution(client.get_executor()))
         assert np.unique(spread["certificate"]).size >= 3
         if processes:
             straight = request.getfixturevalue("straight")
@@ -383,7 +387,7 @@ class TestPlan:
         assert plan.bytes == sum(run_sweep(SPEC, tmp_path / "store")[name].nbytes for name in ARRAYS)
 
     def test_time_scales_with_pixels_and_cores(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setattr("engine.sweeps.run._measure_seconds", lambda spec, _cancel: 0.5 + 1e-4 * np.prod(spec.resolution))
+        monkeypatch.setattr("engine.sweeps.run._measure_seconds", lambda spec, _execution: 0.5 + 1e-4 * np.prod(spec.resolution))
         one = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=1)
         many = plan_sweep(replace(SPEC, resolution=(1000, 1000)), cores=10)
         assert one.seconds == pytest.approx(3 * 100.5)
@@ -392,7 +396,7 @@ class TestPlan:
     def test_plan_uses_the_midpoints_of_twelve_intervals(self, monkeypatch: pytest.MonkeyPatch) -> None:
         seen: set[float] = set()
 
-        def measured(spec: MapSpec, _cancel: object) -> float:
+        def measured(spec: MapSpec, _execution: object) -> float:
             seen.add(float(spec.energy))  # type: ignore[arg-type]
             return 1.0
 
@@ -404,7 +408,7 @@ class TestPlan:
         cancel = threading.Event()
         cancel.set()
         with pytest.raises(CancelledError):
-            plan_sweep(SPEC, cancel=cancel)
+            plan_sweep(SPEC, execution=Execution(cancel=cancel))
 
     def test_cores_must_be_positive(self) -> None:
         with pytest.raises(ValueError, match="cores=0"):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, Orbit, Plane, Potential, classify_orbits, integrate_orbit, start_states
+from engine.execution import Execution
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.results.wording import format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits, evaluate_indicators
@@ -97,7 +98,7 @@ def test_cancelled_digits_raise() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_birkhoff_digits(CASES["II"], SEA, 1e5, cancel=cancel)
+        compute_birkhoff_digits(CASES["II"], SEA, 1e5, execution=Execution(cancel=cancel))
 
 
 @pytest.mark.parametrize(("state", "t_max", "named"), [([0.0, 0.0, np.nan, 0.1], 1e4, "state="), (SEA, 0.0, "t_max=")])

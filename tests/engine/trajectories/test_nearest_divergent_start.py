@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, DivergentStart, Fate, Plane, classify_orbits, find_divergent_start, integrate_orbit, start_states
-from engine.execution import SerialExecutor
+from engine.execution import Execution, SerialExecutor
 
 T_MAX = 2000.0
 # Potential, plane, energy, x, ordinate, at different distances from the basin boundary; the third one is bounded.
@@ -116,14 +116,14 @@ def test_mirror_images_have_equal_distances() -> None:
 
 
 def test_the_executor_does_not_affect_the_result() -> None:
-    assert find_existing(*STARTS[0], executor=SerialExecutor()) == find_existing(*STARTS[0])
+    assert find_existing(*STARTS[0], execution=Execution(SerialExecutor())) == find_existing(*STARTS[0])
 
 
 def test_a_cancelled_search_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        find(*STARTS[0], cancel=cancel)
+        find(*STARTS[0], execution=Execution(cancel=cancel))
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Fate, Plane, find_lyapunov_orbits, integrate_orbit, start_states
+from engine.execution import Execution
 from engine.taylor.kernels import dense_output
 from engine.trajectories.radius_envelope import compute_radius_envelope
 
@@ -63,4 +64,4 @@ def test_a_cancelled_integration_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_radius_envelope(CASES["III"], BOUNDED, 1e4, cancel=cancel)
+        compute_radius_envelope(CASES["III"], BOUNDED, 1e4, execution=Execution(cancel=cancel))

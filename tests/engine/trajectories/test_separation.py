@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, classify_orbits, compute_separation, start_states
+from engine.execution import Execution
 from engine.service import LONGEST_SEPARATION
 
 
@@ -55,7 +56,7 @@ def test_a_cancelled_comparison_raises() -> None:
     cancel, state = threading.Event(), state_at("I", 0.1, 0.1, 0.1)
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_separation(CASES["I"], state, state, 1e3, cancel=cancel)
+        compute_separation(CASES["I"], state, state, 1e3, execution=Execution(cancel=cancel))
 
 
 @pytest.mark.parametrize(("second", "t_end", "named"), [([0.0, 0.0, np.nan, 1.0], 10.0, "second="), ([0.0] * 4, -1.0, "t_max")])

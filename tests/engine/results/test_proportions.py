@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from engine.statistics.proportions import wilson_interval
+from engine.results.proportions import wilson_interval
 
 
 @pytest.mark.parametrize(("count", "total"), [(0, 1), (0, 50), (1, 50), (25, 50), (50, 50), (12_345, 39_000)])

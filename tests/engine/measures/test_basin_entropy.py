@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.basins.basin_entropy import BasinEntropy, compute_basin_entropy
-from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
+from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
+from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, exit_labels
 
 LN2 = math.log(2.0)
 

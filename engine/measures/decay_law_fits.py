@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import threading
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.execution import raise_if_cancelled
-from engine.statistics.decay_laws import MIN_ESCAPES, MIN_P_VALUE, DecayLaw, DecayLaws, LawFit, to_unit_time, window_length
-from engine.statistics.escape_statistics import EscapeStatistics, compute_survival
-from engine.statistics.truncated_exponential import (
+from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.measures.decay_laws import MIN_ESCAPES, MIN_P_VALUE, DecayLaw, DecayLaws, LawFit, to_unit_time, window_length
+from engine.measures.escape_statistics import EscapeStatistics, compute_survival
+from engine.measures.truncated_exponential import (
     fit_steepness_and_distance,
     kolmogorov_smirnov_distance,
     max_log_likelihood,
@@ -47,7 +46,7 @@ def fit_decay_laws(
     window: tuple[float, float] | None = None,
     resamples: int = 1000,
     seed: int = 0,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> DecayLaws:
     """Fit an exponential law and a power law to the escape times in a window, and decide which one holds, if any.
 
@@ -75,8 +74,8 @@ def fit_decay_laws(
         Number of bootstrap resamples, 500 to 100 000.
     seed
         Seed of the random numbers, an integer, 0 or more. The same seed gives the same result.
-    cancel
-        When set, the computation stops within about 0.1 s.
+    execution
+        How the computation runs.
 
     Raises
     ------
@@ -101,7 +100,7 @@ def fit_decay_laws(
         if ends.shape != (2,) or not 0.0 < ends[0] < ends[1] <= t_max:
             raise ValueError(f"window={short_repr(window)}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
     t_high = t_max if window is None else float(window[1])
-    fitter = _Fitter(statistics, t_high, resamples, seed, cancel)
+    fitter = _Fitter(statistics, t_high, resamples, seed, execution)
     t_low, settled = fitter.choose_t_low() if window is None else (float(window[0]), True)
     return fitter.fit(t_low, settled)
 
@@ -126,10 +125,8 @@ class _Sample:
 class _Fitter:
     """Fits to the escapes between any t_low and a fixed t_high."""
 
-    def __init__(
-        self, statistics: EscapeStatistics, t_high: float, resamples: int, seed: int, cancel: threading.Event | None
-    ) -> None:
-        self.statistics, self.t_high, self.resamples, self.seed, self.cancel = statistics, t_high, resamples, seed, cancel
+    def __init__(self, statistics: EscapeStatistics, t_high: float, resamples: int, seed: int, execution: Execution) -> None:
+        self.statistics, self.t_high, self.resamples, self.seed, self.execution = statistics, t_high, resamples, seed, execution
         self.all_times = np.unique(statistics.escape_times)
         self.times = self.all_times[(self.all_times > 0.0) & (self.all_times <= t_high)]
 
@@ -199,7 +196,7 @@ class _Fitter:
         The size of these samples is limited: the distance is scaled as by Stephens (1974, J. Am. Stat. Assoc. 69, 730) for the
         exponential distribution, which makes its distribution almost independent of the sample size.
         """
-        raise_if_cancelled(self.cancel)
+        self.execution.raise_if_cancelled()
         size = min(count, _MAX_SAMPLE_SIZE)
         shares = np.random.default_rng(self.seed).random((self.resamples, size))
         samples = np.sort(quantile(abs(steepness), shares), axis=1)

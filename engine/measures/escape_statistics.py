@@ -10,9 +10,9 @@ import numpy as np
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
 from engine.results.arrays import read_only
+from engine.results.proportions import wilson_interval
 from engine.results.result import Result
 from engine.slices.window import Window
-from engine.statistics.proportions import wilson_interval
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""

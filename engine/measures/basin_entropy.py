@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.basins.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
+from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, checked_labels
 from engine.results.result import Result
 from engine.results.wording import format_count
 from engine.validation import checked_count

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine.basins.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.dynamics.classification import classify_orbits
-from engine.execution import SerialExecutor
+from engine.execution import Execution, SerialExecutor
 from engine.maps.spec import MapSpec
+from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.potentials.potential import CASES, Potential
 from engine.slices.slice import Plane
 from engine.slices.window import Window
@@ -101,7 +101,7 @@ def test_only_the_seed_affects_the_result() -> None:
     def run(**options: Any) -> UncertaintyExponent:
         return compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.2), pairs=20, separations=6, **options)
 
-    one, same, other = run(), run(executor=SerialExecutor()), run(seed=1)
+    one, same, other = run(), run(execution=Execution(SerialExecutor())), run(seed=1)
     np.testing.assert_array_equal(one.uncertain, same.uncertain)
     np.testing.assert_array_equal(one.pairs, same.pairs)
     assert one.exponent == same.exponent
@@ -139,7 +139,7 @@ def test_a_window_without_interior_has_no_pairs() -> None:
 
 def test_progress_increases_to_1() -> None:
     shares: list[float] = []
-    compute_uncertainty_exponent(HENON_HEILES, pairs=20, separations=6, work=1e7, on_progress=shares.append)
+    compute_uncertainty_exponent(HENON_HEILES, pairs=20, separations=6, work=1e7, execution=Execution(on_progress=shares.append))
     assert shares[-1] == 1.0
     assert shares == sorted(shares)
     assert len(shares) > 2
@@ -149,7 +149,7 @@ def test_a_cancelled_computation_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        compute_uncertainty_exponent(HENON_HEILES, cancel=cancel)
+        compute_uncertainty_exponent(HENON_HEILES, execution=Execution(cancel=cancel))
 
 
 def test_it_can_be_cancelled_while_running() -> None:
@@ -160,7 +160,7 @@ def test_it_can_be_cancelled_while_running() -> None:
         cancel.set()
 
     with pytest.raises(CancelledError):
-        compute_uncertainty_exponent(HENON_HEILES, on_progress=stop, cancel=cancel)
+        compute_uncertainty_exponent(HENON_HEILES, execution=Execution(cancel=cancel, on_progress=stop))
     assert len(shares) == 1
 
 

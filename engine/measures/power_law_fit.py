@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from engine.results.arrays import read_only
+from engine.results.proportions import wilson_interval
 from engine.results.result import Result
 from engine.results.wording import format_count, format_decimals
-from engine.statistics.proportions import wilson_interval
 from engine.validation import checked_array, checked_integers, short_repr
 
 MIN_EXPECTED_PAIRS = 5.0

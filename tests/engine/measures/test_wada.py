@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from engine import CASES, MapSpec, Plane, compute_map
-from engine.basins.labels import WADA_COUNTS_BOUNDED, exit_labels
-from engine.basins.wada import WadaTest, compute_wada_test
+from engine.measures.labels import WADA_COUNTS_BOUNDED, exit_labels
+from engine.measures.wada import WadaTest, compute_wada_test
 
 
 def stripes(width: int, number: int = 3, rows: int = 10) -> np.ndarray:

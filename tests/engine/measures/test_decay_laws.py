@@ -21,9 +21,10 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
+from engine.execution import Execution
 from engine.exits.interior import find_outside_channels
+from engine.measures.escape_statistics import MAX_SURVIVAL_POINTS
 from engine.service import DecayLaw, LawFit, compute_survival
-from engine.statistics.escape_statistics import MAX_SURVIVAL_POINTS
 
 T_LOW, T_HIGH = 2.0, 1e4
 KAPPA, GAMMA = 0.05, 1.5
@@ -335,7 +336,7 @@ def test_a_cancelled_fit_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        fit_decay_laws(statistics_of(exponential_times(500)), T_HIGH, cancel=cancel)
+        fit_decay_laws(statistics_of(exponential_times(500)), T_HIGH, execution=Execution(cancel=cancel))
 
 
 # The dynamics.

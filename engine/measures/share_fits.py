@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from engine.measures.published_fits import HyperbolicTangent, Polynomial, ShareCurve
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.results.wording import format_number
-from engine.statistics.published_fits import HyperbolicTangent, Polynomial, ShareCurve
 from engine.validation import checked_array, checked_count, checked_integers, short_repr
 
 MAX_DEGREE = 6

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine.basins.power_law_fit import UncertaintyExponent, fit_uncertainty
+from engine.measures.power_law_fit import UncertaintyExponent, fit_uncertainty
 
 SEPARATIONS = np.geomspace(1e-2, 1e-10, 17)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
-from engine.basins.labels import exit_labels
+from engine.measures.labels import exit_labels
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from engine.measures.truncated_exponential import cumulative_share
 from engine.results.result import Result
 from engine.results.wording import format_count, format_whole
-from engine.statistics.truncated_exponential import cumulative_share
 
 MIN_ESCAPES = 100
 """Fewest escapes in a window for a fit, which determine the rate to about 20 %. Choosing a window takes twice as many."""

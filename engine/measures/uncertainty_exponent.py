@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import numbers
-import threading
-from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
-from engine.basins.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
-from engine.execution import raise_if_cancelled
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
 from engine.maps.spec import MapSpec
-from engine.progress import shows_progress
+from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.results.arrays import read_only
 from engine.validation import checked_count, short_repr
 
@@ -61,9 +56,7 @@ def compute_uncertainty_exponent(
     separations: int = 17,
     work: float = WORK,
     seed: int = 0,
-    on_progress: Callable[[float], None] | None = None,
-    executor: Executor | None = None,
-    cancel: threading.Event | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
 ) -> UncertaintyExponent:
     """Measure how fast the share of uncertain starts falls with the error ε of a start, and thereby the boundary dimension.
 
@@ -95,12 +88,8 @@ def compute_uncertainty_exponent(
         any case.
     seed
         Seed of the random numbers, 0 or more. The same seed gives a bit-identical result.
-    on_progress
-        Called in this thread with the share of the work done, increasing to 1.
-    executor
-        Any `concurrent.futures.Executor`; None for the shared pool of this process. It does not affect the result.
-    cancel
-        When set, the computation stops within about 0.2 s.
+    execution
+        How the computation runs.
 
     Returns
     -------
@@ -126,11 +115,10 @@ def compute_uncertainty_exponent(
     given: object = work
     if not isinstance(given, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
-    report = on_progress or (lambda share: None)
-    sampler = _PairSampler(spec, _separations(spec, separations), seed, executor, cancel)
-    sampler.sample(np.full(separations, pairs), lambda share: report(0.5 * share))
-    sampler.sample(sampler.plan_more_pairs(work), lambda share: report(0.5 + 0.5 * share))
-    report(1.0)
+    sampler = _PairSampler(spec, _separations(spec, separations), seed, execution)
+    sampler.sample(np.full(separations, pairs), execution.part(0, 2))
+    sampler.sample(sampler.plan_more_pairs(work), execution.part(1, 2))
+    execution.report(lambda: 1.0)
     return sampler.fit()
 
 
@@ -157,12 +145,11 @@ class _PairSampler:
         spec: MapSpec,
         separations: np.ndarray,
         seed: int,
-        executor: Executor | None,
-        cancel: threading.Event | None,
+        execution: Execution,
     ) -> None:
         self.given_potential, spec = spec.potential, spec.in_well_units()
         self.spec, self.separations = spec, separations
-        self.executor, self.cancel = executor, cancel
+        self.execution = execution
         self.horizon = min(spec.t_max, HORIZON)
         self.random = [np.random.default_rng([seed, index]) for index in range(separations.size)]
         self.pairs, self.uncertain, self.one_inside, self.both_inside = np.zeros((4, separations.size), np.int64)
@@ -176,7 +163,7 @@ class _PairSampler:
         """Exit curves at each energy."""
         curves = np.repeat(closed_channel_curves(self.spec.potential)[None], self.row_energy.size, axis=0)
         for row in np.flatnonzero(self.is_open):
-            raise_if_cancelled(self.cancel)
+            self.execution.raise_if_cancelled()
             energy = float(self.row_energy[row]) * self.given_potential.units.energy
             curves[row] = exit_curves_in_well_units(self.given_potential, energy)
         return curves
@@ -199,13 +186,13 @@ class _PairSampler:
         more: np.ndarray = (wanted * min(1.0, affordable / max(wanted.sum(), 1.0))).astype(np.int64)
         return more
 
-    def sample(self, wanted: np.ndarray, report: Callable[[float], None]) -> None:
+    def sample(self, wanted: np.ndarray, execution: Execution) -> None:
         """Draw and integrate `wanted` (m,) more pairs and count their outcomes."""
         indices = np.repeat(np.arange(wanted.size), wanted)
         chunks = np.split(indices, range(_CHUNK, indices.size, _CHUNK)) if indices.size else []
         for done, chunk in enumerate(chunks):
             batch, index = self._draw_chunk(np.bincount(chunk, minlength=wanted.size))
-            self._integrate(batch, partial(_report_chunk, report, done, len(chunks)))
+            self._integrate(batch, execution.part(done, len(chunks)))
             self.integrated_time += float(batch.t.sum())
             self._count_outcomes(index, *batch.fate.reshape(2, -1))
 
@@ -219,19 +206,19 @@ class _PairSampler:
         batch.mark_bounded(np.flatnonzero(~self.is_open[batch.curve_row]), Certificate.CLOSED)
         return batch, np.repeat(present, [rows.size for _, rows in drawn])
 
-    def _integrate(self, batch: OrbitBatch, report: Callable[[float], None]) -> None:
+    def _integrate(self, batch: OrbitBatch, execution: Execution) -> None:
         """Integrate all orbits in stages, so that the few long ones are grouped into full tiles."""
 
-        def report_progress() -> None:
-            report(float(np.mean(np.where(batch.fate == Fate.NOT_COMPUTED, batch.t / self.horizon, 1.0))))
+        def progress() -> float:
+            return float(np.mean(np.where(batch.fate == Fate.NOT_COMPUTED, batch.t / self.horizon, 1.0)))
 
         all_orbits = np.arange(batch.fate.size)
         for horizon in (*(stage for stage in _STAGES if stage < self.horizon), self.horizon):
             propagate_batch(
                 self.spec.potential, self.curves, batch, all_orbits, horizon,
-                final=horizon == self.horizon, executor=self.executor, cancel=self.cancel, on_progress=report_progress,
+                final=horizon == self.horizon, execution=execution, on_tiles=lambda: execution.report(progress),
             )  # fmt: skip
-            raise_if_cancelled(self.cancel)
+            execution.raise_if_cancelled()
 
     def _count_outcomes(self, index: np.ndarray, first: np.ndarray, second: np.ndarray) -> None:
         """Count pairs by their separation index and the fates of their two orbits, all (n,)."""
@@ -250,7 +237,7 @@ class _PairSampler:
         states, rows = np.zeros((2, 0, 4)), np.zeros(0, np.int64)
         drawn = 0
         while rows.size < count and drawn * _MIN_YIELD < rows.size + 10:
-            raise_if_cancelled(self.cancel)
+            self.execution.raise_if_cancelled()
             size = 2 * (count - rows.size) + 100
             more, more_rows = self._draw_interior_pairs(index, size)
             states, rows = np.concatenate([states, more], axis=1), np.concatenate([rows, more_rows])
@@ -290,7 +277,3 @@ class _PairSampler:
             fit, separations=read_only(units.length * fit.separations), amplitude=fit.amplitude / units.length**fit.exponent,
             one_inside=read_only(self.one_inside), both_inside=read_only(self.both_inside), horizon=units.time * self.horizon,
         )  # fmt: skip
-
-
-def _report_chunk(report: Callable[[float], None], done: int, chunks: int, share: float) -> None:
-    report((done + share) / chunks)

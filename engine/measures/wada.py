@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.basins.labels import WADA_COUNTS_BOUNDED, checked_labels
+from engine.measures.labels import WADA_COUNTS_BOUNDED, checked_labels
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.results.wording import format_count
