@@ -110,6 +110,25 @@ def find_extremum(jet, i, low, high):
 
 
 @subroutine
+def find_zero(jet, i, low, high):
+    """The zero of a series between two times at which its signs differ: Newton's method, safeguarded by bisection."""
+    positive = series_value(jet, i, low) > 0.0
+    tau = 0.5 * (low + high)
+    for _ in range(_ROOT_ITERATIONS):
+        value = series_value(jet, i, tau)
+        if (value > 0.0) == positive:
+            low = tau
+        else:
+            high = tau
+        slope = series_slope(jet, i, tau)
+        newton = tau - value / slope if slope != 0.0 else low
+        if abs(newton - tau) < _ROOT_ACCURACY or high - low < _ROOT_ACCURACY:
+            break
+        tau = newton if low < newton < high else 0.5 * (low + high)
+    return tau
+
+
+@subroutine
 def count_upward_crossings(y_jet, i, duration):
     """Number of times y goes from y < 0 to y ≥ 0 within `duration` of the start of a step, pairs of zeros included."""
     count = 0

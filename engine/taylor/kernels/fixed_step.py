@@ -12,13 +12,11 @@ import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_fixed_step, call_jets, call_tangent
-from engine.taylor.kernels.events import series_slope, series_value
+from engine.taylor.kernels.events import find_zero, series_slope, series_value
 from engine.taylor.source.recurrence import LANES, ORDER
 
 _STEPS_TO_RENORMALISATION = 8
 _STEPS_BETWEEN_CHECKS = 16
-_NEWTON_STEPS = 12
-_ROOT_ACCURACY = 1e-14
 
 
 @kernel
@@ -118,30 +116,10 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
         lane = step_lane[i]
         if found[lane] == points.shape[1]:
             continue
-        tau = _find_crossing_time(y_jet, i, h)
+        tau = find_zero(y_jet, i, 0.0, h)
         points[lane, found[lane], 0] = series_value(x_jet, i, tau)
         points[lane, found[lane], 1] = series_slope(x_jet, i, tau)
         found[lane] += 1
-
-
-@subroutine
-def _find_crossing_time(y_jet, i, h):
-    """The zero between 0 and h of a series that is negative at 0 and not at h: Newton's method, safeguarded by bisection."""
-    low, high = 0.0, h
-    tau = 0.5 * h
-    for _ in range(_NEWTON_STEPS):
-        value = series_value(y_jet, i, tau)
-        if value < 0.0:
-            low = tau
-        else:
-            high = tau
-        if abs(value) < _ROOT_ACCURACY:
-            break
-        slope = series_slope(y_jet, i, tau)
-        tau = tau - value / slope if slope != 0.0 else 0.5 * (low + high)
-        if not low < tau < high:
-            tau = 0.5 * (low + high)
-    return tau
 
 
 @kernel

@@ -11,14 +11,12 @@ import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
-from engine.taylor.kernels.events import crossed_exit, find_exit_time, find_extremum, series_slope, series_value
+from engine.taylor.kernels.events import crossed_exit, find_exit_time, find_extremum, find_zero, series_slope, series_value
 from engine.taylor.kernels.propagate import VECTOR
 from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, ORDER, OVERSHOOT
 
 # Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
 _PARTS = 8
-_ROOT_ITERATIONS = 60
-_ROOT_ACCURACY = 1e-15
 
 
 class _StepBuffer(NamedTuple):
@@ -118,26 +116,8 @@ def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
                 series_value(y_jet, i, above) > 0.0 and series_value(y_jet, i, below) <= 0.0
             ):
                 continue
-            tau = _find_passage_time(y_jet, i, above, below)
+            tau = find_zero(y_jet, i, above, below)
             passages[j, found[j], 0] = series_value(x_jet, i, tau)
             passages[j, found[j], 1] = series_slope(x_jet, i, tau)
             passages[j, found[j], 2] = start[4, i] + tau
             found[j] += 1
-
-
-@subroutine
-def _find_passage_time(y_jet, i, above, below):
-    """The zero between `above`, where a series is positive, and `below`, where it is not: Newton's method with bisection."""
-    tau = 0.5 * (above + below)
-    for _ in range(_ROOT_ITERATIONS):
-        value = series_value(y_jet, i, tau)
-        if value > 0.0:
-            above = tau
-        else:
-            below = tau
-        slope = series_slope(y_jet, i, tau)
-        newton = tau - value / slope if slope != 0.0 else above
-        if abs(newton - tau) < _ROOT_ACCURACY or below - above < _ROOT_ACCURACY:
-            break
-        tau = newton if above < newton < below else 0.5 * (above + below)
-    return tau
