@@ -60,8 +60,9 @@ class Controls:
         )
         self.other = button("Other …", actions.choose_potential, kind="light", css_classes=["half"], margin=(0, 10, 0, 4))
         self.plane = SegmentedControl(
-            label="Plane", options={plane.title: plane for plane in Plane}, value=state.plane, margin=(8, 10)
-        )
+            label="Plane", options={plane.title: plane for plane in Plane}, value=state.plane, margin=(8, 10),
+            css_classes=["segmented", "narrow"],
+        )  # fmt: skip
         self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10))
         self.play = button(PLAY, actions.play, width=84, css_classes=["half"], margin=(0, 10), align="end")
