@@ -5,7 +5,6 @@ from __future__ import annotations
 import panel as pn
 
 from app.views.components.flex_row import FULL_HEIGHT
-from app.views.components.plots import FigurePane
 from app.views.orbits.orbit_controls import OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
@@ -17,8 +16,8 @@ class Inspector:
 
     def __init__(self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot) -> None:
         self._controls, self._playback, self._plots, self._separation = controls, playback, plots, separation
-        self._values: list[pn.viewable.Viewable] = []
-        self._single: list[FigurePane] = []
+        self._values: pn.viewable.Viewable | None = None
+        self._single: list[pn.viewable.Viewable] = []
         self._pair: list[pn.viewable.Viewable] = []
         self._grid = pn.Column(
             *controls.entry(), sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
@@ -30,21 +29,14 @@ class Inspector:
         return self._grid
 
     def follow(self, starts: int, orbits: int) -> None:
-        """Show what a number of starts needs, of which some may have no orbit.
-
-        What is not needed any more is hidden: to remove it, and to add it again, takes four times as long as to draw the orbits.
-        """
-        if starts >= 1 and not self._values:
-            self._values = [self._controls.values(self._playback.layout())]
+        """Show what a number of starts needs, of which some may have no orbit."""
+        if starts >= 1 and self._values is None:
+            self._values = self._controls.values(self._playback.layout())
         if orbits >= 1 and not self._single:
             self._single = self._plots.build()
         if orbits >= 2 and not self._pair:
-            # It is visible while there is a pair.
             self._pair = [self._separation.build()]
-        parts = [*self._entry, *self._values, *self._single, *self._pair]
+        parts = [*self._entry, *([self._values] if starts >= 1 else []), *(self._single if orbits >= 1 else [])]
+        parts += self._pair if orbits >= 2 else []
         if parts != self._grid.objects:
             self._grid.objects = parts
-        for part in self._values:
-            part.visible = starts >= 1
-        for pane in self._single:
-            pane.object.visible = orbits >= 1
