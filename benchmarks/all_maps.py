@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map
-from engine.execution import default_executor
+from engine.execution import DEFAULT_EXECUTION
 from engine.service import PAPER_ENERGIES
 
 SLOWEST = 5
@@ -47,7 +47,7 @@ def title(spec: MapSpec) -> str:
 
 def time_all() -> None:
     """Print the times of all maps, and of the slowest ones without certificates."""
-    print(f"224 x 224, t_max = 1e5, {default_executor()._max_workers} threads\n")
+    print(f"224 x 224, t_max = 1e5, {DEFAULT_EXECUTION.workers} threads\n")
     names = " | ".join(code.name.lower().replace("_", "-") for code in Certificate if code)
     print(f"| case | plane | h | seconds | bounded | {names} | worst energy error |\n|{'---|' * (11)}")
     times = {}

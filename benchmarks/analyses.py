@@ -24,7 +24,7 @@ from engine import (
     find_stable_manifolds,
     fit_decay_laws,
 )
-from engine.execution import default_executor
+from engine.execution import DEFAULT_EXECUTION
 from engine.service import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels, prepare_kernels
 
 REPEATS = 5
@@ -58,7 +58,7 @@ def main() -> None:
         "origins and fates, two maps": lambda: compute_origin_fates(SPEC),
         "uncertainty exponent": lambda: compute_uncertainty_exponent(SPEC),
     }
-    threads = default_executor()._max_workers
+    threads = DEFAULT_EXECUTION.workers
     print(f"III, (x, px), h = 0.45, 224 x 224, t_max = 1e5, {threads} threads, median of {REPEATS} warm runs\n")
     print("| analysis | seconds |\n|---|---|")
     for name, function in analyses.items():

@@ -20,6 +20,7 @@ import time
 from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
+from ipaddress import IPv4Address
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
@@ -68,7 +69,7 @@ class Effect:
 @asynccontextmanager
 async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
     """A session with its page open, of a visitor with an address of its own behind the proxy."""
-    headers = {**place.options.get("headers", {}), ADDRESS_HEADER: f"10.0.0.{seed}"}
+    headers = {**place.options.get("headers", {}), ADDRESS_HEADER: str(IPv4Address("10.0.0.0") + seed)}
     session = SimulatedSession(place.address, seed, record, {**place.options, "headers": headers})
     await session.open()
     while not session.is_open:

@@ -9,7 +9,7 @@ import statistics
 import time
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.execution import default_executor
+from engine.execution import DEFAULT_EXECUTION
 
 REPEATS = 7
 T_MAX = 1000.0
@@ -36,7 +36,7 @@ def time_map(spec: MapSpec) -> tuple[float, float]:
 
 
 def main() -> None:
-    print(f"224 x 224, t_max = {T_MAX:g}, {default_executor()._max_workers} threads, median of {REPEATS} warm runs\n")
+    print(f"224 x 224, t_max = {T_MAX:g}, {DEFAULT_EXECUTION.workers} threads, median of {REPEATS} warm runs\n")
     print("| case | plane | h | first frame, ms | complete map, ms |\n|---|---|---|---|---|")
     for case, plane, energy in MAPS:
         spec = MapSpec(CASES[case], plane, energy, t_max=T_MAX)

@@ -78,7 +78,7 @@ class SerialExecutor(Executor):
 class Execution:
     """How a computation runs: where its parts are computed, how it is cancelled, and who follows it.
 
-    Results do not depend on it: they are the same to the last bit for every executor, interruption and resumption.
+    Fates, escape times and the crossings of escaping orbits do not depend on it, to the last bit.
 
     Parameters
     ----------
@@ -95,9 +95,13 @@ class Execution:
     on_progress: Callable[[float], None] | None = None
 
     @property
+    def _pool(self) -> Executor:
+        return self.executor or default_executor()
+
+    @property
     def workers(self) -> int:
         """How many calls run at once."""
-        return count_workers(self.executor or default_executor())
+        return count_workers(self._pool)
 
     @property
     def is_cancelled(self) -> bool:
@@ -125,7 +129,7 @@ class Execution:
 
     def submit[T](self, function: Callable[..., T], *arguments: Any) -> Future[T]:
         """Queue a call."""
-        return (self.executor or default_executor()).submit(function, *arguments)
+        return self._pool.submit(function, *arguments)
 
     def collect[T](self, future: Future[T]) -> T | None:
         """The result of a call, after waiting for it; None if it never ran because the computation was cancelled.

@@ -87,8 +87,8 @@ class MapRun:
         self._curves = np.repeat(closed_channel_curves(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
-        # Of orbits that an earlier map has finished, whose states are not kept; NaN for all others.
-        self._earlier_errors = np.full(self._curve_row.size, np.nan)
+        # Energy errors of the orbits that an earlier map has finished, whose states are not kept; NaN for all others.
+        self._earlier_errors: np.ndarray | None = None
         if resume is not None:
             self._continue(resume)
 
@@ -217,6 +217,8 @@ class MapRun:
             self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.mirror_channels)
             self._started[seconds[firsts]] = True
         outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
+        if self._earlier_errors is None:
+            return outcomes
         errors = np.where(np.isnan(self._earlier_errors), outcomes.energy_error, self._earlier_errors)
         return replace(outcomes, energy_error=errors)
 

@@ -54,12 +54,14 @@ export class Starts {
     /** The start that was found last, and its energy. */
     this.found = {x: 0, y: 0, px: 0, py: 0, h: energy, ...fixed}
     this.#axes = axes
+    this.#energyAxis = energyAxis({axes})
     this.#decided = decided
     this.#sign = sign
     this.#potential = potential
   }
 
   #axes
+  #energyAxis
   #decided
   #sign
   #potential
@@ -85,7 +87,7 @@ export class Starts {
    */
   requiredEnergy(abscissa, ordinate) {
     this.#place(abscissa, ordinate)
-    return this.#restEnergy() - ([abscissa, ordinate][energyAxis({axes: this.#axes})] ?? 0)
+    return this.#restEnergy() - ([abscissa, ordinate][this.#energyAxis] ?? 0)
   }
 
   /**
