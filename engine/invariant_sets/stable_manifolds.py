@@ -26,7 +26,7 @@ from engine.results.result import Result
 from engine.slices.default_window import default_window
 from engine.slices.section import SECTION
 from engine.slices.window import Window
-from engine.validation import checked_count
+from engine.validation import checked_count, checked_number
 
 MOST_IMAGES = 6
 """Largest number of images; later ones are too fine and too many to plot."""
@@ -161,9 +161,9 @@ def find_stable_manifolds(
     [(1, 1), (2, 1)]
     """
     images = checked_count("images", images, 1, MOST_IMAGES)
-    given, given_energy, units = potential, float(energy), potential.units
-    whole = default_window(potential, SECTION.plane, energy)
-    potential, energy = potential.in_well_units, energy / units.energy
+    given, given_energy, units = potential, checked_number("energy", energy), potential.units
+    whole = default_window(potential, SECTION.plane, given_energy)
+    potential, energy = potential.in_well_units, given_energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum
     spacing = _PointSpacing.for_window(whole.scaled(*factors), window.scaled(*factors) if window is not None else None)
     orbits = {orbit.channel: orbit for orbit in find_lyapunov_orbits(potential, energy)}
