@@ -44,8 +44,8 @@ def find_section_points(
 
 def trace_section_points(potential: Potential, tile: np.ndarray, count: int, duration: float) -> np.ndarray:
     """As `find_section_points` for a tile of states (4, lanes), a multiple of `VECTOR`, which it changes; runs in a worker."""
-    points = np.full((tile.shape[1], count, 2), np.nan)
+    points = np.full((tile.shape[1], count, 3), np.nan)
     found = np.zeros(tile.shape[1], np.int64)
     steps = int(np.ceil(duration / fixed_step_size(potential)))
     kernels_of(potential).find_section_points(fixed_step_size(potential), steps, tile, points, found)
-    return points
+    return points[..., :2]

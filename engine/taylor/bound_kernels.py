@@ -34,7 +34,7 @@ _generated_powers: set[frozenset[tuple[int, int]]] = set()
 
 
 def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleType:
-    """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``record_steps``, ``shoot``, …
+    """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.classification import classify_orbits
+from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regularity, describe_fate, judge_regularity
 from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.exits.lyapunov_orbits import exit_curves_in_well_units
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -140,14 +141,16 @@ def compute_birkhoff_digits(
     >>> compute_birkhoff_digits(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).digits.round(1)
     array([8.9])
     """
-    units, potential = potential.units, potential.in_well_units
-    start = checked_state("state", state) / units.state
-    t_max = checked_t_max(t_max) / units.time
+    start, t_max = checked_state("state", state), checked_t_max(t_max)
+    units, well = potential.units, potential.in_well_units
+    curves = exit_curves_in_well_units(potential, float(potential.energy(start)))[None]
+    orbit = OrbitBatch.from_starts(start[None] / units.state, np.zeros(1, np.int64))
+    orbit.mark_outside(well, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
     for window in WINDOWS:
-        if 2.0 * window > t_max or not _is_bounded(potential, start, 2.0 * window, execution):
+        if 2.0 * window > t_max / units.time or not _stays_inside(well, curves, orbit, 2.0 * window, execution):
             break
-        found = count_agreeing_digits(potential, start[None], window, execution=execution.in_this_thread())[0]
+        found = count_agreeing_digits(well, start[None] / units.state, window, execution=execution.in_this_thread())[0]
         execution.raise_if_cancelled()
         if found == 0.0:
             break
@@ -158,12 +161,11 @@ def compute_birkhoff_digits(
     return BirkhoffDigits(read_only(windows), read_only(np.array(digits)), units.time)
 
 
-def _is_bounded(potential: Potential, start: np.ndarray, t_end: float, execution: Execution) -> bool:
-    """Whether the orbit has not escaped by `t_end`."""
-    energy = float(potential.energy(start))
-    fate = classify_orbits(potential, energy, start[None], t_end, execution=execution.in_this_thread()).fate[0]
+def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:
+    """Continue a batch of one orbit; whether it has not escaped by `t_end`."""
+    propagate_batch(potential, curves, orbit, np.arange(1), t_end, final=False, execution=execution.in_this_thread())
     execution.raise_if_cancelled()
-    return bool(fate == Fate.BOUNDED)
+    return bool(orbit.fate[0] == Fate.NOT_COMPUTED)
 
 
 def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> tuple[IndicatorVerdict, ...]:

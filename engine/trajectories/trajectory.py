@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.classification import classify_orbits
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
+from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
 from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.exits.lyapunov_orbits import exit_curves_in_well_units
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.results.result import Result
-from engine.taylor.kernels.dense_output import sample_deviations, sample_path, trace_steps
+from engine.taylor.kernels.dense_output import sample_deviations, sample_path
 from engine.validation import checked_state, checked_t_max
 
 MAX_ORBIT_TIME = 1e7
@@ -121,21 +122,18 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     """
     start = checked_state("state", state)
     t_max = checked_t_max(t_max, MAX_ORBIT_TIME)
-    energy = float(potential.energy(start))
-    outcome = classify_orbits(potential, energy, start[None], t_max, execution=execution.in_this_thread())
-    execution.raise_if_cancelled()
-    fate = int(outcome.fate[0])
-    t_end = 0.0 if fate == Fate.OUTSIDE else float(outcome.escape_time[0]) if fate >= 1 else t_max
-    units = potential.units
-    times, path, sali, exponent = _sample_orbit(potential.in_well_units, start / units.state, t_end / units.time, execution)
+    units, well, energy = potential.units, potential.in_well_units, float(potential.energy(start))
+    curves = exit_curves_in_well_units(potential, energy)
+    recorded = record_orbit(well, start / units.state, curves, t_max / units.time, execution)
+    times, path, sali, exponent = _sample_orbit(well, start / units.state, recorded, execution)
     x, y, px, py = units.state[:, None] * path
     times, exponent = units.time * times, exponent / units.time
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         read_only(array)
-    escape_time, energy_error = float(outcome.escape_time[0]), float(outcome.energy_error[0])
+    fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     certificate = _certificate(potential, energy, fate)
-    return Orbit(*arrays, fate, escape_time, int(outcome.crossings[0]), energy_error, energy, certificate, units.time, potential)
+    return Orbit(*arrays, fate, units.time * escape_time, crossings, energy_error, energy, certificate, units.time, potential)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
@@ -145,13 +143,13 @@ def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
 
 
 def _sample_orbit(
-    potential: Potential, start: np.ndarray, t_end: float, execution: Execution
+    potential: Potential, start: np.ndarray, recorded: OrbitSteps, execution: Execution
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to `t_end`, all in units of the well."""
+    """Times (n,), path (4, n), SALI (n,) and Lyapunov exponent (n,) from 0 to the end, all in units of the well."""
+    steps, t_end = recorded.steps, recorded.t_end
     if t_end == 0.0:
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = kernels_of(potential)
-    steps = trace_steps(kernels, start, t_end, potential.channels, execution)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
     path = sample_path(kernels, steps, times, execution)
     sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, execution)

@@ -31,7 +31,6 @@ def test_all_kernels_are_compiled() -> None:
         "propagate",
         "jets",
         "tangent",
-        "record_steps",
         "shoot",
         "birkhoff_averages",
         "find_section_points",

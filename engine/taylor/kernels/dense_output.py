@@ -9,9 +9,31 @@ import numpy as np
 
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.taylor.jit.decorator import kernel
+from engine.taylor.kernels.events import BOUNDED, CURVE_COLUMNS, NOT_COMPUTED, append_crossings
+from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import ORDER, TOLERANCE
 
 _CHUNK = 8192
+
+
+def trace_orbit(
+    kernels: ModuleType,
+    exits: Exits,
+    orbits: Orbits,
+    t_max: float,
+    execution: Execution = DEFAULT_EXECUTION,
+    tolerance: float = TOLERANCE,
+) -> Iterator[tuple[np.ndarray, float]]:
+    """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
+
+    orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
+    at which the piece ends. Raises CancelledError when cancelled.
+    """
+    while orbits.pending[0]:
+        execution.raise_if_cancelled()
+        steps = np.empty((_CHUNK, 5))
+        count = kernels.propagate(np.zeros(1, np.int64), t_max, True, tolerance, VECTOR * _CHUNK, 0, exits, orbits, steps)
+        yield steps[:count], t_max if orbits.fate[0] == BOUNDED else float(orbits.t[0])
 
 
 def trace_pieces(
@@ -22,23 +44,15 @@ def trace_pieces(
     execution: Execution = DEFAULT_EXECUTION,
     tolerance: float = TOLERANCE,
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """The steps of an orbit from t = 0 to `t_end`, in pieces of limited length.
-
-    Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time at which the piece ends. Raises
-    CancelledError when cancelled.
-    """
-    # No step is past these gates: exits are ignored.
+    """As `trace_orbit` from t = 0 to `t_end`, exits ignored."""
+    # No step is past these gates.
     gates = np.full((channels, 3), np.inf)
     gates[:, :2] = 0.0
-    begin, start, full = 0.0, state, True
-    while full:
-        execution.raise_if_cancelled()
-        piece = np.empty((_CHUNK, 5))
-        count = kernels.record_steps(start, begin, t_end, tolerance, gates, piece)
-        # The last row of a full piece is the first of the next.
-        full = count == _CHUNK
-        start, begin = piece[count - 1, :4].copy(), float(piece[count - 1, 4])
-        yield (piece[: count - 1], begin) if full else (piece[:count], t_end)
+    exits = Exits(gates, np.zeros((1, channels, CURVE_COLUMNS)), np.zeros(1, np.int64))
+    fate = np.full(1, NOT_COMPUTED, np.int8)
+    crossings, last_crossings = np.zeros((2, 1), np.int64)
+    orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8))
+    return trace_orbit(kernels, exits, orbits, t_end, execution, tolerance)
 
 
 def trace_steps(
@@ -49,7 +63,7 @@ def trace_steps(
     execution: Execution = DEFAULT_EXECUTION,
     tolerance: float = TOLERANCE,
 ) -> np.ndarray:
-    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`."""
+    """(m, 5) x, y, px, py, t at the start of every step up to `t_end`, exits ignored."""
     return np.concatenate([steps for steps, _ in trace_pieces(kernels, state, t_end, channels, execution, tolerance)])
 
 
@@ -93,6 +107,30 @@ def _evaluate(jets, row, tau):
             out[axis, n] = value
             out[axis + 2, n] = slope
     return out
+
+
+def find_crossings(kernels: ModuleType, path: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """(m, 2) x and px of the upward crossings of y = 0 between the samples of a path (4, n), at most one step apart."""
+    y, py = path[1], path[3]
+    rises = (y[:-1] < 0.0) & (y[1:] >= 0.0)
+    turns = (y[:-1] * y[1:] > 0.0) & (y[:-1] * py[:-1] < 0.0) & (y[1:] * py[1:] > 0.0)
+    before = np.flatnonzero(rises | turns)
+    jets = np.empty((2, ORDER + 1, before.size))
+    kernels.jets(before.size, *(np.ascontiguousarray(row[before]) for row in path), *jets)
+    points: np.ndarray = _crossings(jets, times[before + 1] - times[before])
+    return points
+
+
+@kernel
+def _crossings(jets, durations):
+    """(m, 2) x and px of the upward crossings within `durations` (n,) of the starts of n series."""
+    x_jet, y_jet = jets[0], jets[1]
+    # Two in one interval are rare, three do not occur.
+    points = np.empty((1, 2 * durations.size, 3))
+    found = np.zeros(1, np.int64)
+    for i in range(durations.size):
+        append_crossings(x_jet, y_jet, i, 1.0, 0.0, durations[i], points, found, 0)
+    return points[0, : found[0], :2].copy()
 
 
 def sample_deviations(

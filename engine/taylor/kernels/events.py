@@ -1,4 +1,4 @@
-"""Events within one step, located in its dense output: exits through a channel and upward crossings of y = 0.
+"""Events within one step, located in its dense output: exits through a channel and crossings of the section y = 0.
 
 An exit curve is a row of numbers. In coordinates u outward and q across (90° counterclockwise from u), from the saddle along its
 unstable direction or from the chord of the orbit along its normal, the Lyapunov orbit is the graph u = f(s), s = (q − middle)/
@@ -129,26 +129,62 @@ def find_zero(jet, i, low, high):
 
 
 @subroutine
+def crossing_between(jet, i, direction, low, y_low, slope_low, high, y_high, slope_high):
+    """Times before and after a crossing of the section in a part of a step, pairs of zeros included; equal times: none.
+
+    jet: series of y; direction: 1 for crossings from y < 0 to y ≥ 0, −1 for those from y > 0 to y ≤ 0; low, high: the ends of the
+    part; y_…, slope_…: the values there of y and ẏ times `direction`.
+    """
+    # An orbit that starts on the section against the direction is before it from then on.
+    before = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
+    if before and y_high >= 0.0:
+        return low, high
+    if y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
+        turning = find_extremum(jet, i, low, high)
+        turning_before = direction * series_value(jet, i, turning) < 0.0
+        if turning_before and y_low > 0.0:
+            return turning, high
+        if not turning_before and y_low < 0.0:
+            return low, turning
+    return low, low
+
+
+@subroutine
 def count_upward_crossings(y_jet, i, duration):
-    """Number of times y goes from y < 0 to y ≥ 0 within `duration` of the start of a step, pairs of zeros included."""
+    """Number of upward crossings of y = 0 within `duration` of the start of a step."""
     count = 0
     low = 0.0
-    y_low = series_value(y_jet, i, low)
-    slope_low = series_slope(y_jet, i, low)
+    y_low, slope_low = series_value(y_jet, i, low), series_slope(y_jet, i, low)
     for part in range(1, _PARTS + 1):
         high = duration * part / _PARTS
-        y_high = series_value(y_jet, i, high)
-        slope_high = series_slope(y_jet, i, high)
-        # An orbit that starts on y = 0 downward is below from then on.
-        below = y_low < 0.0 or (y_low == 0.0 and slope_low < 0.0)
-        if below and y_high >= 0.0:
+        y_high, slope_high = series_value(y_jet, i, high), series_slope(y_jet, i, high)
+        begin, end = crossing_between(y_jet, i, 1.0, low, y_low, slope_low, high, y_high, slope_high)
+        if end > begin:
             count += 1
-        elif y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
-            turning = series_value(y_jet, i, find_extremum(y_jet, i, low, high))
-            if (turning < 0.0) != (y_low < 0.0):
-                count += 1
         low, y_low, slope_low = high, y_high, slope_high
     return count
+
+
+@subroutine
+def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, found, orbit):
+    """Append x, px and the time of each crossing of y = 0 within `duration` of the start of a step.
+
+    direction: as in `crossing_between`; begin: time at the start of the step; crossings (n, m, 3), of which those of `orbit` are
+    filled from index found[orbit] on, until there are m.
+    """
+    low = 0.0
+    y_low, slope_low = direction * series_value(y_jet, i, low), direction * series_slope(y_jet, i, low)
+    for part in range(1, _PARTS + 1):
+        high = duration * part / _PARTS
+        y_high, slope_high = direction * series_value(y_jet, i, high), direction * series_slope(y_jet, i, high)
+        before, after = crossing_between(y_jet, i, direction, low, y_low, slope_low, high, y_high, slope_high)
+        if after > before and found[orbit] < crossings.shape[1]:
+            tau = find_zero(y_jet, i, before, after)
+            crossings[orbit, found[orbit], 0] = series_value(x_jet, i, tau)
+            crossings[orbit, found[orbit], 1] = series_slope(x_jet, i, tau)
+            crossings[orbit, found[orbit], 2] = begin + tau
+            found[orbit] += 1
+        low, y_low, slope_low = high, y_high, slope_high
 
 
 @subroutine

@@ -12,7 +12,7 @@ import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_fixed_step, call_jets, call_tangent
-from engine.taylor.kernels.events import find_zero, series_slope, series_value
+from engine.taylor.kernels.events import append_crossings
 from engine.taylor.source.recurrence import LANES, ORDER
 
 _STEPS_TO_RENORMALISATION = 8
@@ -65,7 +65,8 @@ def _store_lanes(current, state):
 def find_section_points(fixed_step, jets, coefficients, h, steps, state, points, found):
     """The next points (x, px) at which orbits cross y = 0 upward, until each has m points or `steps` are taken.
 
-    state (4, lanes), changed in place; points (lanes, m, 2), filled from index found (lanes,) on.
+    state (4, lanes), changed in place; points (lanes, m, 3), filled from index found (lanes,) on: x, px and
+    the time since the start of the step.
     """
     lanes = state.shape[1]
     current = _load_lanes(state)
@@ -113,13 +114,7 @@ def _locate_crossings(jets, coefficients, h, n, start, step_lane, points, found)
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
-        lane = step_lane[i]
-        if found[lane] == points.shape[1]:
-            continue
-        tau = find_zero(y_jet, i, 0.0, h)
-        points[lane, found[lane], 0] = series_value(x_jet, i, tau)
-        points[lane, found[lane], 1] = series_slope(x_jet, i, tau)
-        found[lane] += 1
+        append_crossings(x_jet, y_jet, i, 1.0, 0.0, h, points, found, step_lane[i])
 
 
 @kernel

@@ -95,12 +95,13 @@ class _StepBuffer(NamedTuple):
 
 
 @kernel
-def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits):
+def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget, least, exits, orbits, trace):
     """Propagate the orbits numbered `todo` until they escape, pass `horizon`, or `budget` steps of lanes are taken.
 
     It also ends when fewer than `least` orbits are left, as these would not fill the lanes. exits: `Exits`; orbits: `Orbits`.
     With `final` the horizon is t_max: events of the last, partial step are located and an orbit still inside is BOUNDED; without,
-    it stays NOT_COMPUTED. Returns the number of steps of orbits.
+    it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written until it is full;
+    (0, 5) for more than one orbit. Returns the number of steps of orbits.
     """
     # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
     now = np.zeros((6, LANES))
@@ -116,10 +117,15 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     active = min(LANES, todo.shape[0])
     next_orbit = active
     taken = 0
+    traced = 0
     left = budget
     for i in range(active):
         _load_orbit(orbits, todo[i], now, i, lane_orbit, crossed)
     while active > 0 and left > 0 and (active >= least or next_orbit < todo.shape[0]):
+        if traced < trace.shape[0]:
+            for c in range(5):
+                trace[traced, c] = now[c, 0]
+            traced += 1
         width = (active + VECTOR - 1) // VECTOR * VECTOR
         call_step(step, coefficients, width, tolerance, horizon, exits.gates, now, new, flag, crossed)
         taken += active
@@ -242,29 +248,3 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[j, 3] = series_slope(y_jet, i, tau)
         # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
         orbits.fate[j] = BOUNDED if curves[channel - 1, OPEN] == 0.0 else channel
-
-
-@kernel
-def record_steps(step, coefficients, start, begin, end, tolerance, gates, steps):
-    """Record the starts of the steps of one orbit from time `begin` to `end`, as `propagate` takes them, until `steps` is full.
-
-    start (4,); gates (channels, 3); steps (m, 5): x, y, px, py, t at the start of each step. Returns the number of rows written:
-    fewer than m when the last step reaches `end`, otherwise the last row is where to continue from.
-    """
-    now = np.zeros((6, LANES))
-    new = np.zeros((6, LANES))
-    flag = np.zeros(LANES, np.int64)
-    crossed = np.zeros(LANES, np.int64)
-    for c in range(4):
-        now[c] = start[c]
-    now[4] = begin
-    count = 0
-    while count < steps.shape[0]:
-        for c in range(5):
-            steps[count, c] = now[c, 0]
-        count += 1
-        call_step(step, coefficients, VECTOR, tolerance, end, gates, now, new, flag, crossed)
-        if flag[0] & OVERSHOOT != 0:
-            return count
-        now, new = new, now
-    return count

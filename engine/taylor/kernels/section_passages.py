@@ -11,12 +11,9 @@ import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
-from engine.taylor.kernels.events import crossed_exit, find_exit_time, find_extremum, find_zero, series_slope, series_value
+from engine.taylor.kernels.events import append_crossings, crossed_exit, find_exit_time
 from engine.taylor.kernels.propagate import VECTOR
 from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, ORDER, OVERSHOOT
-
-# Parts of a step that are examined in turn; within one, ẏ is taken to change its sign at most once.
-_PARTS = 8
 
 
 class _StepBuffer(NamedTuple):
@@ -94,30 +91,7 @@ def _locate_passages(jets, coefficients, buffer, n, curves, passages, found):
     y_jet = np.empty((ORDER + 1, start.shape[1]))
     call_jets(jets, coefficients, start.shape[1], start[0], start[1], start[2], start[3], x_jet, y_jet)
     for i in range(n):
-        j = buffer.orbit[i]
         duration = start[5, i]
         if buffer.channel[i] > 0:
             duration = find_exit_time(x_jet, y_jet, i, duration, curves[buffer.channel[i] - 1])
-        high = 0.0
-        y_high, slope_high = start[1, i], start[3, i]
-        for part in range(1, _PARTS + 1):
-            low, y_low, slope_low = high, y_high, slope_high
-            high = duration * part / _PARTS
-            y_high = series_value(y_jet, i, high)
-            slope_high = series_slope(y_jet, i, high)
-            above, below = low, high
-            if y_low * y_high > 0.0 and y_low * slope_low < 0.0 and y_high * slope_high > 0.0:
-                turning = find_extremum(y_jet, i, low, high)
-                if y_low > 0.0:
-                    below = turning
-                else:
-                    above = turning
-            if found[j] == passages.shape[1] or not (
-                series_value(y_jet, i, above) > 0.0 and series_value(y_jet, i, below) <= 0.0
-            ):
-                continue
-            tau = find_zero(y_jet, i, above, below)
-            passages[j, found[j], 0] = series_value(x_jet, i, tau)
-            passages[j, found[j], 1] = series_slope(x_jet, i, tau)
-            passages[j, found[j], 2] = start[4, i] + tau
-            found[j] += 1
+        append_crossings(x_jet, y_jet, i, -1.0, start[4, i], duration, passages, found, buffer.orbit[i])

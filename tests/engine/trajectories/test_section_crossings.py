@@ -47,14 +47,14 @@ def test_points_of_a_regular_orbit_agree_with_the_event_finder(name: str, energy
     orbit = integrate_orbit(CASES[name], start[0], 1000.0)
     assert judge_orbit(orbit).character is Verdict.REGULAR
     expected = find_section_points(CASES[name], start, orbit.crossings, 1000.0)[0]
-    np.testing.assert_allclose(find_section_crossings(CASES[name], orbit), expected, atol=1e-6)
+    np.testing.assert_allclose(find_section_crossings(CASES[name], orbit), expected, atol=1e-9)
 
 
 def test_points_between_distant_samples_are_accurate() -> None:
     start = start_states(POTENTIAL, Plane.X_PX, ENERGY, np.array([0.1]), np.array([0.2]))[0]
     orbit = integrate_orbit(POTENTIAL, start, 1000.0)
     sparse = replace(orbit, **{name: getattr(orbit, name)[::10] for name in ("t", "x", "y", "px", "py")})
-    np.testing.assert_allclose(find_section_crossings(POTENTIAL, sparse), find_section_crossings(POTENTIAL, orbit), atol=1e-6)
+    np.testing.assert_allclose(find_section_crossings(POTENTIAL, sparse), find_section_crossings(POTENTIAL, orbit), atol=1e-12)
 
 
 @pytest.mark.parametrize(("state", "crossings"), [((0.0, 0.0, 0.0, 0.5), 0), ((0.0, -1e-9, 0.0, 0.5), 1)])

@@ -1,4 +1,4 @@
-"""Upward crossings of y = 0 and exits within one step, for series that are known polynomials."""
+"""Crossings of y = 0 and exits within one step, for series that are known polynomials."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from engine import CASES, find_lyapunov_orbits
-from engine.taylor.kernels.events import count_upward_crossings, exit_distance, find_exit_time
+from engine.taylor.kernels.events import append_crossings, count_upward_crossings, exit_distance, find_exit_time
 from engine.taylor.source.recurrence import ORDER
 
 
@@ -23,6 +23,14 @@ def crossings(polynomial: Polynomial, duration: float = 1.0) -> int:
 
 def with_roots(*roots: float) -> Polynomial:
     return Polynomial.fromroots(roots)
+
+
+def random_series(seed: int, direction: int) -> tuple[Polynomial, np.ndarray]:
+    """A polynomial, and its roots in (0, 1) whose slope has the sign of `direction`."""
+    polynomial = Polynomial(np.random.default_rng(seed).normal(size=7) * [0.3, 1, 2, 2, 1, 1, 1])
+    roots = polynomial.roots()
+    real = np.sort(roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)])
+    return polynomial, real[direction * polynomial.deriv()(real) > 0]
 
 
 @pytest.mark.parametrize(
@@ -97,10 +105,26 @@ def test_only_crossings_within_the_duration_are_counted() -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_crossings_of_random_series_are_their_roots_with_positive_slope(seed: int) -> None:
-    polynomial = Polynomial(np.random.default_rng(seed).normal(size=7) * [0.3, 1, 2, 2, 1, 1, 1])
-    roots = polynomial.roots()
-    real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)]
-    assert crossings(polynomial) == np.sum(polynomial.deriv()(real) > 0)
+    polynomial, rising = random_series(seed, +1)
+    assert crossings(polynomial) == rising.size
+
+
+@pytest.mark.parametrize("direction", [+1, -1])
+@pytest.mark.parametrize("seed", range(20))
+def test_points_of_crossings_lie_at_the_roots_of_the_direction(seed: int, direction: int) -> None:
+    polynomial, roots = random_series(seed, direction)
+    x = Polynomial([0.3, -0.7, 0.2])
+    points, found = np.full((2, 8, 3), np.nan), np.zeros(2, np.int64)
+    append_crossings(jet_of(x), jet_of(polynomial), 0, float(direction), 5.0, 1.0, points, found, 1)
+    assert found.tolist() == [0, roots.size]
+    np.testing.assert_allclose(points[1, : roots.size], np.column_stack([x(roots), x.deriv()(roots), 5.0 + roots]), atol=1e-12)
+
+
+def test_no_more_crossings_are_appended_than_there_is_room_for() -> None:
+    jet, points, found = jet_of(with_roots(0.2, 0.5, 0.8)), np.full((1, 1, 3), np.nan), np.zeros(1, np.int64)
+    append_crossings(jet, jet, 0, 1.0, 0.0, 1.0, points, found, 0)
+    assert found[0] == 1
+    assert points[0, 0, 2] == pytest.approx(0.2)
 
 
 # Exits.

@@ -90,7 +90,7 @@ def propagate(
     curves = exit_curves(POTENTIAL, ENERGY)[None]
     exits = Exits(exit_gates(curves), curves, np.zeros(orbits.t.size, np.int64))
     kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-    return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, least, exits, orbits))
+    return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, least, exits, orbits, np.empty((0, 5))))
 
 
 def assert_equal(orbits: Orbits, expected: Orbits) -> None:
