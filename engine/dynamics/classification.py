@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ import numpy as np
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import exit_curves_in_well_units
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import TIME
 from engine.results.result import Result
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
 
@@ -36,7 +37,7 @@ class Outcomes(Result):
     """
 
     fate: np.ndarray
-    escape_time: np.ndarray
+    escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy_error: np.ndarray
 
@@ -92,14 +93,14 @@ def classify_orbits(
     """
     states = _checked_states(potential, energy, states)
     t_max = checked_t_max(t_max)
-    units, scaled = potential.units, potential.in_well_units
-    curves = exit_curves_in_well_units(potential, energy)[None]
+    units, well = potential.units, potential.in_well_units
+    well_energy = energy / units.energy
+    curves = exit_curves(well, well_energy)[None]
     batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
-    batch.mark_outside(scaled, every_orbit, curves)
-    propagate_batch(scaled, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution)
-    outcomes = collect_outcomes(scaled, np.full(len(states), energy / units.energy), batch)
-    return replace(outcomes, escape_time=outcomes.escape_time * units.time)
+    batch.mark_outside(well, every_orbit, curves)
+    propagate_batch(well, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution)
+    return units.restore(collect_outcomes(well, np.full(len(states), well_energy), batch))
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:

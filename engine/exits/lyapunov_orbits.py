@@ -5,14 +5,14 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
 from engine.potentials.potential import Potential
-from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.potentials.well_units import ENERGY, LENGTH, TIME, WellUnits, nearest_power_of_two
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels import events
@@ -50,10 +50,10 @@ class LyapunovOrbit(Result):
     """
 
     channel: int
-    energy: float
-    period: float
-    x: np.ndarray
-    y: np.ndarray
+    energy: float = field(metadata=ENERGY)
+    period: float = field(metadata=TIME)
+    x: np.ndarray = field(metadata=LENGTH)
+    y: np.ndarray = field(metadata=LENGTH)
     curve: np.ndarray
 
     def __post_init__(self) -> None:
@@ -94,21 +94,23 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     >>> find_lyapunov_orbits(CASES["I"], 0.1)
     ()
     """
-    energy, units = checked_number("energy", energy), potential.units
-    _check_below_maxima(potential, energy)
+    units = potential.units
+    scaled = checked_number("energy", energy) / units.energy
     try:
-        orbits = _find_orbits(potential.in_well_units, energy / units.energy)
+        orbits = _find_orbits(potential.in_well_units, scaled)
     except _SearchError as error:
-        raise ValueError(f"energy={energy}: {error} (potential {potential.name})") from None
-    return orbits if units == WellUnits() else tuple(_rescaled(orbit, units) for orbit in orbits)
+        stated = scaled * potential.in_well_units.stated_units.energy
+        raise ValueError(f"energy={stated}: {error} (potential {potential.name})") from None
+    return orbits if units == WellUnits() else tuple(_restored(orbit, units) for orbit in orbits)
 
 
 def _check_below_maxima(potential: Potential, energy: float) -> None:
+    units = potential.stated_units
     for merger in potential.channel_mergers:
         if energy > merger.energy:
-            raise ValueError(
-                f"energy={energy}: {merger.describe()} are one above the maximum between them, V = {merger.energy:.6g} at "
-                f"({merger.x:.6g}, {merger.y:.6g}); choose a lower energy (potential {potential.name})"
+            raise _SearchError(
+                f"{merger.describe()} are one above the maximum between them, V = {merger.energy * units.energy:.6g} at "
+                f"({merger.x * units.length:.6g}, {merger.y * units.length:.6g}); choose a lower energy"
             )
 
 
@@ -119,6 +121,7 @@ class _SearchError(Exception):
 @functools.lru_cache(maxsize=4096)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """The orbits of a potential in units of its well."""
+    _check_below_maxima(potential, energy)
     try:
         return _find_separate_orbits(potential, energy, follow=False)
     except _SearchError:
@@ -138,14 +141,12 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
     return orbits
 
 
-def _rescaled(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
-    """An orbit in units of the well, converted to the units of its potential without rounding."""
-    length = units.length
-    curve = orbit.curve * length
+def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
+    """An orbit in units of the well, in the units of its potential; in its exit curve, directions have no unit."""
+    curve = orbit.curve * units.length
     directions = slice(events.OUTWARD_X, events.OPEN + 1)
     curve[directions] = orbit.curve[directions]
-    energy, period = orbit.energy * units.energy, orbit.period * units.time
-    return LyapunovOrbit(orbit.channel, energy, period, orbit.x * length, orbit.y * length, curve)
+    return replace(units.restore(orbit), curve=curve)
 
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
@@ -278,12 +279,6 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
     for orbit in find_lyapunov_orbits(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
     return curves
-
-
-def exit_curves_in_well_units(potential: Potential, energy: float) -> np.ndarray:
-    """(channels, columns) exit curves in units of the well, at an energy in the potential's own units, which errors name."""
-    find_lyapunov_orbits(potential, energy)
-    return exit_curves(potential.in_well_units, energy / potential.units.energy)
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:

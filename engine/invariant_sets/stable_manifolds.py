@@ -12,7 +12,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
-from engine.potentials.well_units import WellUnits
+from engine.potentials.well_units import LENGTH, MOMENTUM
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.slices.default_window import default_window
@@ -67,8 +67,8 @@ class ManifoldArc:
 
     channel: int
     image: int
-    x: np.ndarray
-    px: np.ndarray
+    x: np.ndarray = field(metadata=LENGTH)
+    px: np.ndarray = field(metadata=MOMENTUM)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,13 +171,11 @@ def find_stable_manifolds(
     firsts = [channel for channel in orbits if not mirror or channel <= potential.mirror_channels[channel]]
     # Each thread waits for the tiles of its channel most of the time.
     with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
-        found = threads.map(
-            lambda channel: _find_arcs(potential, orbits[channel], given_energy, images, spacing, execution), firsts
-        )
+        found = threads.map(lambda channel: _find_arcs(potential, orbits[channel], images, spacing, execution), firsts)
         arcs = dict(zip(firsts, found, strict=True))
     truncated = any(unfinished for _, unfinished in arcs.values())
-    scaled = tuple(_scaled(arc, units) for channel in orbits for arc in _arcs_of(channel, arcs, potential))
-    return StableManifolds(given, given_energy, scaled, images, truncated)
+    restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, potential))
+    return StableManifolds(given, given_energy, restored, images, truncated)
 
 
 def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], potential: Potential) -> list[ManifoldArc]:
@@ -185,11 +183,6 @@ def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], pote
     if channel in arcs:
         return arcs[channel][0]
     return [_mirrored(arc, channel) for arc in arcs[int(potential.mirror_channels[channel])][0]]
-
-
-def _scaled(arc: ManifoldArc, units: WellUnits) -> ManifoldArc:
-    """An arc in units of the well, converted to the units of its potential."""
-    return ManifoldArc(arc.channel, arc.image, read_only(units.length * arc.x), read_only(units.momentum * arc.px))
 
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
@@ -200,16 +193,15 @@ def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
 def _find_arcs(
     potential: Potential,
     orbit: LyapunovOrbit,
-    energy: float,
     images: int,
     spacing: _PointSpacing,
     execution: Execution,
 ) -> tuple[list[ManifoldArc], bool]:
-    """The arcs of one channel, and whether any of them is incomplete; `energy` is the one that an error names."""
+    """The arcs of one channel, and whether any of them is incomplete."""
     try:
         tube = UnstableManifold.from_orbit(potential, orbit)
     except ValueError as error:
-        raise ValueError(f"energy={energy}: {error}") from None
+        raise ValueError(f"energy={orbit.energy * potential.stated_units.energy}: {error}") from None
     count = tube.near_passages + images
     passages = _refine(lambda phases: tube.find_passages(phases, count, execution), count, spacing, images * ORBITS_PER_IMAGE)
     arcs = []

@@ -94,10 +94,12 @@ def run_map(
     if resume is not None:
         _check_resumable(spec, resume)
     part = execution.part(0, 2) if with_trust else execution
+    well_spec, earlier = spec.in_well_units(), resume.in_well_units() if resume is not None else None
+    publish = None if on_frame is None else lambda frame: on_frame(frame.restored(spec))
     if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
-        result = _compute_in_blocks(spec, part, on_frame)
+        result = _compute_in_blocks(well_spec, part, publish).restored(spec)
     else:
-        result = _compute_at_once(spec, part, on_frame, resume)
+        result = _compute_at_once(well_spec, part, publish, earlier).restored(spec)
     if not (with_trust and result.complete):
         return result
     return replace(result, trust=compute_trust(result, execution=execution.part(1, 2)).trust)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
@@ -89,24 +89,23 @@ def compute_regularity(
     0.23
     """
     escape_map.check_complete("escape_map")
-    classification = _RegularityClassification(escape_map, execution)
+    given_spec = escape_map.spec
+    classification = _RegularityClassification(escape_map.in_well_units(), execution)
     for step in classification.steps():
         if execution.is_cancelled:
             break
         step()
         if on_frame is not None:
-            on_frame(classification.result())
+            on_frame(replace(classification.result(), spec=given_spec))
         execution.report(classification.progress)
-    return classification.result()
+    return replace(classification.result(), spec=given_spec)
 
 
 class _RegularityClassification:
     """The orbits not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, execution: Execution) -> None:
-        self._given_spec, self._execution = escape_map.spec, execution
-        escape_map = escape_map.in_well_units()
-        self._spec = escape_map.spec
+        self._spec, self._execution = escape_map.spec, execution
         codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
         codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
@@ -154,4 +153,4 @@ class _RegularityClassification:
 
     def result(self) -> RegularityMap:
         """The result so far."""
-        return RegularityMap(self._given_spec, *self._codes.snapshot())
+        return RegularityMap(self._spec, *self._codes.snapshot())

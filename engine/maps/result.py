@@ -12,6 +12,7 @@ from engine.dynamics.batch import OrbitBatch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.maps.spec import MapSpec
+from engine.potentials.well_units import TIME
 from engine.results.result import MapResult
 from engine.slices.window import Window
 
@@ -76,13 +77,13 @@ class EscapeMap(MapResult):
     x: np.ndarray
     ordinate: np.ndarray
     fate: np.ndarray
-    escape_time: np.ndarray
+    escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy_error: np.ndarray
     certificate: np.ndarray
     outside: np.ndarray
     stride: int
-    horizon: float
+    horizon: float = field(metadata=TIME)
     progress: float
     complete: bool
     started: np.ndarray = field(repr=False)
@@ -139,6 +140,10 @@ class EscapeMap(MapResult):
             self, spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit,
             escape_time=self.escape_time / units.time, horizon=self.horizon / units.time,
         )  # fmt: skip
+
+    def restored(self, spec: MapSpec) -> EscapeMap:
+        """This map, computed in units of the well, in the units of the request from which it was made."""
+        return replace(spec.plane.restore(self, spec.potential.units), spec=spec)
 
     def coordinates(self, pixels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(n,) x and (n,) ordinate of the centres of pixels (n,), which are numbered row by row from 0."""

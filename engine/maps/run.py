@@ -13,7 +13,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices
@@ -45,16 +45,16 @@ def certifies_before(spec: MapSpec, reached: float, horizon: float) -> bool:
 
 
 class MapRun:
-    """State of the computation of a map, or of some of its rows.
+    """State of the computation of a map, or of some of its rows, in units of the well.
 
     Of two pixels that are mirror images of each other only the first is computed.
 
     Parameters
     ----------
     spec
-        The request.
+        The request, `MapSpec.in_well_units`.
     resume
-        An earlier map, with its integration state, to continue from.
+        An earlier map in units of the well, with its integration state, to continue from.
     rows
         Increasing row numbers; None for all rows.
     coarse_first
@@ -62,20 +62,18 @@ class MapRun:
 
     Attributes
     ----------
-    given_spec, spec
-        The request, and the same in units of the well.
+    spec
+        The request.
     stride, horizon
-        Those of the current stage, see `EscapeMap`; the horizon is in units of the well.
+        Those of the current stage, see `EscapeMap`.
     """
 
     def __init__(
         self, spec: MapSpec, resume: EscapeMap | None = None, rows: np.ndarray | None = None, *, coarse_first: bool = True
     ) -> None:
-        # All quantities but those of frames are in units of the well.
-        self.given_spec, self.spec = spec, spec.in_well_units()
-        self.x, self.ordinate = self.spec.pixel_centres()
+        self.spec = spec
+        self.x, self.ordinate = spec.pixel_centres()
         self.ordinate = self.ordinate if rows is None else self.ordinate[rows]
-        spec = self.spec
         self.shape = (self.ordinate.size, self.x.size)
         self.stride = _coarsest_stride(self.shape) if coarse_first else 1
         self.horizon = min(_FIRST_HORIZON, spec.t_max)
@@ -95,13 +93,13 @@ class MapRun:
     def _continue(self, earlier: EscapeMap) -> None:
         """Take over the outcomes of an earlier map, and the states of the orbits that a larger t_max can change."""
         assert earlier.batch is not None
-        continued, outcomes = earlier.continued_pixels, earlier.in_well_units()
+        continued = earlier.continued_pixels
         self._started = earlier.started.ravel().copy()
         self._earlier_errors = earlier.energy_error.ravel().copy()
         self._earlier_errors[continued] = np.nan
         self._batch.set_outcomes(
-            outcomes.fate.ravel(), outcomes.escape_time.ravel(), outcomes.crossings.ravel(),
-            outcomes.outside.ravel(), outcomes.certificate.ravel(),
+            earlier.fate.ravel(), earlier.escape_time.ravel(), earlier.crossings.ravel(),
+            earlier.outside.ravel(), earlier.certificate.ravel(),
         )  # fmt: skip
         self._batch.put(continued, earlier.batch)
         self._batch.reopen_bounded()
@@ -162,12 +160,10 @@ class MapRun:
         """Find the exits at those energies of the pixels at which they are not known yet."""
         if not self._rows_without_exits:
             return
-        potential = self.given_spec.potential
         rows, firsts = np.unique(self._curve_row[pixels], return_index=True)
         for row, pixel in zip(rows.tolist(), pixels[firsts], strict=True):
             if row in self._rows_without_exits:
-                energy = float(self._energy[pixel]) * potential.units.energy
-                self._curves[row] = exit_curves_in_well_units(potential, energy)
+                self._curves[row] = exit_curves(self.spec.potential, float(self._energy[pixel]))
                 self._rows_without_exits.discard(row)
 
     def _certify(self, execution: Execution, on_round: Callable[[], None]) -> None:
@@ -200,13 +196,10 @@ class MapRun:
         arrays = {name: getattr(outcomes, name) for name in ("fate", "escape_time", "crossings", "energy_error")}
         arrays |= {"certificate": self._batch.certificates()}
         arrays |= {"outside": self._batch.outside.copy(), "started": self._started.copy()}
-        spec, units = self.given_spec, self.given_spec.potential.units
-        x_unit, ordinate_unit = spec.plane.axis_units(units)
-        arrays["escape_time"] = units.time * arrays["escape_time"]
         pixel_arrays: dict[str, Any] = {name: read_only(array.reshape(self.shape)) for name, array in arrays.items()}
         return EscapeMap(
-            spec=spec, x=read_only(x_unit * self.x), ordinate=read_only(ordinate_unit * self.ordinate),
-            stride=self.stride, horizon=units.time * self.horizon, progress=self.progress(), complete=complete, **pixel_arrays,
+            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate),
+            stride=self.stride, horizon=self.horizon, progress=self.progress(), complete=complete, **pixel_arrays,
         )  # fmt: skip
 
     def _outcomes(self) -> Outcomes:

@@ -6,7 +6,7 @@ practical integration time.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from engine.maps.pixels import MirrorPixels
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.validation import checked_t_max
@@ -55,10 +56,10 @@ class SuperStickySearch(Result):
     ordinate: np.ndarray
     states: np.ndarray
     fate: np.ndarray
-    escape_time: np.ndarray
+    escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     images: int
-    t_max: float
+    t_max: float = field(metadata=TIME)
 
     @property
     def chaotic_share(self) -> float:
@@ -130,7 +131,13 @@ def find_super_sticky_orbits(
     """
     _check(escape_map, regularity, t_max)
     given_spec, units = escape_map.spec, escape_map.spec.potential.units
-    escape_map = escape_map.in_well_units()
+    found = _search(escape_map.in_well_units(), regularity, t_max / units.time, execution)
+    states = read_only(found.states * units.state)
+    return replace(given_spec.plane.restore(found, units), spec=given_spec, states=states)
+
+
+def _search(escape_map: EscapeMap, regularity: RegularityMap, t_max: float, execution: Execution) -> SuperStickySearch:
+    """`find_super_sticky_orbits` in units of the well."""
     spec = escape_map.spec
     pixels = np.flatnonzero(regularity.character.ravel() == Regularity.CHAOTIC)
     x, ordinate = escape_map.coordinates(pixels)
@@ -138,20 +145,19 @@ def find_super_sticky_orbits(
     mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
     partner = mirror.partner[pixels]
     batch = OrbitBatch.from_starts(states, np.zeros(pixels.size, np.int64))
-    _propagate(spec, batch, np.flatnonzero(pixels <= partner), t_max / units.time, execution)
+    _propagate(spec, batch, np.flatnonzero(pixels <= partner), t_max, execution)
     if mirror.symmetric:
         firsts = np.flatnonzero(pixels < partner)
         batch.copy_to_images(firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_channels)
     outcomes = collect_outcomes(spec.potential, spec.energies(x, ordinate), batch)
-    x_unit, ordinate_unit = spec.plane.axis_units(units)
     return SuperStickySearch(
-        given_spec,
+        spec,
         int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)),
-        read_only(x * x_unit),
-        read_only(ordinate * ordinate_unit),
-        read_only(states * units.state),
+        read_only(x),
+        read_only(ordinate),
+        read_only(states),
         read_only(outcomes.fate),
-        read_only(outcomes.escape_time * units.time),
+        read_only(outcomes.escape_time),
         read_only(outcomes.crossings),
         images=2 if mirror.symmetric else 1,
         t_max=float(t_max),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar
 
@@ -137,8 +137,10 @@ def compute_trust(
     (0.54, 0.03)
     """
     escape_map.check_complete("escape_map")
-    test = _TrustTest(escape_map, on_frame, execution)
-    spec, reached = escape_map.spec.in_well_units(), 0.0
+    given_spec, reached = escape_map.spec, 0.0
+    publish = None if on_frame is None else lambda found: on_frame(replace(found, spec=given_spec))
+    test = _TrustTest(escape_map.in_well_units(), publish, execution)
+    spec = test.spec
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
             break
@@ -147,7 +149,7 @@ def compute_trust(
         test.propagate(horizon)
         reached = horizon
         execution.report(test.progress)
-    return test.result()
+    return replace(test.result(), spec=given_spec)
 
 
 def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarray:
@@ -255,9 +257,7 @@ class _TrustTest:
         on_frame: Callable[[TrustMap], None] | None,
         execution: Execution,
     ) -> None:
-        self._given_spec, self._on_frame, self._execution = escape_map.spec, on_frame, execution
-        escape_map = escape_map.in_well_units()
-        self._spec = escape_map.spec
+        self.spec, self._on_frame, self._execution = escape_map.spec, on_frame, execution
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         uncertified = _find_uncertified(escape_map)
         codes[uncertified | find_unlike_neighbours(escape_map.fate, escape_map.crossings)] = Trust.NOT_TESTED
@@ -273,7 +273,7 @@ class _TrustTest:
 
     def _prepare_reruns(self, escape_map: EscapeMap) -> tuple[np.ndarray, list[_Rerun]]:
         """The exit curves of each energy, and the reruns at t = 0."""
-        spec, potential, pixels = self._spec, self._spec.potential, self._codes.pixels
+        spec, potential, pixels = self.spec, self.spec.potential, self._codes.pixels
         x, ordinate = escape_map.coordinates(pixels)
         fate, crossings, escape_time = (
             getattr(escape_map, name).ravel()[pixels] for name in ("fate", "crossings", "escape_time")
@@ -307,14 +307,14 @@ class _TrustTest:
 
     def _propagate_rerun(self, horizon: float, rerun: _Rerun) -> None:
         propagate_batch(
-            self._spec.potential, self._curves, rerun.batch, self._undecided, horizon,
-            final=horizon == self._spec.t_max, tolerance=rerun.tolerance, execution=self._execution,
+            self.spec.potential, self._curves, rerun.batch, self._undecided, horizon,
+            final=horizon == self.spec.t_max, tolerance=rerun.tolerance, execution=self._execution,
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
         """Find the pixels bounded without a certificate whose reruns, both integrated to `time`, are `APART`."""
         tested = self._undecided[self._uncertified[self._undecided]]
-        kernels = kernels_of(self._spec.potential)
+        kernels = kernels_of(self.spec.potential)
         batches = [rerun.batch for rerun in self._reruns]
         first, second = (advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches)
         self._chaotic[tested] = np.linalg.norm(first - second, axis=1) > APART
@@ -332,7 +332,7 @@ class _TrustTest:
             return
         grid_indices = np.full((tested.size, 2), _COARSEST_LATTICE_INDEX)
         certifier = BoundednessCertifier(
-            self._spec.potential, self._spec.common_energy, first.batch.state[tested], grid_indices, self._spec.t_max - reached,
+            self.spec.potential, self.spec.common_energy, first.batch.state[tested], grid_indices, self.spec.t_max - reached,
             execution=self._execution,
         )  # fmt: skip
 
@@ -349,7 +349,7 @@ class _TrustTest:
         finished = np.all([rerun.is_decided() for rerun in self._reruns], axis=0)
         changed = np.any([rerun.has_changed() for rerun in self._reruns], axis=0)
         changed |= self._chaotic
-        if self._compared < self._spec.t_max:
+        if self._compared < self.spec.t_max:
             finished &= ~self._uncertified | (self._reruns[0].batch.certificate != Certificate.NONE)
         self._codes.assign(self._codes.pixels[finished], Trust.CONFIRMED)
         self._codes.assign(self._codes.pixels[changed], Trust.DOUBTFUL)
@@ -363,4 +363,4 @@ class _TrustTest:
 
     def result(self) -> TrustMap:
         """The result so far."""
-        return TrustMap(self._given_spec, *self._codes.snapshot())
+        return TrustMap(self.spec, *self._codes.snapshot())

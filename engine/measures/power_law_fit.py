@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from engine.potentials.well_units import LENGTH, TIME
 from engine.results.arrays import read_only
 from engine.results.proportions import wilson_interval
 from engine.results.result import Result
@@ -72,7 +73,7 @@ class UncertaintyExponent(Result):
         Integration time of the orbits, dimensionless; NaN if not known.
     """
 
-    separations: np.ndarray
+    separations: np.ndarray = field(metadata=LENGTH)
     pairs: np.ndarray
     uncertain: np.ndarray
     used: np.ndarray
@@ -83,7 +84,7 @@ class UncertaintyExponent(Result):
     misfit: float
     one_inside: np.ndarray = field(default_factory=_empty_counts, repr=False)
     both_inside: np.ndarray = field(default_factory=_empty_counts, repr=False)
-    horizon: float = float("nan")
+    horizon: float = field(default=float("nan"), metadata=TIME)
 
     @property
     def shares(self) -> np.ndarray:

@@ -11,7 +11,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves_in_well_units
+from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.results.arrays import read_only
@@ -115,11 +115,13 @@ def compute_uncertainty_exponent(
     given: object = work
     if not isinstance(given, numbers.Real) or not work > 0.0:
         raise ValueError(f"work={short_repr(work)}: must be above 0")
-    sampler = _PairSampler(spec, _separations(spec, separations), seed, execution)
+    units, separation = spec.potential.units, _separations(spec, separations)
+    sampler = _PairSampler(spec.in_well_units(), separation, seed, execution)
     sampler.sample(np.full(separations, pairs), execution.part(0, 2))
     sampler.sample(sampler.plan_more_pairs(work), execution.part(1, 2))
     execution.report(lambda: 1.0)
-    return sampler.fit()
+    fit = sampler.fit()
+    return replace(units.restore(fit), amplitude=fit.amplitude / units.length**fit.exponent)
 
 
 def _separations(spec: MapSpec, count: int) -> np.ndarray:
@@ -147,7 +149,6 @@ class _PairSampler:
         seed: int,
         execution: Execution,
     ) -> None:
-        self.given_potential, spec = spec.potential, spec.in_well_units()
         self.spec, self.separations = spec, separations
         self.execution = execution
         self.horizon = min(spec.t_max, HORIZON)
@@ -164,8 +165,7 @@ class _PairSampler:
         curves = np.repeat(closed_channel_curves(self.spec.potential)[None], self.row_energy.size, axis=0)
         for row in np.flatnonzero(self.is_open):
             self.execution.raise_if_cancelled()
-            energy = float(self.row_energy[row]) * self.given_potential.units.energy
-            curves[row] = exit_curves_in_well_units(self.given_potential, energy)
+            curves[row] = exit_curves(self.spec.potential, float(self.row_energy[row]))
         return curves
 
     def plan_more_pairs(self, work: float) -> np.ndarray:
@@ -270,10 +270,7 @@ class _PairSampler:
         return np.concatenate([points, points + shift], axis=1), rows
 
     def fit(self) -> UncertaintyExponent:
-        """Exponent from all pairs so far, with separations and horizon in the units of the given potential."""
-        units = self.given_potential.units
+        """Exponent from all pairs so far."""
         fit = fit_uncertainty(self.separations, self.pairs, self.uncertain)
-        return replace(
-            fit, separations=read_only(units.length * fit.separations), amplitude=fit.amplitude / units.length**fit.exponent,
-            one_inside=read_only(self.one_inside), both_inside=read_only(self.both_inside), horizon=units.time * self.horizon,
-        )  # fmt: skip
+        one_inside, both_inside = read_only(self.one_inside), read_only(self.both_inside)
+        return replace(fit, one_inside=one_inside, both_inside=both_inside, horizon=self.horizon)

@@ -193,6 +193,11 @@ class Potential(Result):
         return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
 
     @cached_property
+    def stated_units(self) -> WellUnits:
+        """Units in which errors state energies and positions: those of the potential from which `in_well_units` made this one."""
+        return WellUnits()
+
+    @cached_property
     def fastest_frequency(self) -> float:
         """The higher frequency of small oscillations in the well at the origin; NaN if there is no well."""
         with np.errstate(invalid="ignore"):
@@ -212,6 +217,7 @@ class Potential(Result):
         terms = tuple((i, j, c * units.length ** (i + j) / units.energy) for i, j, c in self.terms)
         derived = {
             "units": WellUnits(),
+            "stated_units": units,
             "saddles": self.saddles / units.length,
             "outward_directions": self.outward_directions,
             "channel_mergers": tuple(

@@ -7,9 +7,19 @@ all time and length constants of the engine are in these units; for the three ca
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+
+
+def _quantity(length: int, time: int) -> dict[str, tuple[int, int]]:
+    """Metadata of a dataclass field: the powers of length and time in the unit of its value, for `WellUnits.restore`."""
+    return {_UNIT: (length, time)}
+
+
+_UNIT = "unit"
+LENGTH, TIME, AREA = _quantity(1, 0), _quantity(0, 1), _quantity(2, 0)
+MOMENTUM, RATE, ENERGY = _quantity(1, -1), _quantity(0, -1), _quantity(2, -2)
 
 
 @dataclass(frozen=True)
@@ -41,6 +51,23 @@ class WellUnits:
     def state(self) -> np.ndarray:
         """(4,) units of x, y, px, py."""
         return np.array([self.length, self.length, self.momentum, self.momentum])
+
+    def restore[Computed](self, result: Computed) -> Computed:
+        """A result that was computed in these units, in the units in which the potential was given, without rounding.
+
+        Fields whose metadata is a quantity, such as `TIME`, are converted; arrays stay read-only.
+        """
+        if self == WellUnits():
+            return result
+        restored = {}
+        for each in fields(result):  # type: ignore[arg-type]
+            if _UNIT in each.metadata:
+                length, time = each.metadata[_UNIT]
+                value = getattr(result, each.name)
+                restored[each.name] = value * (self.length**length * self.time**time)
+                if isinstance(value, np.ndarray):
+                    restored[each.name].flags.writeable = value.flags.writeable
+        return replace(result, **restored)  # type: ignore[type-var]
 
 
 def nearest_power_of_two(value: float) -> float:

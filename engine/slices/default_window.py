@@ -59,8 +59,6 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
 @functools.lru_cache(maxsize=1024)
 def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
     units, highest = potential.units, highest_energy(energy)
-    # An error about the exits is to name the energy as it is given.
-    find_lyapunov_orbits(potential, highest)
     well, well_energy = potential.in_well_units, highest / units.energy
     ranges = _position_ranges(well, plane.in_well_units(units), well_energy)
     if any(not ranges[axis][0] < ranges[axis][1] for axis in plane.axes if axis in ranges):

@@ -7,7 +7,7 @@ an axis h every start has an energy of its own, and so have its exits.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
+from engine.results.arrays import read_only
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, short_repr
 
 
@@ -139,6 +140,17 @@ class Slice:
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
         """The units of both axes in which their coordinates are numbers of the size of the well."""
         return self.abscissa.unit(units), self.ordinate.unit(units)
+
+    def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
+        """As `WellUnits.restore`, for a result whose `x` and `ordinate`, numbers or arrays, are positions on this slice."""
+        if units == WellUnits():
+            return result
+        x_unit, ordinate_unit = self.axis_units(units)
+        x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
+        for coordinate in (x, ordinate):
+            if isinstance(coordinate, np.ndarray):
+                read_only(coordinate)
+        return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
 
     def in_well_units(self, units: WellUnits) -> Slice:
         """The same slice with its fixed values in units of a well; itself if it has none."""

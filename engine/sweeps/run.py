@@ -134,9 +134,9 @@ def _name_in_errors(path: Path) -> Iterator[None]:
 
 def _compute_block(spec: MapSpec, rows: np.ndarray, execution: Execution) -> EscapeMap:
     """The given rows of a map. Raises CancelledError when cancelled."""
-    run = MapRun(spec, rows=rows)
+    run = MapRun(spec.in_well_units(), rows=rows)
     run.run(execution)
-    return require_complete(run.frame())
+    return require_complete(run.frame().restored(spec))
 
 
 def _find_store(spec: SweepSpec, path: Path) -> SweepStore | None:
@@ -151,7 +151,8 @@ def _find_store(spec: SweepSpec, path: Path) -> SweepStore | None:
 
 
 def _create_store(spec: SweepSpec, path: Path) -> SweepStore:
-    template = MapRun(replace(spec.map_spec(spec.energies[-1]), resolution=(1, 1))).frame().to_xarray()
+    one_pixel = replace(spec.map_spec(spec.energies[-1]), resolution=(1, 1))
+    template = MapRun(one_pixel.in_well_units()).frame().restored(one_pixel).to_xarray()
     fill_values = {name: fill for name, (_, fill) in PIXEL_ARRAYS.items()}
     columns, rows = spec.resolution
     chunk_rows = min(max(LARGEST_RUN // columns, 1), rows)

@@ -9,7 +9,7 @@ III at 0.24 and 0.26). "Tori" are the orbits among them certified by 8 agreeing 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -18,9 +18,10 @@ import numpy as np
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regularity, describe_fate, judge_regularity
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import exit_curves_in_well_units
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.results.wording import format_time
@@ -70,9 +71,9 @@ class BirkhoffDigits(Result):
         Unit of time of the well, of which the windows are multiples.
     """
 
-    windows: np.ndarray
+    windows: np.ndarray = field(metadata=TIME)
     digits: np.ndarray
-    time_unit: float = 1.0
+    time_unit: float = field(default=1.0, metadata=TIME)
 
     @property
     def nbytes(self) -> int:
@@ -141,24 +142,27 @@ def compute_birkhoff_digits(
     >>> compute_birkhoff_digits(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).digits.round(1)
     array([8.9])
     """
-    start, t_max = checked_state("state", state), checked_t_max(t_max)
-    units, well = potential.units, potential.in_well_units
-    curves = exit_curves_in_well_units(potential, float(potential.energy(start)))[None]
-    orbit = OrbitBatch.from_starts(start[None] / units.state, np.zeros(1, np.int64))
-    orbit.mark_outside(well, np.arange(1), curves, execution=execution.in_this_thread())
+    start, t_max, units = checked_state("state", state), checked_t_max(t_max), potential.units
+    return units.restore(_compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution))
+
+
+def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
+    """`compute_birkhoff_digits` of a state (1, 4) in units of the well."""
+    curves = exit_curves(potential, float(potential.energy(start)[0]))[None]
+    orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
+    orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
     for window in WINDOWS:
-        if 2.0 * window > t_max / units.time or not _stays_inside(well, curves, orbit, 2.0 * window, execution):
+        if 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
             break
-        found = count_agreeing_digits(well, start[None] / units.state, window, execution=execution.in_this_thread())[0]
+        found = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
         execution.raise_if_cancelled()
         if found == 0.0:
             break
         digits.append(float(found))
         if found >= CERTIFIED_DIGITS:
             break
-    windows = units.time * np.array(WINDOWS[: len(digits)])
-    return BirkhoffDigits(read_only(windows), read_only(np.array(digits)), units.time)
+    return BirkhoffDigits(read_only(np.array(WINDOWS[: len(digits)])), read_only(np.array(digits)))
 
 
 def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:

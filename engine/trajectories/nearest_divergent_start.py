@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from engine.dynamics.classification import classify_orbits
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import LENGTH
 from engine.results.result import Result
 from engine.slices.slice import Energy, Slice, checked_slice
 from engine.validation import checked_number, checked_t_max
@@ -49,7 +49,7 @@ class DivergentStart(Result):
 
     x: float
     ordinate: float
-    distance: float
+    distance: float = field(metadata=LENGTH)
     fate: int
     reference_fate: int
 
@@ -117,10 +117,7 @@ def find_divergent_start(
         raise ValueError(f"furthest={furthest}: must be a finite number above {nearest:g}")
     plane = checked_slice(plane)
     h = _checked_energy(plane, energy, x, ordinate)
-    # An error about the exits is to name the energy as it is given.
-    find_lyapunov_orbits(potential, h)
-    scale = np.array(plane.axis_units(units))
-    centre = np.array([x, ordinate]) / scale
+    centre = np.array([x, ordinate]) / plane.axis_units(units)
     search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
@@ -130,8 +127,7 @@ def find_divergent_start(
     found = search.find_nearest(furthest / units.length)
     if found is None:
         return None
-    x, ordinate = (scale * [found.x, found.ordinate]).tolist()
-    return replace(found, x=x, ordinate=ordinate, distance=units.length * found.distance)
+    return plane.restore(found, units)
 
 
 def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> float:

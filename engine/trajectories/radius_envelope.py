@@ -7,16 +7,17 @@ R² oscillates twice per revolution along a bounded orbit and grows beyond the L
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from engine.dynamics.classification import classify_orbits
+from engine.dynamics.classification import Outcomes, classify_orbits
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import AREA, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_pieces
@@ -45,11 +46,11 @@ class RadiusEnvelope(Result):
         Time of the outward crossing of the Lyapunov orbit; NaN when bounded.
     """
 
-    t: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
+    t: np.ndarray = field(metadata=TIME)
+    low: np.ndarray = field(metadata=AREA)
+    high: np.ndarray = field(metadata=AREA)
     fate: int
-    escape_time: float
+    escape_time: float = field(metadata=TIME)
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Start of each interval, smallest and largest R²."""
@@ -86,22 +87,28 @@ def compute_radius_envelope(
     """
     start, t_max = checked_state("state", state), checked_t_max(t_max)
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
-    energy = float(potential.energy(start))
-    outcome = classify_orbits(potential, energy, start[None], t_max, execution=execution.in_this_thread())
-    fate, escape_time = int(outcome.fate[0]), float(outcome.escape_time[0])
+    units, well = potential.units, potential.in_well_units
+    start, t_max = start / units.state, t_max / units.time
+    outcome = classify_orbits(well, float(well.energy(start)), start[None], t_max, execution=execution.in_this_thread())
     execution.raise_if_cancelled()
-    if fate == Fate.OUTSIDE:
+    if outcome.fate[0] == Fate.OUTSIDE:
         raise ValueError(f"state={short_repr(state)}: lies beyond a Lyapunov orbit; must lie inside")
+    return units.restore(_find_envelope(well, start, outcome, t_max, intervals, execution))
+
+
+def _find_envelope(
+    potential: Potential, start: np.ndarray, outcome: Outcomes, t_max: float, intervals: int, execution: Execution
+) -> RadiusEnvelope:
+    """`compute_radius_envelope` of an orbit with a known outcome, in units of the well."""
+    fate, escape_time = int(outcome.fate[0]), float(outcome.escape_time[0])
     t = np.linspace(0.0, escape_time if fate >= 1 else t_max, intervals + 1)
     low, high = np.full(intervals, np.inf), np.full(intervals, -np.inf)
-    units = potential.units
-    for times, r2 in _sample_r2(potential.in_well_units, start / units.state, t / units.time, execution):
+    for times, r2 in _sample_r2(potential, start, t, execution):
         # A boundary belongs to the intervals on both sides.
         for side in ("left", "right"):
-            interval = np.clip(np.searchsorted(t, units.time * times, side=side) - 1, 0, intervals - 1)
+            interval = np.clip(np.searchsorted(t, times, side=side) - 1, 0, intervals - 1)
             np.minimum.at(low, interval, r2)
             np.maximum.at(high, interval, r2)
-    low, high = units.length**2 * low, units.length**2 * high
     return RadiusEnvelope(read_only(t), read_only(low), read_only(high), fate, escape_time)
 
 

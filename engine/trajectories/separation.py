@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import LENGTH, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
@@ -34,8 +35,8 @@ class Separation(Result):
         to the last digit.
     """
 
-    t: np.ndarray
-    distance: np.ndarray
+    t: np.ndarray = field(metadata=TIME)
+    distance: np.ndarray = field(metadata=LENGTH)
 
     @property
     def nbytes(self) -> int:
@@ -86,5 +87,4 @@ def compute_separation(
         start = checked_state(name, state) / units.state
         steps = trace_steps(kernels, start, float(times[-1]), potential.channels, execution)
         paths.append(sample_path(kernels, steps, times, execution))
-    distance = units.length * np.linalg.norm(paths[1] - paths[0], axis=0)
-    return Separation(read_only(units.time * times), read_only(distance))
+    return units.restore(Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0))))

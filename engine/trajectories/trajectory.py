@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,10 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate
 from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import exit_curves_in_well_units
+from engine.exits.lyapunov_orbits import exit_curves
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
+from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_deviations, sample_path
@@ -62,21 +63,21 @@ class Orbit(Result):
         The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
     """
 
-    t: np.ndarray
-    x: np.ndarray
-    y: np.ndarray
-    px: np.ndarray
-    py: np.ndarray
+    t: np.ndarray = field(metadata=TIME)
+    x: np.ndarray = field(metadata=LENGTH)
+    y: np.ndarray = field(metadata=LENGTH)
+    px: np.ndarray = field(metadata=MOMENTUM)
+    py: np.ndarray = field(metadata=MOMENTUM)
     sali: np.ndarray
-    lyapunov_exponent: np.ndarray
-    r2: np.ndarray
+    lyapunov_exponent: np.ndarray = field(metadata=RATE)
+    r2: np.ndarray = field(metadata=AREA)
     fate: int
-    escape_time: float
+    escape_time: float = field(metadata=TIME)
     crossings: int
     energy_error: float
-    energy: float
+    energy: float = field(metadata=ENERGY)
     certificate: Certificate
-    time_unit: float = 1.0
+    time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
 
     @property
@@ -120,20 +121,21 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     >>> orbit.fate, round(orbit.escape_time, 4), orbit.to_pandas().shape[1]
     (1, 15.1781, 8)
     """
-    start = checked_state("state", state)
-    t_max = checked_t_max(t_max, MAX_ORBIT_TIME)
-    units, well, energy = potential.units, potential.in_well_units, float(potential.energy(start))
-    curves = exit_curves_in_well_units(potential, energy)
-    recorded = record_orbit(well, start / units.state, curves, t_max / units.time, execution)
-    times, path, sali, exponent = _sample_orbit(well, start / units.state, recorded, execution)
-    x, y, px, py = units.state[:, None] * path
-    times, exponent = units.time * times, exponent / units.time
+    start, t_max, units = checked_state("state", state), checked_t_max(t_max, MAX_ORBIT_TIME), potential.units
+    orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
+    return replace(units.restore(orbit), potential=potential)
+
+
+def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
+    """`integrate_orbit` in units of the well."""
+    energy = float(potential.energy(start))
+    recorded = record_orbit(potential, start, exit_curves(potential, energy), t_max, execution)
+    times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         read_only(array)
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
-    certificate = _certificate(potential, energy, fate)
-    return Orbit(*arrays, fate, units.time * escape_time, crossings, energy_error, energy, certificate, units.time, potential)
+    return Orbit(*arrays, fate, escape_time, crossings, energy_error, energy, _certificate(potential, energy, fate))
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
