@@ -21,7 +21,7 @@ from engine.potentials.catalogue import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.kernels.events import NOT_COMPUTED
-from engine.taylor.kernels.propagate import Exits, Orbits
+from engine.taylor.kernels.propagate import NO_TRACE, Exits, Orbits
 from engine.taylor.source.recurrence import TOLERANCE
 
 ORBITS = 64
@@ -49,7 +49,7 @@ def step_nanoseconds(potential: Potential) -> float:
         orbits = Orbits(state, np.zeros(ORBITS), counts[1], counts[2], fate, pending)
         exits = Exits(gates, curves, counts[0])
         started = time.thread_time()
-        steps = kernels.propagate(np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, 0, exits, orbits)
+        steps = kernels.propagate(np.arange(ORBITS), T_MAX, True, TOLERANCE, 2**62, 0, exits, orbits, NO_TRACE)
         shortest = min(shortest, (time.thread_time() - started) / steps)
     return shortest * 1e9
 

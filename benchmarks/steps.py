@@ -63,7 +63,7 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
             state, np.zeros(n), counts[1], counts[2], np.full(n, NOT_COMPUTED, np.int8), np.ones(n, np.uint8)
         )
         exits = propagate.Exits(gates, curves, counts[0])
-        steps = kernels.propagate(np.arange(n), horizon, True, tolerance, 2**62, 0, exits, orbits)
+        steps = kernels.propagate(np.arange(n), horizon, True, tolerance, 2**62, 0, exits, orbits, propagate.NO_TRACE)
         return state, steps, time.perf_counter() - begin
 
     run(10.0)

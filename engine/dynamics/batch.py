@@ -15,7 +15,7 @@ from engine.exits.interior import find_outside_starts
 from engine.exits.lyapunov_orbits import exit_gates
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
-from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
+from engine.taylor.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits
 from engine.taylor.source.recurrence import LANES, TOLERANCE
 
 LARGEST_TILE = 2048
@@ -23,8 +23,6 @@ LARGEST_TILE = 2048
 
 STEP_BUDGET = 2_000_000
 """Largest number of steps of lanes per kernel call, 20 to 50 ms: the interval at which cancellation and progress are handled."""
-
-_NO_TRACE = np.empty((0, 5))
 
 # With fewer orbits the lanes are not full enough: a worker gives them back, and they are joined with others.
 _FULL_LANES = LANES - 2 * VECTOR
@@ -207,7 +205,7 @@ def _advance_tile(
     b = tile.batch
     kernels_of(potential).propagate(
         np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least, Exits(gates, curves, b.curve_row),
-        Orbits(b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active), _NO_TRACE,
+        Orbits(b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active), NO_TRACE,
     )  # fmt: skip
     return tile
 

@@ -32,6 +32,9 @@ VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""
 
 
+NO_TRACE = np.empty((0, 5))
+"""The argument `trace` of `propagate` for orbits whose steps are not recorded."""
+
 GOES_ON = -1
 """In the buffer of steps, instead of a channel: the orbit does not end in the step."""
 
@@ -101,7 +104,7 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     It also ends when fewer than `least` orbits are left, as these would not fill the lanes. exits: `Exits`; orbits: `Orbits`.
     With `final` the horizon is t_max: events of the last, partial step are located and an orbit still inside is BOUNDED; without,
     it stays NOT_COMPUTED. trace (m, 5): x, y, px, py, t at the start of each step of the first lane, written until it is full;
-    (0, 5) for more than one orbit. Returns the number of steps of orbits.
+    `NO_TRACE` for more than one orbit. Returns the number of steps of orbits.
     """
     # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
     now = np.zeros((6, LANES))

@@ -9,7 +9,7 @@ from engine import CASES, Plane, Potential, start_states
 from engine.dynamics.fates import Fate
 from engine.exits.lyapunov_orbits import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.kernels.propagate import Exits, Orbits
+from engine.taylor.kernels.propagate import NO_TRACE, Exits, Orbits
 from engine.taylor.source.recurrence import HIDDEN, LANES, ORDER, OVERSHOOT, TOLERANCE
 
 # Not even in y, so orbits can turn anywhere and y = 0 can be grazed.
@@ -90,7 +90,7 @@ def propagate(
     curves = exit_curves(POTENTIAL, ENERGY)[None]
     exits = Exits(exit_gates(curves), curves, np.zeros(orbits.t.size, np.int64))
     kernels = load_kernels(POTENTIAL.terms, POTENTIAL.channels)
-    return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, least, exits, orbits, np.empty((0, 5))))
+    return int(kernels.propagate(todo, horizon, final, TOLERANCE, budget, least, exits, orbits, NO_TRACE))
 
 
 def assert_equal(orbits: Orbits, expected: Orbits) -> None:
