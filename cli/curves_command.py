@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cli import options
-from cli.options import PlaneName
+from cli.options import DEFAULT_PLANE
 
 if TYPE_CHECKING:
     from engine import EnergyCurves
@@ -26,7 +26,7 @@ def draw_curves(
     low: Annotated[float, typer.Option("--low", help="Lowest h.")],
     high: Annotated[float, typer.Option("--high", help="Highest h.")],
     count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced energies.")],
-    plane: options.Plane = PlaneName.X_PX,
+    plane: options.Plane = DEFAULT_PLANE,
     resolution: options.Resolution = "112",
     t_max: options.TMax = 1e5,
     exponent: Annotated[

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli import options
-from cli.options import PlaneName
+from cli.options import DEFAULT_PLANE
 
 if TYPE_CHECKING:
     from engine import EscapeMap
@@ -40,7 +40,7 @@ def draw_map(
     case: options.Case,
     energy: options.Energy = None,
     energies: options.Energies = None,
-    plane: options.Plane = PlaneName.X_PX,
+    plane: options.Plane = DEFAULT_PLANE,
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,

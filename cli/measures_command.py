@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli import options
-from cli.options import PlaneName
+from cli.options import DEFAULT_PLANE
 
 if TYPE_CHECKING:
     from cli.run_context import RunContext
@@ -31,7 +31,7 @@ def measure_basins(
     case: options.Case,
     energy: options.Energy = None,
     energies: options.Energies = None,
-    plane: options.Plane = PlaneName.X_PX,
+    plane: options.Plane = DEFAULT_PLANE,
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,

@@ -18,6 +18,8 @@ class PlaneName(StrEnum):
     Y_PY = "y_py"
 
 
+DEFAULT_PLANE = PlaneName.X_PX
+
 Edges = tuple[float, float, float, float]
 """x_low, x_high, ordinate_low, ordinate_high."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli import options
-from cli.options import PlaneName
+from cli.options import DEFAULT_PLANE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +26,7 @@ escape-explorer orbit III --state 0.1 0 0 0.7 --t-max 1e4 --output orbit --json
 def follow_orbit(
     case: options.Case,
     energy: options.Energy = None,
-    plane: options.Plane = PlaneName.X_PX,
+    plane: options.Plane = DEFAULT_PLANE,
     start: Annotated[
         tuple[float, float] | None, typer.Option("--start", metavar="X ORDINATE", help="Start on the plane, at --energy.")
     ] = None,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cli import options
-from cli.options import PlaneName
+from cli.options import DEFAULT_PLANE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,7 @@ def sweep_energies(
     energy: Annotated[
         list[float] | None, typer.Option("--energy", help="An energy; repeat for several, instead of --low, --high and --count.")
     ] = None,
-    plane: options.Plane = PlaneName.X_PX,
+    plane: options.Plane = DEFAULT_PLANE,
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
