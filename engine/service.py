@@ -43,7 +43,7 @@ from engine.potentials.validation_report import CriticalPoint, PointKind
 from engine.results.wording import format_number, format_time, format_whole
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.slices.section import SECTION
-from engine.slices.slice import SPACE, checked_slice, common_energy
+from engine.slices.slice import SPACE, checked_slice, common_energy, highest_energy
 from engine.storage.output_lock import hold_lock
 from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
@@ -129,6 +129,7 @@ __all__ = [
     "format_number",
     "format_time",
     "format_whole",
+    "highest_energy",
     "hold_lock",
     "is_ready_for_maps",
     "join_origin_fates",

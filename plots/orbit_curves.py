@@ -75,13 +75,13 @@ class OrbitCurves:
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
     """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
-    window = _find_window(potential, orbit.energy)
+    window = find_well_window(potential, orbit.energy)
     everything = slice(None)
     section = find_section_crossings(potential, orbit)
     return OrbitCurves(orbit, window, *_histories(orbit, everything), section, _visits(orbit, window, everything))
 
 
-def _find_window(potential: Potential, energy: float) -> Window:
+def find_well_window(potential: Potential, energy: float) -> Window:
     """The window of the interior; below the minimum of the well, where an orbit can only be outside, that of the whole well."""
     try:
         return default_window(potential, SPACE, energy)

@@ -73,10 +73,11 @@ class Explorer:
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
         self.orbits: OrbitPresenter = OrbitPresenter(
-            self.state, jobs, self.maps.marks, self._add_start, self._show_orbits, self._locked, self._latest
+            self.state, jobs, self.maps.marks, self.maps.well, self._add_start, self._show_orbits, self._locked, self._latest
         )
         self.analysis = Stack(
             {
+                Analysis.ORBIT: lambda: [self.orbits.inspector.layout()],
                 Analysis.STATISTICS: self.statistics.build,
                 Analysis.MEASURES: self.analyses.measures.build,
                 Analysis.ENERGIES: self.analyses.curves.build,
@@ -156,7 +157,6 @@ class Explorer:
         """Use the line colours of the dark or the light theme."""
         with pn.io.hold():
             self.maps.set_dark(dark)
-            self.orbits.plots.outlines.set_dark(dark)
 
     def _begin_view(self) -> None:
         """Request the map and the orbits of the state, which later follow its changes."""
@@ -217,7 +217,7 @@ class Explorer:
 
     def _show_analysis(self) -> None:
         analysis = self.state.analysis
-        self.analysis.show(None if analysis is Analysis.NONE else analysis)
+        self.analysis.show(analysis)
         self.statistics.activate(analysis is Analysis.STATISTICS)
 
     # Callbacks of the views.
@@ -235,6 +235,7 @@ class Explorer:
         # The first orbits add figures and buttons: Bokeh searches the models of the page once for all of them.
         with self._document.models.freeze():
             added = state.add_start((x, ordinate))
+            state.analysis = Analysis.ORBIT
         if not added:
             self.notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 

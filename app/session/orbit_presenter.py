@@ -15,6 +15,7 @@ from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
 from app.views.maps.markers import NO_POINTS, Markers
+from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
@@ -35,8 +36,8 @@ class OrbitPresenter:
     ----------
     state, jobs
         Of the session.
-    marks
-        Marks on the maps.
+    marks, well
+        Marks on the maps, and the picture of the paths.
     on_start
         Called with x and ordinate of a start that is typed.
     on_verdicts
@@ -50,12 +51,13 @@ class OrbitPresenter:
         state: ViewState,
         jobs: JobSubmitter,
         marks: Markers,
+        well: WellView,
         on_start: Callable[[float, float], None],
         on_verdicts: Callable[[Sequence[ChosenOrbit]], None],
         locked: Locked,
         latest: Locked,
     ) -> None:
-        self._state, self._marks, self._on_verdicts = state, marks, on_verdicts
+        self._state, self._marks, self._well, self._on_verdicts = state, marks, well, on_verdicts
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
         self._interval: Interval | None = None
@@ -73,7 +75,7 @@ class OrbitPresenter:
         self.controls: OrbitControls = OrbitControls(actions)
         self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
         # A server under load skips times instead of falling behind the player.
-        self.playback = Playback(latest(self.plots.set_time))
+        self.playback = Playback(latest(self._set_time))
         self._separation_plot: SeparationPlot = SeparationPlot()
         self.inspector = Inspector(self.controls, self.playback, self.plots, self._separation_plot)
         self._orbits = OrbitRequests(state, jobs, self._show, latest)
@@ -143,9 +145,15 @@ class OrbitPresenter:
         drawings, chosen = self._restricted or [one.drawing for one in self._shown], self._state.chosen
         drawing = drawings[chosen] if drawings else None
         duration = (0.0, float(drawing.orbit.t[-1])) if drawing is not None else None
+        self._well.show_orbits(drawings, chosen)
         self.plots.show(drawings, chosen, self._interval)
         self.playback.follow(self._interval or duration)
         self.controls.show_interval(self._interval, duration[1] if duration is not None else 0.0)
+
+    def _set_time(self, t: float | None) -> None:
+        """Mark a time on the paths and the histories."""
+        self._well.set_time(t)
+        self.plots.set_time(t)
 
     def _show_verdicts(self, orbits: Sequence[ChosenOrbit], verdicts: Sequence[IndicatorVerdict]) -> None:
         """Show what is known of the orbits in words."""

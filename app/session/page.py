@@ -58,9 +58,8 @@ def explorer_page(explorer: Explorer) -> ExplorerTemplate:
 
 
 def _stage(explorer: Explorer) -> pn.viewable.Viewable:
-    """Status line, maps, the inspector of the orbits and the analysis that is chosen; the stylesheet places them."""
+    """Status line, maps, legend, and the orbits or the analysis that is chosen; the stylesheet places them."""
     views = (
-        explorer.orbits.inspector,
         explorer.analysis,
         explorer.drawers,
         explorer.browser,

@@ -8,11 +8,12 @@ from types import MappingProxyType
 
 HELP_TEXTS: Mapping[str, str] = MappingProxyType(
     {
-        "curves": (
-            "The limiting curve bounds the starts that exist at this energy; on (x, y) it is the zero-velocity curve V = h, "
-            "where an orbit has no kinetic energy. Above the escape energy the curve is open, with a gap at each saddle of "
-            "the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap: an orbit that crosses it outward "
-            "never returns, so it marks the exit."
+        "well": (
+            "The zero-velocity curve V = h bounds the places that an orbit of this energy can reach; above the escape energy "
+            "it has a gap at each saddle of the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap: an "
+            "orbit that crosses it outward never returns, so it marks the exit. The orbit under the cursor and the chosen "
+            "orbits are drawn up to their exits, very long ones as density images. A regular orbit fills a regular pattern, "
+            "a chaotic one does not."
         ),
         "basins": (
             "Each pixel is a start, and its colour shows the exit channel through which its orbit escapes. Inside a large "
@@ -41,11 +42,6 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "basins; the tone shows the exit through which it came in. The exit changes across the stable manifolds of the "
             "Lyapunov orbits, the origin across the unstable ones. Where both kinds of curves accumulate lies the chaotic "
             "saddle, the set of orbits that stay for ever."
-        ),
-        "path": (
-            "The path of each chosen orbit in the (x, y) plane, with the zero-velocity curve and the Lyapunov orbits at the "
-            "exits. An escaping orbit is drawn up to its exit. A regular orbit fills a regular pattern, a chaotic one does "
-            "not. Very long paths are drawn as density images."
         ),
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "

@@ -51,7 +51,7 @@ def write_link(state: ViewState) -> str:
     chosen |= {name: "yes" for name in LAYERS if getattr(state, name)}
     if state.images:
         chosen["images"] = state.images
-    if state.analysis is not Analysis.NONE:
+    if state.analysis is not Analysis.ORBIT:
         chosen["analysis"] = state.analysis.value
     if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette

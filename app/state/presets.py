@@ -49,7 +49,7 @@ class Preset:
     manifolds: bool = False
     images: int = 0
     origins: bool = False
-    analysis: Analysis = Analysis.NONE
+    analysis: Analysis = Analysis.ORBIT
 
     def values(self) -> dict[str, Any]:
         """Values of the attributes of the view state."""

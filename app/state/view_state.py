@@ -57,9 +57,9 @@ LAYERS = ("judge", "trust", "manifolds", "origins")
 
 
 class Analysis(StrEnum):
-    """What is shown below the maps; the values stand in links."""
+    """What is shown beside the maps; the values stand in links."""
 
-    NONE = "none"
+    ORBIT = "orbit"
     STATISTICS = "statistics"
     MEASURES = "measures"
     ENERGIES = "energies"
@@ -107,7 +107,7 @@ class ViewState(param.Parameterized):
     manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
     images = param.Selector(default=0, objects=list(IMAGE_CHOICES.values()), doc="image of the manifolds drawn; 0 for all")
     origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
-    analysis = param.Selector(default=Analysis.NONE, objects=list(Analysis), doc="statistics, measures or curves below the maps")
+    analysis = param.Selector(default=Analysis.ORBIT, objects=list(Analysis), doc="what is shown beside the maps")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
     lock_times = param.Number(
         default=None, bounds=LOCKED_TIMES, allow_None=True, doc="upper end of the scale of escape times; None follows the map"

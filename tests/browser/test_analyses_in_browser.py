@@ -102,7 +102,7 @@ def shown_figures(explorer: ExplorerPage) -> set[str]:
 
 @pytest.mark.slow
 def test_basins_are_measured(explorer: ExplorerPage) -> None:
-    explorer.pick("Basin measures")
+    explorer.pick("Measures")
     for text in ("Basin entropy.", "Wada.", "Escape law."):
         expect(explorer.text(text)).to_be_visible()
     explorer.wait_for_data("survival_steps", "data.t.length > 10")
@@ -115,7 +115,7 @@ def test_basins_are_measured(explorer: ExplorerPage) -> None:
 
 @pytest.mark.slow
 def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> None:
-    explorer.pick("Against energy")
+    explorer.pick("Energy")
     expect(explorer.button("Compute the curves")).to_be_visible()
     assert not set(CURVES) & shown_figures(explorer)
     explorer.press("Compute the curves")
@@ -128,7 +128,7 @@ def test_curves_are_drawn_and_a_click_opens_a_map(explorer: ExplorerPage) -> Non
     explorer.button("Compute the curves").scroll_into_view_if_needed()
     explorer.click("entropies", points["h"][place] - 1e-3, points["s_bb"][place])
     explorer.wait_for_view(f"h={points['h'][place]!r}")
-    explorer.pick("No analysis")
+    explorer.pick("Orbit")
 
 
 def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplorer) -> None:
@@ -145,4 +145,4 @@ def test_a_link_sets_the_switches(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW + "&trust=yes&origins=yes&analysis=measures")
     for label, on in (("Pixels to trust", True), ("Origin and exit", True), ("Stable manifolds", False)):
         expect(explorer.page.get_by_label(label, exact=True)).to_be_checked(checked=on)
-    expect(explorer.radio("Basin measures")).to_be_checked()
+    expect(explorer.radio("Measures")).to_be_checked()

@@ -11,6 +11,7 @@ from playwright.sync_api import Locator, expect
 
 from app.state.help_texts import HELP_TEXTS
 from app.views.maps.map_plots import SHORT_TITLES
+from app.views.maps.well import TITLE
 from engine import CASES, Fate
 from plots.map_images import TITLES
 from plots.palette import PALETTES, Entry
@@ -18,7 +19,8 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-PICTURES = ("curves", "basins", "times", "crossings")
+MAPS = ("basins", "times", "crossings")
+PICTURES = ("well", *MAPS)
 Box = tuple[float, float, float, float]
 
 # Of all figures in view: left, top, right and bottom on the screen, width and height of the frame. Parts scroll.
@@ -73,7 +75,7 @@ def wide(open_for_all: OpenExplorer) -> ExplorerPage:
 
 @pytest.fixture(scope="module")
 def middling(open_for_all: OpenExplorer) -> ExplorerPage:
-    return open_for_all(1280, 900, QUICK)
+    return open_for_all(1280, 720, QUICK)
 
 
 @pytest.fixture(scope="module")
@@ -96,18 +98,16 @@ def test_nothing_idle_is_shown(wide: ExplorerPage) -> None:
     assert set(figures(wide)) == set(PICTURES)
 
 
-def test_on_a_wide_screen_the_maps_stand_in_one_row(wide: ExplorerPage) -> None:
-    places = boxes(wide)
-    assert len({place[1] for place in places}) == 1
-    assert [place[0] for place in places] == sorted(place[0] for place in places)
-    assert places[-1][2] <= 1600
-
-
-def test_on_a_middling_screen_the_maps_stand_in_two_rows_beside_the_inspector(middling: ExplorerPage) -> None:
-    places = boxes(middling)
+@pytest.mark.parametrize(("page", "height", "least"), [("wide", 1000, 390), ("middling", 720, 290)])
+def test_two_by_two_pictures_fill_the_height_beside_the_orbits(
+    page: str, height: int, least: int, request: pytest.FixtureRequest
+) -> None:
+    explorer: ExplorerPage = request.getfixturevalue(page)
+    places = boxes(explorer)
     assert len({place[0] for place in places}) == len({place[1] for place in places}) == 2
-    assert max(place[3] for place in places) <= 900
-    hint = middling.text("Click a map to see the orbit").bounding_box()
+    assert max(place[3] for place in places) <= height
+    assert min(min(figures(explorer)[name][4:]) for name in PICTURES) >= least
+    hint = explorer.text("Click a map to see the orbit").bounding_box()
     assert hint is not None
     assert hint["x"] >= max(place[2] for place in places)
     assert hint["y"] < places[2][1]
@@ -136,7 +136,8 @@ def test_on_a_phone_one_map_is_shown_and_can_be_chosen(phone: ExplorerPage) -> N
 @pytest.mark.parametrize(("page", "width"), [("wide", 1600), ("middling", 1280), ("phone", 420)])
 def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, width: int, request: pytest.FixtureRequest) -> None:
     explorer: ExplorerPage = request.getfixturevalue(page)
-    assert all(abs(place[4] - place[5]) <= 1 for place in figures(explorer).values())
+    shown = figures(explorer)
+    assert all(abs(shown[name][4] - shown[name][5]) <= 1 for name in PICTURES if name in shown)
     assert explorer.page.evaluate("document.documentElement.scrollWidth") <= width
     x_low, x_high, low, high = explorer.ranges("basins")
     assert x_high - x_low == pytest.approx(high - low)
@@ -153,11 +154,18 @@ def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
     [(1600, False), pytest.param(1280, False, marks=pytest.mark.slow), pytest.param(420, True, marks=pytest.mark.slow)],
 )
 def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: bool) -> None:
-    explorer = open_explorer(width, 900, f"{QUICK}&orbits=0.1,0.05;0.2,0.1&analysis=measures&origins=yes", touch=touch)
+    explorer = open_explorer(width, 900, f"{QUICK}&orbits=0.1,0.05;0.2,0.1&origins=yes", touch=touch)
     explorer.wait_for_data("separation_source", "data.t.length > 1")
+    assert_apart(explorer, {"sali", "r2", "exponent", "separation"}, width)
+    explorer.pick("Measures")
     explorer.wait_for_data("survival_steps", "data.t.length > 1")
+    assert_apart(explorer, {"survival"}, width)
+
+
+def assert_apart(explorer: ExplorerPage, names: set[str], width: int) -> None:
+    """Some figures are in view, none overlaps another, and nothing is wider than the screen."""
     shown = figures(explorer)
-    assert {"path", "sali", "r2", "exponent", "separation", "survival"} <= set(shown)
+    assert names <= set(shown)
     assert not [pair for pair in itertools.combinations(shown, 2) if overlap(shown[pair[0]][:4], shown[pair[1]][:4])]
     assert explorer.page.evaluate("document.documentElement.scrollWidth") <= width
 
@@ -197,7 +205,7 @@ def test_the_legend_follows_case_and_plane(explorer: ExplorerPage) -> None:
 
 def test_a_mode_of_dragging_acts_on_all_maps(explorer: ExplorerPage) -> None:
     toolbars = explorer.page.evaluate(
-        "names => new Set(names.map(name => Bokeh.documents[0].get_model_by_name(name).toolbar)).size", list(PICTURES)
+        "names => new Set(names.map(name => Bokeh.documents[0].get_model_by_name(name).toolbar)).size", list(MAPS)
     )
     assert toolbars == 1
     explorer.set_drag("Zoom")
@@ -207,7 +215,7 @@ def test_a_mode_of_dragging_acts_on_all_maps(explorer: ExplorerPage) -> None:
         middle = (x_low + x_high) / 2, (low + high) / 2
         explorer.drag(picture, middle, (middle[0] + 0.3 * (x_high - x_low), middle[1] - 0.3 * (high - low)))
         explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] < 0.5 * {width}")
-        assert len({tuple(explorer.ranges(name)) for name in PICTURES}) == 1
+        assert len({tuple(explorer.ranges(name)) for name in MAPS}) == 1
     explorer.set_drag("Move")
 
 
@@ -218,7 +226,7 @@ def help_text(explorer: ExplorerPage, name: str) -> Locator:
 def test_a_help_button_opens_its_text(explorer: ExplorerPage) -> None:
     for name in PICTURES:
         expect(help_text(explorer, name)).to_be_hidden()
-        explorer.press(f"About: {TITLES[name]}")
+        explorer.press(f"About: {TITLE if name == 'well' else TITLES[name]}")
         expect(help_text(explorer, name)).to_be_visible()
         assert unescape(help_text(explorer, name).inner_text()) == HELP_TEXTS[name]
     # Opening one closes the others.

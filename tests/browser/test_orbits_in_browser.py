@@ -13,7 +13,7 @@ from engine import CASES, Plane, find_section_crossings, integrate_orbit, start_
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-PICTURES = ("curves", "basins", "times", "crossings")
+MAPS = ("basins", "times", "crossings")
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
 
 
@@ -31,7 +31,7 @@ def test_five_orbits_are_marked_in_their_colours(for_orbits: ExplorerPage) -> No
     assert marks["x"] == pytest.approx([x for x, _ in STARTS], abs=0.006)
     for_orbits.wait_for_data("paths", "data.xs.length == 5")
     assert sorted(for_orbits.model_data("paths")["slot"]) == [0, 1, 2, 3, 4]
-    for picture in PICTURES:
+    for picture in MAPS:
         assert for_orbits.page.evaluate(
             "name => Bokeh.documents[0].get_model_by_name(name).renderers.some(r => r.data_source.name == 'starts')", picture
         )

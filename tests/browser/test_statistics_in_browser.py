@@ -61,7 +61,7 @@ def test_a_box_can_be_counted_and_removed(explorer: ExplorerPage, counted: Escap
 
 
 def test_a_box_opens_the_statistics(explorer: ExplorerPage) -> None:
-    explorer.pick("No analysis")
+    explorer.pick("Orbit")
     expect(explorer.page.get_by_role("table", name="statistics")).to_have_count(0)
     explorer.set_drag("Count")
     explorer.drag("basins", (-0.1, 0.2), (0.1, 0.4))

@@ -1,16 +1,16 @@
 // @ts-check
 /**
- * The orbit under the cursor, drawn in (x, y) over the first picture, or over the second one while the cursor is in the first.
- * With a finger: press, and move.
+ * The orbit under the cursor, drawn over the picture of the well, or on a narrow screen over half of the only map. With a finger:
+ * press, and move.
  */
 
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Integrator} from "./integrator.js"
 import {Interior} from "./interior.js"
 import {exitCurves} from "./exits.js"
-import {cover, frames, strokeLine} from "./pictures.js"
+import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
 import {Potential} from "./potential.js"
-import {Starts, unitOf} from "./slice.js"
+import {SPACE, Starts, unitOf} from "./slice.js"
 import {windowAt} from "./system.js"
 import {traceOrbit} from "./trace.js"
 
@@ -18,9 +18,7 @@ import {traceOrbit} from "./trace.js"
 const LONGEST = 200
 /** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
 const [PRESS_MS, PRESS_PIXELS] = [350, 8]
-/** @type {import("./system.js").Slice} */
-const PLANE = {axes: ["x", "y"], fixed: {px: 0}, decided: "py", sign: 1}
-/** Side of the card if there is one picture, as a share of the picture. */
+/** Side of the card if only a map is shown, as a share of it. */
 const ALONE = 0.55
 /** Of the text, in pixels. */
 const [PADDING, TEXT_HEIGHT] = [6, 22]
@@ -200,7 +198,7 @@ export class Card {
       /** @type {string} */ colour,
       /** @type {number} */ width,
     ) => strokeLine(context, window, box, line, colour, width)
-    const limit = this.#limits.trace(system, engine.potential, {slice: PLANE, window, energy: h})
+    const limit = this.#limits.trace(system, engine.potential, {slice: SPACE, window, energy: h})
     for (const line of limit) draw(line, ink, 1.5)
     const colours = this.#colours()
     for (const {channel, xs, ys} of exitLines(system, h)) draw({xs, ys}, colours[channel - 1], 3)
@@ -227,14 +225,14 @@ const contains = (box, {clientX, clientY}) =>
   clientX >= box.left && clientX <= box.right && clientY >= box.top && clientY <= box.bottom
 
 /**
- * Where the card is drawn: over the first picture that is not under the pointer, or in the other half of the only one.
+ * Where the card is drawn: over the well, or in the other half of the only map.
  *
  * @param {import("./pictures.js").Frame} over  the picture under the pointer
  * @param {number} pointer  its place from the left of the screen
  */
 function placeFor(over, pointer) {
-  const other = frames().find(({view}) => view !== over.view)
-  if (other) return other.box
+  const well = wellFrame()
+  if (well) return well.box
   const {left, top, width} = over.box
   const side = ALONE * width
   return new DOMRect(pointer < left + width / 2 ? left + width - side : left, top, side, side)

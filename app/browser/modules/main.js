@@ -29,9 +29,9 @@ export function start(model, el) {
   }
   const page = Bokeh.documents.find((/** @type {any} */ each) => each.get_model_by_name("maps"))
   const find = (/** @type {string} */ name) => page.get_model_by_name(name)
-  // The plots of the orbits have sources of the same names.
-  const findSource = (/** @type {string} */ name) =>
-    find("curves")
+  // The pictures have sources of the same names.
+  const findSource = (/** @type {string} */ picture, /** @type {string} */ name) =>
+    find(picture)
       .renderers.map((/** @type {any} */ renderer) => renderer.data_source)
       .find((/** @type {any} */ source) => source?.name === name)
   const pool = new Pool(() => new Worker(new URL("./worker.js", import.meta.url), {type: "module"}))

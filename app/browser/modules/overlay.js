@@ -4,7 +4,7 @@
  * than the pixels take to compute. Columns, palettes and styles of lines are those of Bokeh's models.
  */
 
-import {cover, frames, strokeLine} from "./pictures.js"
+import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
 
 /** Below cards and drawers. */
 const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;background:var(--ui-page)"
@@ -16,7 +16,12 @@ const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none;backgro
  * @property {number} energy
  * @property {import("./slice.js").Window} window
  * @property {import("./columns.js").Columns} columns
- * @property {Record<string, {xs: number[], ys: number[], colour?: string}[]>} lines  by the names of Bokeh's data sources
+ * @property {Lines} lines  of the maps
+ * @property {{window: import("./slice.js").Window, lines: Lines} | null} well  null where the well stays as it is
+ *
+ * Lines by the names of Bokeh's data sources.
+ *
+ * @typedef {Record<string, {xs: number[], ys: number[], colour?: string}[]>} Lines
  */
 
 export class Overlay {
@@ -35,7 +40,19 @@ export class Overlay {
   /** @param {Painting} painting */
   show(painting) {
     this.#shown = true
-    for (const {view, box} of frames()) this.#paint(view.model, box, painting)
+    const {energy, window, columns, lines, well} = painting
+    for (const {view, box} of frames()) {
+      const context = this.#canvasFor(view.model.name, box, energy)
+      if (!context) continue
+      for (const {glyph, data_source: source} of view.model.renderers) {
+        if (source.name === "maps") this.#paintImage(context, box, columns[glyph.image.field][0], glyph.color_mapper)
+      }
+      strokeLines(context, view.model, window, box, lines)
+      context.canvas.dataset.side = String(columns.fate[0].shape[0])
+    }
+    const frame = well && wellFrame()
+    const context = frame && this.#canvasFor("well", frame.box, energy)
+    if (frame && context) strokeLines(context, frame.view.model, well.window, frame.box, well.lines)
   }
 
   /** Hide the canvases when Bokeh has painted, in the next frame. */
@@ -51,31 +68,19 @@ export class Overlay {
   }
 
   /**
-   * @param {any} plot
+   * The empty canvas over a picture.
+   *
+   * @param {string} name
    * @param {DOMRect} box
-   * @param {Painting} painting
+   * @param {number} energy
    */
-  #paint(plot, box, {energy, window, columns, lines}) {
-    const canvas = this.#canvasOf(plot.name)
+  #canvasFor(name, box, energy) {
+    const canvas = this.#canvasOf(name)
     const context = cover(canvas, box)
-    if (!context) return
-    context.clearRect(0, 0, box.width, box.height)
-    context.imageSmoothingEnabled = false
-    for (const {glyph, data_source: source} of plot.renderers) {
-      if (source.name === "maps") this.#paintImage(context, box, columns[glyph.image.field][0], glyph.color_mapper)
-      for (const line of lines[source.name] ?? []) {
-        strokeLine(
-          context,
-          window,
-          box,
-          line,
-          glyph.line_color.field ? line.colour : valueOf(glyph.line_color),
-          valueOf(glyph.line_width),
-        )
-      }
-    }
+    context?.clearRect(0, 0, box.width, box.height)
+    if (context) context.imageSmoothingEnabled = false
     canvas.dataset.energy = String(energy)
-    canvas.dataset.side = String(columns.fate[0].shape[0])
+    return context
   }
 
   /**
@@ -105,6 +110,24 @@ export class Overlay {
       this.#canvases.set(name, canvas)
     }
     return canvas
+  }
+}
+
+/**
+ * Draw lines in the styles of the glyphs of a picture.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {any} plot
+ * @param {import("./slice.js").Window} window
+ * @param {DOMRect} box
+ * @param {Lines} lines
+ */
+function strokeLines(context, plot, window, box, lines) {
+  for (const {glyph, data_source: source} of plot.renderers) {
+    for (const line of lines[source.name] ?? []) {
+      const colour = glyph.line_color.field ? line.colour : valueOf(glyph.line_color)
+      strokeLine(context, window, box, line, colour, valueOf(glyph.line_width))
+    }
   }
 }
 

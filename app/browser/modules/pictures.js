@@ -1,12 +1,14 @@
 // @ts-check
-/** The pictures of the maps on the screen. */
+/** The pictures on the screen: the well, and the maps. */
 
-const NAMES = ["curves", "basins", "times", "crossings", "characters", "origins"]
+const NAMES = ["basins", "times", "crossings", "characters", "origins"]
 
 /**
  * A picture: its view of Bokeh, and the box of its frame on the screen.
  *
  * @typedef {{view: any, box: DOMRect}} Frame
+ *
+ * The maps.
  *
  * @returns {Frame[]}
  */
@@ -14,6 +16,13 @@ export function frames() {
   const views = [...Bokeh.index.all_views()].filter(view => NAMES.includes(view.model.name))
   views.sort((one, other) => NAMES.indexOf(one.model.name) - NAMES.indexOf(other.model.name))
   return views.map(withBox).filter(({box}) => box.width > 0)
+}
+
+/** The picture of the well; undefined if the screen is narrow and shows a map. @returns {Frame | undefined} */
+export function wellFrame() {
+  const view = [...Bokeh.index.all_views()].find(view => view.model.name === "well")
+  const frame = view && withBox(view)
+  return frame?.box.width ? frame : undefined
 }
 
 /** @type {(view: any) => Frame} */

@@ -8,7 +8,8 @@ import {pixelColumns, sameEnergy, showsWish} from "./columns.js"
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Local, LocalWhenPresent} from "./local.js"
 import {Potential} from "./potential.js"
-import {energyAxis, unitOf} from "./slice.js"
+import {Outlines} from "./outlines.js"
+import {energyAxis, SPACE, unitOf} from "./slice.js"
 import {LEAST_SIDE} from "./frames.js"
 import {coversEnergy, windowAt} from "./system.js"
 
@@ -48,7 +49,7 @@ const isNear = (one, other) => {
 export class Preview {
   /**
    * @param {FindModel} find
-   * @param {FindModel} findSource  finds a data source of the first picture
+   * @param {(picture: string, name: string) => any} findSource  finds a data source of a picture
    * @param {import("./frames.js").Frames} frames
    * @param {import("./overlay.js").Overlay} overlay
    */
@@ -61,9 +62,8 @@ export class Preview {
     this.#x = new Local(ranges.x_range, ["start", "end"], moved)
     this.#y = new Local(ranges.y_range, ["start", "end"], moved)
     this.#ranges = () => [ranges.x_range, ranges.y_range]
-    this.#limit = new LocalWhenPresent(() => findSource("zero_velocity_curve"), ["data"])
-    this.#exits = new LocalWhenPresent(() => findSource("lyapunov_orbits"), ["data"])
-    this.#labels = new LocalWhenPresent(() => findSource("channel_numbers"), ["data"])
+    this.#outlines = new Outlines(name => findSource("basins", name))
+    this.#well = new Outlines(name => findSource("well", name))
     this.#status = new LocalWhenPresent(findStatus, ["text"])
   }
 
@@ -73,11 +73,11 @@ export class Preview {
   #x
   #y
   #ranges
-  #limit
-  #exits
-  #labels
+  #outlines
+  #well
   #status
   #curves = new LimitingCurves()
+  #wellCurves = new LimitingCurves()
   /** @type {import("./system.js").System | null} */
   #system = null
   /** @type {Potential | null} */
@@ -195,8 +195,9 @@ export class Preview {
     this.#shown = view
     const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data)
     const limit = this.#curves.trace(system, potential, view)
-    const exits = view.slice.axes.join() === "x,y" ? exitLines(system, view.energy) : []
-    const coloured = exits.map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
+    const coloured = exitLines(system, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
+    const exits = view.slice.axes.join() === SPACE.axes.join() ? coloured : []
+    const well = this.#traceWell(system, potential, view)
     // Each change of a range repaints all pictures: together with the pixels, or seldom.
     if (this.#window) {
       this.#x.show({start: view.window.xLow, end: view.window.xHigh})
@@ -208,43 +209,27 @@ export class Preview {
         energy: view.energy,
         window: view.window,
         columns,
-        lines: {zero_velocity_curve: limit, lyapunov_orbits: coloured},
+        lines: {zero_velocity_curve: limit, lyapunov_orbits: exits},
+        well: well && {window: well.window, lines: {zero_velocity_curve: well.limit, lyapunov_orbits: coloured}},
       })
       return
     }
     this.#maps.show({data: columns})
-    this.#limit.show({data: sourceOf(limit)})
-    if (exits.length > 0 || this.#exits.server.data) this.#showExits(coloured)
+    this.#outlines.show(limit, exits)
+    if (well) this.#well.show(well.limit, coloured)
     this.#overlay.hide()
   }
 
-  /** @param {(ReturnType<typeof exitLines>[number] & {colour: string})[]} exits */
-  #showExits(exits) {
-    this.#exits.show({data: {...sourceOf(exits), colour: exits.map(({colour}) => colour)}})
-    // Always as many texts: Bokeh fails when texts with colours of their own become fewer.
-    const labels = this.#labels.server.data ?? {text: [], colour: []}
-    const fill = (/** @type {any[]} */ values, /** @type {any} */ other) =>
-      Array.from(labels.text, (_, k) => (k < values.length ? values[k] : other))
-    this.#labels.show({
-      data: {
-        x: fill(
-          exits.map(({label}) => label[0]),
-          NaN,
-        ),
-        y: fill(
-          exits.map(({label}) => label[1]),
-          NaN,
-        ),
-        text: fill(
-          exits.map(({channel}) => String(channel)),
-          "",
-        ),
-        colour: fill(
-          exits.map(({colour}) => colour),
-          labels.colour[0],
-        ),
-      },
-    })
+  /**
+   * The window of the well and its zero-velocity curve; null where the energy is an axis, and the well stays as it is.
+   *
+   * @param {import("./system.js").System} system
+   * @param {Potential} potential
+   * @param {import("./pixels.js").View} view
+   */
+  #traceWell(system, potential, {slice, energy}) {
+    const window = energyAxis(slice) < 0 ? windowAt(system.windows.x_y, energy) : null
+    return window && {window, limit: this.#wellCurves.trace(system, potential, {slice: SPACE, window, energy})}
   }
 
   /** Show what the server shows. */
@@ -252,12 +237,9 @@ export class Preview {
     this.#frames.stop()
     this.#shown = null
     this.#overlay.hide()
-    for (const local of [this.#maps, this.#limit, this.#exits, this.#labels, this.#status, this.#x, this.#y]) local.restore()
+    for (const shown of [this.#maps, this.#outlines, this.#well, this.#status, this.#x, this.#y]) shown.restore()
   }
 }
-
-/** Lines as the columns of a data source of Bokeh. @type {(lines: {xs: number[], ys: number[]}[]) => {xs: number[][], ys: number[][]}} */
-const sourceOf = lines => ({xs: lines.map(({xs}) => xs), ys: lines.map(({ys}) => ys)})
 
 /** The status line, which has no name in the document. */
 const findStatus = () => [...Bokeh.index.all_views()].find(view => view.model.css_classes?.includes("status"))?.model

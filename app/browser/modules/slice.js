@@ -11,6 +11,9 @@
  * @property {number} ordinateHigh
  */
 
+/** The plane of the positions. @type {import("./system.js").Slice} */
+export const SPACE = {axes: ["x", "y"], fixed: {px: 0}, decided: "py", sign: 1}
+
 /** Coordinates that change their sign under x → −x. */
 const ODD = ["x", "px"]
 

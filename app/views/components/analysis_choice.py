@@ -1,4 +1,4 @@
-"""The choice of analyses: layers over the maps, and what is shown below them."""
+"""The choice of analyses: layers over the maps, and what is shown beside them."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ IMAGE_LABELS = {f"Image {name}" if image == 1 else name.capitalize(): image for 
 """Labels of the images of the manifolds, in a row."""
 
 ANALYSIS_LABELS = {
-    Analysis.NONE: "No analysis",
+    Analysis.ORBIT: "Orbit",
     Analysis.STATISTICS: "Statistics",
-    Analysis.MEASURES: "Basin measures",
-    Analysis.ENERGIES: "Against energy",
+    Analysis.MEASURES: "Measures",
+    Analysis.ENERGIES: "Energy",
 }
-"""Of the analyses below the maps."""
+"""Of the tabs beside the maps."""
 
 
 class LayerSwitches:
@@ -67,4 +67,5 @@ class AnalysisTabs:
 
     def __init__(self, state: ViewState) -> None:
         options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
-        self.tabs = bind(SegmentedControl(label="Analysis", options=options), state, "analysis")
+        tabs = SegmentedControl(label="Analysis", options=options, margin=(5, 4), css_classes=["segmented", "narrow"])
+        self.tabs = bind(tabs, state, "analysis")

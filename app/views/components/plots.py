@@ -18,11 +18,26 @@ from bokeh.plotting import figure
 from app.state.help_texts import title_with_help
 
 # Left and right, above and below of the frame together take the same space, so that a square figure has a square frame.
-_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
+_CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
+
+# The title and the names of the axes of a map stand in its frame.
+_MAP_BORDERS = {"min_border_left": 40, "min_border_right": 4, "min_border_top": 16, "min_border_bottom": 28}
+
+
+def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
+    """A square figure of a map, as `square_figure`; `name_axes` names its axes."""
+    return square_figure(name, title, x_range=x, y_range=y, **_MAP_BORDERS)
+
+
+def name_axes(plot: figure, title: str, names: tuple[str, str]) -> None:
+    """Write the title of a map and the names of its axes into its frame."""
+    html = f"{title_with_help(title, plot.name)}<i class='axis-names'>{names[1]} ↑ {names[0]} →</i>"
+    if plot.elements[0].html != html:
+        plot.elements = [HTML(html=html)]
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
-    """A square figure with a title and a help text, without tools.
+    """A figure with a title and a help text, without tools; square, unless the options say otherwise.
 
     Parameters
     ----------
@@ -33,8 +48,8 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     **options
         Of `bokeh.plotting.figure`.
     """
-    defaults = {"tools": "", "toolbar_location": None}
-    plot = figure(name=name, title=None, sizing_mode="scale_width", aspect_ratio=1, **_BORDERS, **(defaults | options))
+    defaults = {"tools": "", "toolbar_location": None, "aspect_ratio": 1, **_CHART_BORDERS}
+    plot = figure(name=name, title=None, sizing_mode="scale_width", **(defaults | options))
     plot.center = []
     # `plot.axis` would search all models of the figure for each attribute.
     for axis in (*plot.below, *plot.left):

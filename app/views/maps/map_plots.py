@@ -30,7 +30,7 @@ from bokeh.plotting import figure
 from app.views.components.curve_layers import CurveLayers
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.numbers import percent
-from app.views.components.plots import FigurePane, square_figure
+from app.views.components.plots import FigurePane, map_figure, name_axes
 from app.views.components.widgets import SegmentedControl
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_legend import MapLegend
@@ -38,13 +38,17 @@ from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.two_fingers import TwoFingers
+from app.views.maps.well import WellView
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
 from plots.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
 from plots.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
 from plots.palette import PAPER, Palette
 
+MAPS = tuple(name for name in TITLES if name != "curves")
+"""The pictures of starts; beside them stands the well."""
+
 SHORT_TITLES = {
-    "curves": "Exits",
+    "well": "Well",
     "basins": "Basins",
     "times": "Times",
     "crossings": "Crossings",
@@ -83,13 +87,13 @@ class MapsView:
         on_box: Callable[[Window], None],
     ) -> None:
         self.source = ColumnDataSource(_blank(), name="maps")
-        self.outlines, self.overlays, self.marks = CurveLayers(), Overlays(), Markers()
+        self.well, self.outlines, self.overlays, self.marks = WellView(), CurveLayers(), Overlays(), Markers()
         self._palette = PAPER
         self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
         # Upper ends of the scale of escape times: of the map in view, and the one that is kept instead.
         self._typical_time: float = self._time_mapper.high
         self._locked_time: float | None = None
-        self._mappers = {name: LinearColorMapper() for name in TITLES}
+        self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
         self._regularity_text = ""
         self._home: Window | None = None
@@ -120,14 +124,16 @@ class MapsView:
 
     def show_pictures(self, on_demand: frozenset[str]) -> None:
         """Show some of the pictures `ON_DEMAND` beside the others."""
-        shown = [name for name in TITLES if name in on_demand or name not in ON_DEMAND]
+        shown = [name for name in MAPS if name in on_demand or name not in ON_DEMAND]
         for name in shown:
             if name not in self.figures:
                 self._build(name)
         # Hidden pictures would still be painted with every frame.
-        self._grid.objects = [*self._picker(), *(self._panes[name] for name in shown)]
-        picked = self.picker.value if self.picker.value in shown else "basins"
-        self.picker.param.update(options={SHORT_TITLES[name]: name for name in shown}, value=picked)
+        self._grid.objects = [*self._picker(), self.well.pane, *(self._panes[name] for name in shown)]
+        self._grid.css_classes = ["maps", "many"] if len(shown) > 3 else ["maps"]
+        offered = ["well", *shown]
+        picked = self.picker.value if self.picker.value in offered else "basins"
+        self.picker.param.update(options={SHORT_TITLES[name]: name for name in offered}, value=picked)
         self._pick()
         self.describe()
 
@@ -190,16 +196,19 @@ class MapsView:
         """Set all colours."""
         self._palette = palette
         self._time_mapper.palette = list(palette.escape_time)
-        for name, (_, colours) in PAINTED.items():
+        for name in MAPS:
+            colours = PAINTED[name][1]
             codes: list[str] = getattr(palette, colours)
             self._mappers[name].update(palette=codes, low=-0.5, high=len(codes) - 0.5)
         self.marks.set_palette(palette)
         self.outlines.set_palette(palette)
+        self.well.set_palette(palette)
         self.describe()
 
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
         self.outlines.set_dark(dark)
+        self.well.outlines.set_dark(dark)
         self.describe()
 
     def set_home(self, window: Window) -> None:
@@ -285,9 +294,10 @@ class MapsView:
         spec = self._spec
         if spec is None:
             return
-        for plot in self.figures.values():
-            plot.below[0].axis_label, plot.left[0].axis_label = spec.plane.axis_names
+        for name, plot in self.figures.items():
+            name_axes(plot, TITLES[name], spec.plane.axis_names)
         self.outlines.show(spec)
+        self.well.show_map(spec)
         self._show_legend()
 
     def _show_legend(self) -> None:
@@ -299,7 +309,7 @@ class MapsView:
             spec,
             self._palette,
             self.longest_time,
-            [*self.outlines.entries(spec), *self.overlays.entries()],
+            [*self.well.outlines.entries(spec), *self.overlays.entries()],
             regularity=self._regularity_text if "characters" in shown else None,
             origins="origins" in shown,
             locked=self._locked_time is not None,
@@ -312,13 +322,13 @@ class MapsView:
         """Mark the picture that narrow screens show."""
         # The classes of a pane of Bokeh cannot be changed once it is on the page.
         with pn.io.hold():
-            for name, plot in self.figures.items():
-                plot.css_classes = ["map", "picked"] if name == self.picker.value else ["map"]
+            for name, plot in {"well": self.well.plot, **self.figures}.items():
+                kind = "well" if name == "well" else "map"
+                plot.css_classes = [kind, "picked"] if name == self.picker.value else [kind]
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
-        x, y = self._ranges
-        plot = self.figures[name] = square_figure(name, TITLES[name], x_range=x, y_range=y, x_axis_label="x")
+        plot = self.figures[name] = map_figure(name, TITLES[name], *self._ranges)
         plot.toolbar = self._toolbar
         self._paint(name)
         self._fingers.follow_on(plot)
@@ -329,7 +339,7 @@ class MapsView:
             SelectionGeometry: self._boxed,
             PinchEnd: lambda event: self._end_gesture(),
         }
-        if name == "curves":
+        if name == "basins":
             # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
             events[RangesUpdate] = lambda event: self._end_gesture()
         self._panes[name] = FigurePane(plot, events)
@@ -341,9 +351,9 @@ class MapsView:
         if name == "times":
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
         self._hover.renderers = [*self._hover.renderers, image]
-        self.outlines.draw(plot, full=name == "curves")
+        self.outlines.draw(plot, full=False)
         self.overlays.draw(plot, doubts=name in DOUBTED, manifolds=name in CROSSED_BY_MANIFOLDS)
-        self.marks.draw(plot, sections=name in ("curves", "basins"))
+        self.marks.draw(plot, sections=name == "basins")
 
 
 # The box selects pixels to count; without renderers the image keeps its look.

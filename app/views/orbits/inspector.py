@@ -12,11 +12,12 @@ from app.views.orbits.separation_plot import SeparationPlot
 
 
 class Inspector:
-    """A line to type a start; below it the list and values of the orbits, the player and the plots."""
+    """A line to type a start; below it the list of the orbits, the player, the histories, and the verdicts and values."""
 
     def __init__(self, controls: OrbitControls, playback: Playback, plots: OrbitPlots, separation: SeparationPlot) -> None:
         self._controls, self._playback, self._plots, self._separation = controls, playback, plots, separation
-        self._values: pn.viewable.Viewable | None = None
+        self._head: list[pn.viewable.Viewable] = []
+        self._details: list[pn.viewable.Viewable] = []
         self._single: list[pn.viewable.Viewable] = []
         self._pair: list[pn.viewable.Viewable] = []
         self._grid = pn.Column(
@@ -30,13 +31,13 @@ class Inspector:
 
     def follow(self, starts: int, orbits: int) -> None:
         """Show what a number of starts needs, of which some may have no orbit."""
-        if starts >= 1 and self._values is None:
-            self._values = self._controls.values(self._playback.layout())
+        if starts >= 1 and not self._head:
+            self._head, self._details = [self._controls.head(self._playback.layout())], [self._controls.details()]
         if orbits >= 1 and not self._single:
             self._single = self._plots.build()
         if orbits >= 2 and not self._pair:
             self._pair = [self._separation.build()]
-        parts = [*self._entry, *([self._values] if starts >= 1 else []), *(self._single if orbits >= 1 else [])]
-        parts += self._pair if orbits >= 2 else []
+        plots = [*(self._single if orbits >= 1 else []), *(self._pair if orbits >= 2 else [])]
+        parts = [*self._entry, *([*self._head, *plots, *self._details] if starts >= 1 else [])]
         if parts != self._grid.objects:
             self._grid.objects = parts

@@ -57,6 +57,7 @@ class OrbitControls:
         self._interval_row.param.update(margin=(0, 10), visible=False)
         self.note = pn.pane.HTML(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
         self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10))
+        self.values = pn.pane.HTML("", name="values", sizing_mode="stretch_width", margin=(0, 10))
         self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
         self.choice.param.watch(lambda event: self._choose(event.new), "value")
         for box in (self.x, self.ordinate):
@@ -68,14 +69,18 @@ class OrbitControls:
         boxes = Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")])
         return [self.note, *boxes.parts()]
 
-    def values(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """The list of orbits, buttons, the player, and the values and verdicts of the chosen one."""
+    def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
+        """The list of orbits, buttons, the fate of the chosen one in a line, and the player."""
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
-        buttons.margin = (5, 10)
+        buttons.margin = (5, 4)
         return pn.Column(
-            self.choice, buttons, self.text, playback, self._interval_row, self.indicators,
-            sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["orbit-values"],
+            self.choice, buttons, self.text, playback, self._interval_row,
+            sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["orbit-head"],
         )  # fmt: skip
+
+    def details(self) -> pn.viewable.Viewable:
+        """The verdicts on the chosen orbit, and its values."""
+        return pn.Column(self.indicators, self.values, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT)
 
     def follow_plane(self, plane: Plane) -> None:
         """Label the boxes with the axes of the plane."""
@@ -120,7 +125,8 @@ class OrbitControls:
             return
         one = orbits[chosen]
         self.x.value, self.ordinate.value = (f"{number!r}" for number in one.start)
-        self.text.object = f"{_verdict(one)}{_values(one.orbit)}"
+        self.text.object = f"<p><b>{escape(one.describe())}</b></p>"
+        self.values.object = _values(one.orbit)
 
     def _enable(self) -> None:
         for one in (self.divergent_start, self.remove, self.clear, self.open_plane):
@@ -149,10 +155,6 @@ def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
         if text == f"{one.start[0]:.6g}, {one.start[1]:.6g}":
             text = f"orbit {other + 1} + ({x - one.start[0]:.2g}, {ordinate - one.start[1]:.2g})"
     return f"{place + 1}: {text}: {_fate(orbits[place])}"
-
-
-def _verdict(one: ChosenOrbit) -> str:
-    return f"<p><b>{escape(one.describe())}</b></p>"
 
 
 def _value(value: float) -> str:

@@ -13,6 +13,7 @@ import pytest
 from bokeh.application import Application
 from bokeh.application.handlers import FunctionHandler
 from bokeh.document import Document
+from bokeh.server.callbacks import TimeoutCallback
 from bokeh.server.contexts import ApplicationContext
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
@@ -89,7 +90,8 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
                 await check(built[0])
         finally:
             built[0].close()
-            # Callbacks under way must end before the loop does.
+            # Callbacks that are due, or under way, must end before the loop does.
+            await wait_for(lambda: not any(isinstance(each, TimeoutCallback) for each in session.document.session_callbacks))
             under_way = asyncio.all_tasks() - {asyncio.current_task()}
             if under_way:
                 await asyncio.wait(under_way, timeout=1.0)

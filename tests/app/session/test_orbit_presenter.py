@@ -11,6 +11,7 @@ import pytest
 from app.session.orbit_presenter import OrbitPresenter
 from app.state.view_state import ViewState
 from app.views.maps.markers import Markers
+from app.views.maps.well import WellView
 from engine import Plane
 from engine.service import Jobs
 
@@ -35,7 +36,7 @@ class Session:
         self.state, self.marks = ViewState(case="I", energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
         self.drawn = False
         self.presenter = OrbitPresenter(
-            self.state, Jobs(), self.marks, lambda x, ordinate: None, lambda orbits: None, self.locked, self.locked
+            self.state, Jobs(), self.marks, WellView(), lambda x, ordinate: None, lambda orbits: None, self.locked, self.locked
         )
 
     def locked(self, function: Callable[..., None]) -> Callable[..., None]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from bokeh.models import BoxSelectTool, BoxZoomTool, PanTool, WheelZoomTool
 
-from app.views.maps.map_plots import SHORT_TITLES, MapsView
+from app.views.maps.map_plots import MAPS, SHORT_TITLES, MapsView
 from app.views.maps.map_toolbar import Drag
 from engine import CASES, MapSpec, Plane, Window
-from plots.map_images import ON_DEMAND, TITLES
+from plots.map_images import ON_DEMAND
 
-ALWAYS = [name for name in TITLES if name not in ON_DEMAND]
+ALWAYS = [name for name in MAPS if name not in ON_DEMAND]
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def tools(maps: MapsView, kind: type) -> list[object]:
 
 def test_all_figures_share_one_toolbar(maps: MapsView) -> None:
     maps.show_pictures(frozenset(ON_DEMAND))
-    assert set(maps.figures) == set(TITLES)
+    assert set(maps.figures) == set(MAPS)
     assert len({id(plot.toolbar) for plot in maps.figures.values()}) == 1
 
 
@@ -48,7 +48,7 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
 
 
 def test_every_picture_has_a_short_title() -> None:
-    assert set(SHORT_TITLES) == set(TITLES)
+    assert set(SHORT_TITLES) == {"well", *MAPS}
 
 
 def test_pictures_on_demand_are_on_the_page_while_they_are_shown(maps: MapsView) -> None:
@@ -57,7 +57,7 @@ def test_pictures_on_demand_are_on_the_page_while_they_are_shown(maps: MapsView)
     for on_demand in (frozenset({"origins"}), frozenset(ON_DEMAND), frozenset()):
         maps.show_pictures(on_demand)
         counts.append(len(grid.objects))
-    assert counts == [len(ALWAYS) + 1, len(TITLES), len(ALWAYS)]
+    assert counts == [len(ALWAYS) + 2, len(MAPS) + 1, len(ALWAYS) + 1]
 
 
 def test_on_touch_screens_the_tool_of_the_wheel_leaves_two_fingers_alone(maps: MapsView) -> None:
@@ -71,9 +71,9 @@ def test_the_picker_of_a_touch_device_marks_one_picture(maps: MapsView) -> None:
     maps.show_pictures(frozenset({"origins"}))
     grid, _ = maps.layout()
     picker, *panes = grid.objects
-    assert list(picker.options.values()) == [*ALWAYS, "origins"]
+    assert list(picker.options.values()) == ["well", *ALWAYS, "origins"]
     picker.value = "origins"
-    assert len(panes) == len(ALWAYS) + 1
+    assert len(panes) == len(ALWAYS) + 2
     assert [name for name, plot in maps.figures.items() if "picked" in plot.css_classes] == ["origins"]
     maps.show_pictures(frozenset())
     assert picker.value == "basins"

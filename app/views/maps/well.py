@@ -1,0 +1,114 @@
+"""The first picture: the well in (x, y) with its exits and equipotentials, and the chosen orbits in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from bokeh.models import ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter
+
+from app.views.components.curve_layers import CurveLayers
+from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities
+from app.views.components.plots import FigurePane, batched_additions, map_figure, set_range
+from engine import MapSpec, Potential, Window
+from engine.service import SPACE, highest_energy
+from plots.orbit_curves import OrbitCurves, find_well_window, moment
+from plots.palette import LIGHT, MARK_EDGE, PAPER, Palette
+
+TITLE = "The well in (x, y)"
+
+_NO_LINE = np.zeros(0), np.zeros(0)
+
+
+class WellView:
+    """The whole interior at the energy of the maps; along an axis h, at that of the chosen orbit, or else the highest one."""
+
+    def __init__(self) -> None:
+        self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
+        self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
+        self._paths, self._trails = lines("paths"), lines("trails")
+        self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
+        self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
+        self.outlines = CurveLayers()
+        self._palette = PAPER
+        self._spec: MapSpec | None = None
+        self._drawings: list[tuple[int, OrbitCurves]] = []
+        self._time: float | None = None
+        self._has_orbits = False
+        # What the outlines are drawn for, as maps of other windows and several orbits share them.
+        self._outlined: tuple[Potential, float, Palette] | None = None
+        self.plot = map_figure("well", TITLE, *self._ranges)
+        self.outlines.draw(self.plot, full=True)
+        self.pane = FigurePane(self.plot)
+
+    def _draw_orbits(self) -> None:
+        """Add the paths, trails and points to the figure, when there is an orbit."""
+        style = line_style(self._mapper)
+        with batched_additions([self.plot]):
+            self.plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh"))
+            self.plot.add_glyph(self._paths, MultiLine(**style))
+            self.plot.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
+            self.plot.add_glyph(self._trails, MultiLine(**style | {"line_width": 2.5}))
+            point = Scatter(size=11, fill_color=style["line_color"], line_color=MARK_EDGE, line_width=1.5)
+            self.plot.add_glyph(self._points, point)
+
+    def set_palette(self, palette: Palette) -> None:
+        """Set the colours of channels and orbits."""
+        self._palette = palette
+        self._mapper.palette = list(palette.orbits)
+        self.outlines.set_palette(palette)
+        self._outline()
+
+    def show_map(self, spec: MapSpec) -> None:
+        """Show the well of a map."""
+        self._spec = spec
+        self._outline()
+
+    def show_orbits(self, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
+        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet."""
+        if not any(drawings) and not self._drawings:
+            return
+        if not self._has_orbits:
+            self._has_orbits = True
+            self._draw_orbits()
+        self._drawings = in_front(drawings, chosen)
+        alphas = opacities(self._drawings, chosen)
+        short = [_NO_LINE if one.visits is not None else one.path for _, one in self._drawings]
+        self._paths.data = line_columns(self._drawings, short, alphas)
+        long = [(slot, one) for slot, one in self._drawings if one.visits is not None]
+        self._shades.data = {
+            "image": [one.shaded(self._palette.orbits[slot]) for slot, one in long],
+            "x": [one.window.x_low for _, one in long],
+            "y": [one.window.ordinate_low for _, one in long],
+            "dw": [one.window.x_high - one.window.x_low for _, one in long],
+            "dh": [one.window.ordinate_high - one.window.ordinate_low for _, one in long],
+        }
+        self._outline()
+        self.set_time(self._time)
+
+    def set_time(self, t: float | None) -> None:
+        """Mark each orbit at a time, with its trail; None marks the starts."""
+        self._time = t
+        moments = [(slot, moment(drawing.orbit, 0.0 if t is None else t)) for slot, drawing in self._drawings]
+        slots = [slot for slot, _ in moments]
+        self._points.data = {"x": [now.x[-1] for _, now in moments], "y": [now.y[-1] for _, now in moments], "slot": slots}
+        trails = {"xs": [now.x for _, now in moments], "ys": [now.y for _, now in moments]}
+        self._trails.data = {**trails, "slot": slots, "alpha": [1.0] * len(slots)}
+
+    def _outline(self) -> None:
+        """Draw the curves of the well, unless they are there already."""
+        spec, chosen = self._spec, self._drawings[-1][1] if self._drawings else None
+        if spec is None:
+            return
+        energy = chosen.orbit.energy if spec.common_energy is None and chosen is not None else highest_energy(spec.energy)
+        if (spec.potential, energy, self._palette) == self._outlined:
+            return
+        self._outlined = (spec.potential, energy, self._palette)
+        window = find_well_window(spec.potential, energy)
+        self.outlines.show(MapSpec(spec.potential, SPACE, energy, window=window))
+        self._go_to(window)
+
+    def _go_to(self, window: Window) -> None:
+        x, y = self._ranges
+        set_range(x, window.x_low, window.x_high)
+        set_range(y, window.ordinate_low, window.ordinate_high)

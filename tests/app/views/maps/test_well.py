@@ -1,0 +1,76 @@
+"""The picture of the well follows the maps, and shows the chosen orbits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.views.maps.well import WellView
+from engine import CASES, MapSpec, Plane, Window, integrate_orbit, start_states
+from plots.orbit_curves import OrbitCurves, compute_orbit_curves
+
+
+def curves_of(case: str, energy: float, x: float = 0.1) -> OrbitCurves:
+    [start] = start_states(CASES[case], Plane.X_PX, energy, np.array([x]), np.array([0.0]))
+    return compute_orbit_curves(CASES[case], integrate_orbit(CASES[case], start, 10.0))
+
+
+def source(well: WellView, name: str) -> Any:
+    return next(each.data_source for each in well.plot.renderers if each.data_source.name == name)
+
+
+def edges(well: WellView) -> tuple[float, ...]:
+    x, y = well.plot.x_range, well.plot.y_range
+    return x.start, x.end, y.start, y.end
+
+
+@pytest.mark.parametrize(("case", "energy", "exits"), [("I", 0.19, 2), ("III", 0.3, 4), ("I", 0.1, 0)])
+@pytest.mark.parametrize("plane", [Plane.X_PX, Plane.X_Y])
+def test_the_exits_of_the_map_are_drawn_on_every_plane(case: str, energy: float, exits: int, plane: Plane) -> None:
+    well = WellView()
+    well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
+    well.show_map(MapSpec(CASES[case], plane, energy))
+    assert len(source(well, "lyapunov_orbits").data["xs"]) == exits
+
+
+def test_a_zoom_of_the_maps_leaves_the_whole_well_in_view() -> None:
+    well = WellView()
+    well.show_map(MapSpec(CASES["III"], Plane.X_Y, 0.4))
+    whole = edges(well)
+    well.show_map(MapSpec(CASES["III"], Plane.X_Y, 0.4, window=Window(0.1, 0.2, 0.1, 0.2)))
+    assert edges(well) == whole
+
+
+def test_the_paths_end_and_begin_with_their_orbits() -> None:
+    well, drawings = WellView(), [curves_of("III", 0.4, x) for x in (0.1, 0.2)]
+    well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
+    well.show_orbits([drawings[0], None, drawings[1]], chosen=0)
+    paths = source(well, "paths").data
+    assert paths["slot"] == [2, 0]
+    assert [line[-1] for line in paths["xs"]] == pytest.approx([drawings[1].orbit.x[-1], drawings[0].orbit.x[-1]])
+    assert source(well, "points").data["x"] == pytest.approx([0.2, 0.1])
+
+
+def test_the_points_move_along_the_orbits() -> None:
+    well, drawing = WellView(), curves_of("III", 0.4)
+    well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
+    well.show_orbits([drawing], chosen=0)
+    well.set_time(1.0)
+    sample = np.searchsorted(drawing.orbit.t, 1.0, side="right") - 1
+    assert source(well, "points").data["y"] == [drawing.orbit.y[sample]]
+    well.set_time(None)
+    assert source(well, "points").data["y"] == [drawing.orbit.y[0]]
+
+
+def test_along_an_axis_h_the_well_is_that_of_the_chosen_orbit() -> None:
+    well, spec = WellView(), MapSpec(CASES["III"], Plane.X_H, (0.2, 0.6))
+    well.show_map(spec)
+    highest = edges(well)
+    well.show_orbits([curves_of("III", 0.3), curves_of("III", 0.2)], chosen=0)
+    assert len(source(well, "lyapunov_orbits").data["xs"]) == 4
+    well.show_orbits([curves_of("III", 0.3), curves_of("III", 0.2)], chosen=1)
+    assert not source(well, "lyapunov_orbits").data["xs"]
+    well.show_orbits([], chosen=0)
+    assert edges(well) == highest
