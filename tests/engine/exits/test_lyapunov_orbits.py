@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
 from engine.exits.lyapunov_orbits import exit_curves, exit_gates
 from engine.potentials.catalogue import POTENTIALS
-from engine.taylor.kernels.events import exit_distance
+from engine.taylor.kernels.events import REACH, exit_distance
 from tests.peers.dop853 import equations
 
 ENERGIES = [
@@ -212,3 +212,10 @@ def test_exit_curves_of_mirror_channels_are_exact_mirror_images_also_beyond_thei
     one, other = exit_curves(potential, 1.2 * potential.escape_energy)
     for x, y in np.random.default_rng(1).uniform(-2.0, 2.0, (100, 2)):
         assert exit_distance(x, y, one) == exit_distance(-x, y, other)
+
+
+def test_the_reach_of_an_exit_is_that_of_its_narrower_end() -> None:
+    potential = parse_formula("½(x² + y²) − x²y² − x³/4")
+    # Channels that are mirror images of each other under y → −y, which exchanges the ends.
+    one, other = (orbit.curve[REACH] for orbit in find_lyapunov_orbits(potential, 1.05 * potential.escape_energy))
+    assert one == pytest.approx(other)

@@ -151,6 +151,24 @@ def test_divergent_start_of_a_forbidden_start_fails() -> None:
     assert isinstance(inbox.errors[0], ValueError)
 
 
+def test_an_interrupted_result_does_not_replace_a_complete_one() -> None:
+    jobs, inbox, begun, goes_on = Jobs(), Inbox(), threading.Event(), threading.Event()
+    complete = compute_map(QUICK)
+
+    def interrupted(_spec: MapSpec) -> EscapeMap:
+        begun.set()
+        assert goes_on.wait(30)
+        return replace(complete, complete=False)
+
+    job = Job(interrupted, (QUICK,), queue=Queue.LONG_CALL)
+    jobs.request(job, inbox.result, inbox.error)
+    assert begun.wait(30)
+    jobs.cache.put(job, complete)
+    goes_on.set()
+    wait_until_idle(jobs)
+    assert jobs.cache.get(job) is complete
+
+
 def test_cancelled_orbit_is_not_delivered() -> None:
     jobs, inbox = Jobs(), Inbox()
     job = Job(integrate_orbit, (CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e6), queue=Queue.LONG_CALL)

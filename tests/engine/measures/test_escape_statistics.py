@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, EscapeMap, EscapeStatistics, Fate, MapSpec, Plane, Window, compute_map, compute_statistics
+from engine.service import compute_survival
 
 SIDE = 60
 
@@ -86,6 +87,13 @@ def test_failed_orbits_are_not_decided(whole: EscapeMap, statistics: EscapeStati
     assert (broken.failed, broken.bounded) == (statistics.bounded, 0)
     assert broken.starts == statistics.starts
     assert broken.decided == statistics.escaped
+
+
+def test_survival_counts_no_undecided_start(under_way: EscapeMap) -> None:
+    statistics = compute_statistics(under_way)
+    assert statistics.undecided > 0
+    _, survival = compute_survival(statistics)
+    assert survival[-1] == pytest.approx(statistics.bounded / statistics.decided)
 
 
 def test_arrays_are_read_only(statistics: EscapeStatistics) -> None:

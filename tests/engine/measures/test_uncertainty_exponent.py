@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from engine.dynamics.classification import classify_orbits
-from engine.execution import Execution, SerialExecutor
+from engine.execution import DEFAULT_EXECUTION, Execution, SerialExecutor
 from engine.maps.spec import MapSpec
-from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
+from engine.measures.uncertainty_exponent import UncertaintyExponent, _PairSampler, compute_uncertainty_exponent
 from engine.potentials.potential import CASES, Potential
 from engine.slices.slice import Plane
 from engine.slices.window import Window
@@ -106,6 +106,13 @@ def test_only_the_seed_affects_the_result() -> None:
     np.testing.assert_array_equal(one.pairs, same.pairs)
     assert one.exponent == same.exponent
     assert not np.array_equal(one.uncertain, other.uncertain)
+
+
+def test_each_separation_has_pairs_of_its_own() -> None:
+    spec = MapSpec(CASES["II"], Plane.X_PX, 0.25).in_well_units()
+    sampler = _PairSampler(spec, np.array([1e-3, 1e-4]), 0, DEFAULT_EXECUTION)
+    (one, _), (other, _) = (sampler._draw_points(index, 5) for index in (0, 1))
+    assert not np.isin(one, other).any()
 
 
 def test_pairs_still_inside_are_counted() -> None:

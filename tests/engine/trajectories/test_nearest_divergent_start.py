@@ -9,6 +9,7 @@ import pytest
 
 from engine import CASES, DivergentStart, Fate, Plane, classify_orbits, find_divergent_start, integrate_orbit, start_states
 from engine.execution import Execution, SerialExecutor
+from engine.trajectories.nearest_divergent_start import _ring_radii
 
 T_MAX = 2000.0
 # Potential, plane, energy, x, ordinate, at different distances from the basin boundary; the third one is bounded.
@@ -148,3 +149,11 @@ def test_invalid_starts_and_distances_raise(start: tuple[Any, ...], options: dic
 def test_t_max_out_of_range_raises() -> None:
     with pytest.raises(ValueError, match="t_max=0"):
         find_divergent_start(CASES["I"], Plane.X_PX, 0.2, 0.1, 0.1, 0.0)
+
+
+@pytest.mark.parametrize("directions", [2, 16])
+def test_batches_of_rings_leave_no_gap(directions: int) -> None:
+    batches = list(_ring_radii(1.0, directions))
+    assert len(batches) > 1
+    assert [batch[0] for batch in batches[1:]] == [batch[-1] for batch in batches[:-1]]
+    assert batches[-1][-1] == pytest.approx(1.0)

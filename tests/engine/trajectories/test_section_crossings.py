@@ -9,6 +9,7 @@ from engine import (
     CASES,
     Fate,
     Plane,
+    Potential,
     Verdict,
     classify_orbits,
     find_section_crossings,
@@ -55,6 +56,16 @@ def test_points_between_distant_samples_are_accurate() -> None:
     orbit = integrate_orbit(POTENTIAL, start, 1000.0)
     sparse = replace(orbit, **{name: getattr(orbit, name)[::10] for name in ("t", "x", "y", "px", "py")})
     np.testing.assert_allclose(find_section_crossings(POTENTIAL, sparse), find_section_crossings(POTENTIAL, orbit), atol=1e-12)
+
+
+def test_two_passages_between_samples_are_one_crossing() -> None:
+    # ÿ = −y + x² turns the orbit back before the next sample.
+    potential, start = Potential("rotated", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, -1.0))), (0.3, 1e-4, 0.0, -0.008)
+    orbit = integrate_orbit(potential, start, 0.3)
+    ends = replace(orbit, **{name: getattr(orbit, name)[[0, -1]] for name in ("t", "x", "y", "px", "py")})
+    assert orbit.y[0] > 0.0 < orbit.y[-1]
+    assert orbit.crossings == 1
+    np.testing.assert_allclose(find_section_crossings(potential, ends), find_section_crossings(potential, orbit), atol=1e-12)
 
 
 @pytest.mark.parametrize(("state", "crossings"), [((0.0, 0.0, 0.0, 0.5), 0), ((0.0, -1e-9, 0.0, 0.5), 1)])

@@ -7,7 +7,18 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from engine import CASES, find_lyapunov_orbits
-from engine.taylor.kernels.events import append_crossings, count_upward_crossings, exit_distance, find_exit_time
+from engine.taylor.kernels.events import (
+    CURVE_COLUMNS,
+    HALF_WIDTH,
+    ORIGIN_X,
+    OUTWARD_X,
+    REACH,
+    append_crossings,
+    count_upward_crossings,
+    crossed_exit,
+    exit_distance,
+    find_exit_time,
+)
 from engine.taylor.source.recurrence import ORDER
 
 
@@ -161,6 +172,16 @@ def test_exit_time_of_a_straight_line_is_that_of_its_intersection_with_the_lyapu
         end = np.array([orbit.x[30], orbit.y[30]])
         tau = find_exit_time(*orbit_through(0.0, 0.0, *end), 0, 1.2, orbit.curve)
         assert tau == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("across", "channel"), [((0.0, 3.0), 1), ((3.0, 0.0), 0), ((0.0, 0.5), 1), ((1.2, 3.0), 0)])
+def test_the_place_where_a_step_crosses_an_exit_decides(across: tuple[float, float], channel: int) -> None:
+    # A straight exit x = 1, |y| ≤ 1, with a reach of 1.
+    curve = np.zeros((1, CURVE_COLUMNS))
+    curve[0, [ORIGIN_X, OUTWARD_X, HALF_WIDTH, REACH]] = 1.0
+    gates = np.array([[1.0, 0.0, 0.5]])
+    # A tenth of the step lies inside.
+    assert crossed_exit(0.9, across[0], 1.9, across[1], curve, gates) == channel
 
 
 def test_a_step_that_starts_outside_has_exit_time_zero() -> None:
