@@ -82,7 +82,7 @@ class StatisticsView:
         hv.extension("bokeh")
         self._times = _plot(_draw_times(), "histogram", "Escape times")
         _describe(self._times, _TIMES_TEXT, {"@left": "number", "@right": "number", "@top": "count"})
-        self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escape probability after n crossings")
+        self._probabilities = _plot(_draw_probabilities(), "probabilities", "Escapes after n crossings")
         _describe(self._probabilities, _PROBABILITIES_TEXT, {f"@{PROBABILITY}": "percent"})
         histogram, probabilities = (pn.pane.Bokeh(plot.state, margin=0) for plot in (self._times, self._probabilities))
         left = pn.Column(self.whole, self.table, self.copy, margin=0, css_classes=["plot"])

@@ -1,4 +1,4 @@
-"""The legend of all maps: one strip below them."""
+"""The legend of all maps."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ STEPS = (
     Step(
         "Understand the picture",
         "The layers mark the pixels that depend on rounding, draw the curves that bound the basins, and show where orbits come "
-        "from. The analyses below the maps measure how fractal the basins are, and how everything changes with the energy.",
+        "from. The analyses beside the maps measure how fractal the basins are, and how everything changes with the energy.",
         "switches",
         Act.LAYER,
     ),
