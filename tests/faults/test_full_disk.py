@@ -24,6 +24,8 @@ def limited_command(limit: int, folder: Path, arguments: tuple[str, ...]) -> Non
     # Kernels that cannot be stored give a warning.
     prepare_kernels(CASES["I"])
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    # Bytecode cut off at the limit would break every later import.
+    sys.dont_write_bytecode = True
     os.chdir(folder)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     sys.exit(main(arguments))

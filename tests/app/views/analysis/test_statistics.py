@@ -47,10 +47,12 @@ def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -
     assert view._probabilities.handles["source"].data["p"][0] == pytest.approx(statistics.direct_share)
 
 
-def test_the_table_is_copied_with_shares_at_full_precision(view: StatisticsView, frame: EscapeMap) -> None:
+@pytest.mark.parametrize("box", [None, BOX])
+def test_the_table_is_copied_with_shares_at_full_precision(view: StatisticsView, frame: EscapeMap, box: Window | None) -> None:
     view.activate(True)
+    view.show_box(box)
     view.copy.clicks += 1
     rows = [line.split("\t") for line in COPIED[-1].splitlines()]
-    statistics = compute_statistics(frame)
+    statistics = compute_statistics(frame, box)
     assert rows[0] == ["fate", "share", "95 % low", "95 % high"]
     assert [float(value) for value in rows[1][1:]] == [statistics.shares[1], *statistics.share_intervals[1]]
