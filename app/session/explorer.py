@@ -335,6 +335,7 @@ class Explorer:
         with pn.io.hold():
             self.analyses.begin(frame.spec)
             self.maps.show(frame, columns)
+            self.maps.mark_stale(False)
             if self.state.window is None:
                 self.maps.set_home(frame.spec.find_window())
             self.progress.show(frame)
@@ -357,9 +358,10 @@ class Explorer:
         self.progress.stop()
 
     def map_failed(self, sentence: str) -> None:
-        """Show why there is no map; the last picture stays."""
+        """Show why there is no map; the last pictures stay, greyed out."""
         self._count_down(False)
         self.progress.fail()
+        self.maps.mark_stale(True)
         self.notice.warn(sentence)
 
     def _show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:

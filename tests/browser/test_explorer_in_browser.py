@@ -84,14 +84,20 @@ def test_an_energy_can_be_typed(explorer: ExplorerPage) -> None:
     assert_same_crossings(explorer, quick_map(0.2345))
 
 
-def test_an_invalid_energy_gives_a_warning_and_the_picture_stays(explorer: ExplorerPage) -> None:
+def test_an_invalid_energy_gives_a_warning_and_the_picture_stays_grey(explorer: ExplorerPage) -> None:
     before = explorer.column("fate")
     explorer.type_number("Exact h", "100")
     warning = explorer.page.get_by_role("alert")
     expect(warning).to_contain_text("energy=100.0")
     np.testing.assert_array_equal(explorer.column("fate"), before)
+    pictures = explorer.page.locator(".map, .well")
+    expect(pictures).to_have_count(4)
+    for picture in pictures.all():
+        expect(picture).to_have_css("filter", "grayscale(1)")
     explorer.type_number("Exact h", "0.2")
     expect(warning).to_have_count(0)
+    for picture in pictures.all():
+        expect(picture).to_have_css("filter", "none")
 
 
 @pytest.mark.parametrize("picture", ["basins", *(pytest.param(name, marks=SLOW) for name in MAPS[1:])])

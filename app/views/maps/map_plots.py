@@ -130,12 +130,21 @@ class MapsView:
                 self._build(name)
         # Hidden pictures would still be painted with every frame.
         self._grid.objects = [*self._picker(), self.well.pane, *(self._panes[name] for name in shown)]
-        self._grid.css_classes = ["maps", "many"] if len(shown) > 3 else ["maps"]
+        self._set_class("many", len(shown) > 3)
         offered = ["well", *shown]
         picked = self.picker.value if self.picker.value in offered else "basins"
         self.picker.param.update(options={SHORT_TITLES[name]: name for name in offered}, value=picked)
         self._pick()
         self.describe()
+
+    def mark_stale(self, stale: bool) -> None:
+        """Grey the pictures out while they do not belong to the controls, or show them as they are."""
+        self._set_class("stale", stale)
+
+    def _set_class(self, name: str, on: bool) -> None:
+        """Set or remove a class of the grid in the stylesheet."""
+        others = [each for each in self._grid.css_classes if each != name]
+        self._grid.css_classes = [*others, name] if on else others
 
     def begin_touch(self) -> None:
         """The page is used by touch: on a narrow screen one picture is shown, chosen with the picker."""
