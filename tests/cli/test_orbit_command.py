@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from engine import CASES, Plane, compute_birkhoff_digits, integrate_orbit, judge_orbit, start_states
+from engine import CASES, BirkhoffDigits, Plane, compute_birkhoff_digits, integrate_orbit, judge_orbit, start_states
 from engine.service import evaluate_indicators
 from plots.exports import orbits_csv
 from plots.palette import COLOUR_BLIND_SAFE
@@ -46,6 +46,16 @@ def test_bounded_orbit_has_verdicts_of_all_indicators(run: Run) -> None:
     assert code == 0
     assert judge_orbit(orbit, digits).describe() in out
     assert [verdict.name for verdict in verdicts if verdict.sentence in out] == ["SALI", "Lyapunov exponent", "Birkhoff digits"]
+
+
+def test_the_table_has_the_verdict_of_all_indicators(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    state, chaotic = (0.1, 0.0, 0.0, 0.4), BirkhoffDigits(np.array([1000.0]), np.array([0.1]))
+    monkeypatch.setattr("engine.compute_birkhoff_digits", lambda *arguments, **options: chaotic)
+    assert run("orbit", "III", "--state", *state, "--t-max", 2500, "--output", tmp_path / "orbit")[0] == 0
+    orbit = integrate_orbit(CASES["III"], state, 2500.0)
+    verdict = judge_orbit(orbit, chaotic).describe()
+    assert verdict != judge_orbit(orbit).describe()
+    assert verdict in (tmp_path / "orbit.csv").read_text()
 
 
 def test_json_contains_fate_crossings_energy_and_escape_time(run: Run) -> None:

@@ -32,6 +32,17 @@ function describe({channel, time, crossings}, unit) {
   return channel > 0 ? `Exit ${channel} at t = ${t}, ${count}` : `Inside until t = ${t}, ${count}`
 }
 
+/**
+ * The path of an orbit in units of the page.
+ *
+ * @param {Pick<import("./trace.js").Trace, "x" | "y">} trace
+ * @param {{length: number}} units  of the well
+ */
+export function pathOf({x, y}, {length}) {
+  const [xs, ys] = [x, y].map(values => values.map(value => value * length))
+  return {xs, ys}
+}
+
 export class Card {
   /**
    * @param {HTMLElement} el
@@ -202,7 +213,7 @@ export class Card {
     for (const line of limit) draw(line, ink, 1.5)
     const colours = this.#colours()
     for (const {channel, xs, ys} of exitLines(system, h)) draw({xs, ys}, colours[channel - 1], 3)
-    const [xs, ys] = [trace.x, trace.y].map(values => values.map(value => value * system.units.length))
+    const {xs, ys} = pathOf(trace, system.units)
     draw({xs, ys}, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
     const text = describe(trace, system.units.time)
     context.fillStyle = ink
