@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -185,6 +186,7 @@ def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) ->
     session.wait_for(lambda: len(steps.data["t"]) > 0 and float(steps.data["share"][0]) != whole)
 
 
+@pytest.mark.usefixtures("frame")
 def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "app.session.analysis_presenter.compute_uncertainty_exponent", partial(compute_uncertainty_exponent, work=1e7)
@@ -195,6 +197,16 @@ def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monke
     session.wait_for(lambda: "α =" in session.presenter.measures.text.object)
     assert not session.presenter.measures.button.disabled
     assert len(session.presenter.measures.pairs.data["share"]) > 5
+
+
+@pytest.mark.usefixtures("frame")
+def test_another_map_cancels_the_measurement_of_the_exponent(begin: Callable[..., Session]) -> None:
+    session = begin(analysis=Analysis.MEASURES)
+    session.wait_for(lambda: session.jobs.in_flight == 0)
+    session.presenter.measures.button.clicks += 1
+    assert session.jobs.in_flight == 1
+    session.presenter.begin(replace(session.state.map_spec(), energy=0.3))
+    assert session.jobs.in_flight == 0
 
 
 def test_curves_arrive_energy_by_energy_and_can_be_stopped(begin: Callable[..., Session]) -> None:
