@@ -13,7 +13,7 @@ import pytest
 from bokeh.application import Application
 from bokeh.application.handlers import FunctionHandler
 from bokeh.document import Document
-from bokeh.server.callbacks import TimeoutCallback
+from bokeh.server.callbacks import PeriodicCallback
 from bokeh.server.contexts import ApplicationContext
 from panel.io.state import set_curdoc
 from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
@@ -68,6 +68,17 @@ async def wait_for(condition: Callable[[], bool]) -> None:
     assert condition()
 
 
+async def settle(document: Document) -> None:
+    """Wait until no callback is due or under way, also none that another one began: the loop ends after that."""
+    for each in document.session_callbacks:
+        if isinstance(each, PeriodicCallback):
+            document.remove_periodic_callback(each)
+    end, quiet = time.monotonic() + 10.0, 0
+    while quiet < 10 and time.monotonic() < end:
+        quiet = 0 if document.session_callbacks or len(asyncio.all_tasks()) > 1 else quiet + 1
+        await asyncio.sleep(0.01)
+
+
 def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> int:
     """Open a page with a link on a new event loop and check it; returns the loop's thread."""
 
@@ -90,11 +101,7 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
                 await check(built[0])
         finally:
             built[0].close()
-            # Callbacks that are due, or under way, must end before the loop does.
-            await wait_for(lambda: not any(isinstance(each, TimeoutCallback) for each in session.document.session_callbacks))
-            under_way = asyncio.all_tasks() - {asyncio.current_task()}
-            if under_way:
-                await asyncio.wait(under_way, timeout=1.0)
+            await settle(session.document)
         return threading.get_ident()
 
     return run_on_new_loop(run)
