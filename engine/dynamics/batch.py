@@ -146,6 +146,10 @@ class OrbitBatch:
         integrated = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
         return np.where(integrated, np.int8(Certificate.INTEGRATED), self.certificate)
 
+    def for_kernels(self, pending: np.ndarray) -> Orbits:
+        """The arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
+        return Orbits(self.state, self.t, self.crossings, self.last_crossings, self.fate, pending)
+
     @property
     def nbytes(self) -> int:
         """Total size of the arrays in bytes."""
@@ -202,10 +206,10 @@ def _advance_tile(
     least: int,
 ) -> Tile:
     """Propagate the orbits of a tile by `STEP_BUDGET` steps, or until fewer than `least` are active; runs in a worker."""
-    b = tile.batch
+    exits = Exits(gates, curves, tile.batch.curve_row)
     kernels_of(potential).propagate(
-        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least, Exits(gates, curves, b.curve_row),
-        Orbits(b.state, b.t, b.crossings, b.last_crossings, b.fate, tile.active), NO_TRACE,
+        np.arange(tile.orbits.size), horizon, final, tolerance, STEP_BUDGET, least, exits, tile.batch.for_kernels(tile.active),
+        NO_TRACE,
     )  # fmt: skip
     return tile
 

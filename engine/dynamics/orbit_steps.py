@@ -14,7 +14,7 @@ from engine.exits.lyapunov_orbits import exit_gates
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import trace_orbit
-from engine.taylor.kernels.propagate import Exits, Orbits
+from engine.taylor.kernels.propagate import Exits
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ def record_orbit(potential: Potential, start: np.ndarray, curves: np.ndarray, t_
     batch, rows = OrbitBatch.from_starts(start[None], np.zeros(1, np.int64)), curves[None]
     batch.mark_outside(potential, np.arange(1), rows, execution=execution.in_this_thread())
     pending = (batch.fate == Fate.NOT_COMPUTED).astype(np.uint8)
-    orbits = Orbits(batch.state, batch.t, batch.crossings, batch.last_crossings, batch.fate, pending)
+    orbits = batch.for_kernels(pending)
     exits = Exits(exit_gates(rows), rows, batch.curve_row)
     pieces = list(trace_orbit(kernels_of(potential), exits, orbits, t_max, execution))
     execution.raise_if_cancelled()

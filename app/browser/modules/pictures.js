@@ -7,11 +7,9 @@ const NAMES = ["basins", "times", "crossings", "characters", "origins"]
  * A picture: its view of Bokeh, and the box of its frame on the screen.
  *
  * @typedef {{view: any, box: DOMRect}} Frame
- *
- * The maps.
- *
- * @returns {Frame[]}
  */
+
+/** The maps. @returns {Frame[]} */
 export function frames() {
   const views = [...Bokeh.index.all_views()].filter(view => NAMES.includes(view.model.name))
   views.sort((one, other) => NAMES.indexOf(one.model.name) - NAMES.indexOf(other.model.name))

@@ -75,7 +75,7 @@ class OrbitControls:
         buttons.margin = (5, 4)
         return pn.Column(
             self.choice, buttons, self.text, playback, self._interval_row,
-            sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["orbit-head"],
+            sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 
     def details(self) -> pn.viewable.Viewable:
