@@ -96,7 +96,7 @@ class Explorer:
 
 def _view_of(spec: MapSpec) -> ViewState:
     """The view that shows a map; `t_max` and resolution are the nearest of the page's choices."""
-    known = next((name for name, entry in POTENTIALS.items() if entry.potential == spec.potential), TYPED)
+    known = next((name for name, potential in POTENTIALS.items() if potential == spec.potential), TYPED)
     view = ViewState(case=known, formula=write_formula(spec.potential) if known == TYPED else "")
     energy = {} if spec.common_energy is None else {"energy": spec.common_energy}
     nearest = {

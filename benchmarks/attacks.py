@@ -85,6 +85,15 @@ async def link_to_radial_potentials(visitor: SimulatedSession, choice: random.Ra
         yield
 
 
+async def ask_for_pictures(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
+    """Pictures of the links that take longest, more at once than an address may have."""
+    while True:
+        energies = [choice.uniform(0.2, 0.24) for _ in range(4)]
+        await asyncio.gather(*(visitor.fetch(f"/app/picture.png?case=III&plane=x_y&h={h!r}") for h in energies))
+        await asyncio.sleep(_REQUEST_PAUSE)
+        yield
+
+
 async def name_modules(visitor: SimulatedSession, choice: random.Random) -> AsyncIterator[None]:
     """Resources of components in all modules of large packages, none of which the page needs."""
     names = _module_names()
@@ -126,4 +135,5 @@ ATTACKS: dict[str, Attack] = {
     "links to radial potentials": link_to_radial_potentials,
     "resources of any module": name_modules,
     "compressed tokens": send_zlib_bombs,
+    "pictures of links": ask_for_pictures,
 }

@@ -91,7 +91,6 @@ TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnima
 def report_opening(browser: Browser, address: str) -> None:
     """Navigation to the first map, first with an empty browser cache and then with a full one; the server's answer alone."""
     context = browser.new_context(viewport={"width": 1600, "height": 1000})
-    context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
     maps = []
     for _ in range(OPENINGS):
         page = context.new_page()
@@ -121,7 +120,6 @@ def seconds_to_answer(address: str) -> float:
 
 def open_page(browser: Browser, address: str, link: str = "") -> ExplorerPage:
     context = browser.new_context(viewport={"width": 1600, "height": 1200})
-    context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
     explorer = ExplorerPage(context.new_page())
     explorer.page.goto(address + link)
     explorer.wait_until_complete()
@@ -158,11 +156,11 @@ def report_typing(browser: Browser, address: str) -> None:
         explorer = open_page(browser, address, "?t_max=1000")
         explorer.press("Other …")
         box = explorer.page.get_by_label("V(x, y) =")
-        explorer.forget_pixels()
         box.fill("")
         box.press_sequentially(formula, delay=40)
         begin = time.perf_counter()
         explorer.page.wait_for_timeout(200)
+        explorer.forget_pixels()
         box.press("Enter")
         explorer.wait_for_new_pixels()
         print(f"New potential {formula}: first pixels after {time.perf_counter() - begin:.1f} s", flush=True)

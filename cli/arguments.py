@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cli.options import Edges, PlaneName
-from cli.potential_argument import find_potential
+from cli.options import Edges
+from cli.potential_argument import find_potential, find_system
 from engine import MapSpec, Slice
-from engine.service import checked_slice
+from engine.service import read_slice
 from plots.palette import PALETTES, Palette
 
 
@@ -21,9 +21,9 @@ def find_palette(name: str) -> Palette:
     return PALETTES[name]
 
 
-def find_plane(name: PlaneName) -> Slice:
-    """Return the plane of this name."""
-    return checked_slice(name.value)
+def find_plane(axes: str, fix: Sequence[str] | None, case: str) -> Slice:
+    """Return the slice of these axes, whose parameters are those of a case."""
+    return read_slice(axes, ",".join(fix or ()), find_system(case))
 
 
 def read_resolution(text: str) -> tuple[int, int]:
@@ -51,7 +51,8 @@ def space_energies(
 
 def build_map_spec(
     case: str,
-    plane: PlaneName,
+    axes: str,
+    fix: Sequence[str] | None,
     energy: float | None,
     energies: tuple[float, float] | None,
     window: Edges | None,
@@ -61,9 +62,10 @@ def build_map_spec(
     backward: bool = False,
 ) -> MapSpec:
     """Return the request for a map; ValueError names a missing, superfluous or invalid option."""
+    potential, plane = find_potential(case), find_plane(axes, fix, case)
     return MapSpec(
-        find_potential(case),
-        find_plane(plane),
+        potential,
+        plane,
         _choose_energy(plane, energy, energies),
         read_resolution(resolution),
         window,
@@ -73,19 +75,20 @@ def build_map_spec(
     )
 
 
-def _choose_energy(plane: PlaneName, energy: float | None, energies: tuple[float, float] | None) -> float | tuple[float, float]:
-    if find_plane(plane).energy_axis is not None:
+def _choose_energy(plane: Slice, energy: float | None, energies: tuple[float, float] | None) -> float | tuple[float, float]:
+    if plane.energy_axis is not None:
         if energies is None or energy is not None:
-            raise ValueError(f"energies: the plane {plane} needs --energies LOW HIGH, not --energy")
+            raise ValueError(f"energies: the plane {plane.key} needs --energies LOW HIGH, not --energy")
         return energies
     if energy is None or energies is not None:
-        raise ValueError(f"energy: the plane {plane} needs --energy H, not --energies")
+        raise ValueError(f"energy: the plane {plane.key} needs --energy H, not --energies")
     return energy
 
 
 def find_start(
     case: str,
-    plane: PlaneName,
+    axes: str,
+    fix: Sequence[str] | None,
     energy: float | None,
     start: tuple[float, float] | None,
     state: tuple[float, float, float, float] | None,
@@ -98,11 +101,12 @@ def find_start(
             raise ValueError("energy: --state already determines it; leave --energy out")
         return state
     assert start is not None
-    chosen = find_plane(plane)
+    chosen = find_plane(axes, fix, case)
+    chosen.check_one_potential("start")
     if chosen.energy_axis is not None and energy is not None:
-        raise ValueError(f"energy: on the plane {plane} it is a coordinate, so leave --energy out")
+        raise ValueError(f"energy: on the plane {chosen.key} it is a coordinate, so leave --energy out")
     if chosen.energy_axis is None and energy is None:
-        raise ValueError(f"energy: a start on the plane {plane} needs --energy H")
+        raise ValueError(f"energy: a start on the plane {chosen.key} needs --energy H")
     x, ordinate = np.array(start)[:, None]
     found = chosen.states(find_potential(case), energy, x, ordinate)[0]
     if np.isnan(found).any():

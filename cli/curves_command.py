@@ -8,60 +8,92 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cli import options
-from cli.options import DEFAULT_PLANE
+from cli.options import DEFAULT_PLANE, DEFAULT_STYLE
 
 if TYPE_CHECKING:
-    from engine import EnergyCurves
+    from cli.files import Content
+    from engine import Curves
+    from plots.figure_style import FigureStyle
 
 EXAMPLES = """Examples:
 
 escape-explorer curves I --low 0.13 --high 0.5 --count 38 --output curves-I
 
-escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --no-exponent --resolution 224
+escape-explorer curves III --plane x_y --low 0.26 --high 0.6 --count 18 --refine 12 --no-exponent --resolution 224
 """
 
 
 def draw_curves(
     case: options.Case,
-    low: Annotated[float, typer.Option("--low", help="Lowest h.")],
-    high: Annotated[float, typer.Option("--high", help="Highest h.")],
-    count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced energies.")],
+    low: Annotated[float, typer.Option("--low", help="Lowest h, or value of the parameter.")],
+    high: Annotated[float, typer.Option("--high", help="Highest h, or value of the parameter.")],
+    count: Annotated[int, typer.Option("--count", min=1, max=1000, help="Number of evenly spaced values.")],
+    against: Annotated[
+        str, typer.Option("--against", help="h, or a parameter: omega_1, omega_2, epsilon or a letter of the formula.")
+    ] = "h",
+    energy: Annotated[float | None, typer.Option("--energy", help="h of all maps along a parameter.")] = None,
+    refine: Annotated[
+        int, typer.Option("--refine", min=0, max=1000, help="Number of further values, where the shares change most.")
+    ] = 0,
     plane: options.Plane = DEFAULT_PLANE,
+    fix: options.Fix = None,
     resolution: options.Resolution = "112",
     t_max: options.TMax = 1e5,
     exponent: Annotated[
         bool, typer.Option("--exponent/--no-exponent", help="Whether to compute the uncertainty exponent, which takes longest.")
     ] = True,
+    width: options.Width = DEFAULT_STYLE.width,
+    dpi: options.Dpi = DEFAULT_STYLE.dpi,
+    font_size: options.FontSize = DEFAULT_STYLE.font_size,
+    titles: options.Titles = DEFAULT_STYLE.titles,
     output: options.Output = None,
     threads: options.Threads = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """Compute measures of the basins at many energies, written to STEM.nc and STEM.csv."""
-    from cli.arguments import find_plane, read_resolution, space_energies
-    from cli.files import add_ending, reserve_output, write_files
-    from cli.potential_argument import file_name_part, find_potential
-    from cli.run_context import cancellable_run
-    from engine import EnergyCurvesSpec, compute_energy_curves
+    """Compute measures of the basins at many energies, or values of a parameter, written to STEM.nc and STEM.csv.
 
-    energies = space_energies(low, high, count)
-    spec = EnergyCurvesSpec(find_potential(case), find_plane(plane), energies, read_resolution(resolution), t_max, exponent)
-    stem = output or Path(f"curves-{file_name_part(case)}-{plane}")
+    With --output FILE.png, FILE.svg or FILE.pdf they are drawn instead.
+    """
+    from cli.arguments import find_plane, read_resolution, space_energies
+    from cli.files import add_ending, reserve_output, split_ending, write_files
+    from cli.potential_argument import file_name_part, find_potential, find_system
+    from cli.run_context import cancellable_run
+    from engine import CurvesSpec, ParameterAxis, compute_curves
+    from plots.figure_style import FigureFormat, FigureStyle
+
+    style, values = FigureStyle(width, dpi, font_size, titles), space_energies(low, high, count)
+    along = None if against == "h" else ParameterAxis(against, low, high, find_system(case))
+    slice_of_starts, sides = find_plane(plane, fix, case), read_resolution(resolution)
+    spec = CurvesSpec(find_potential(case), slice_of_starts, values, sides, t_max, exponent, along, energy, refine)
+    stem, endings = split_ending(
+        output or Path(f"curves-{file_name_part(case)}-{spec.plane.key}"), ["nc", "csv", *FigureFormat], ["nc", "csv"]
+    )
     with reserve_output(stem):
         with cancellable_run(threads) as run:
-            curves = compute_energy_curves(spec, execution=run.start_stage("energies"))
-        netcdf = bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
+            curves = compute_curves(spec, execution=run.start_stage("curves"))
+        files = write_files({add_ending(stem, ending): _content(curves, ending, style) for ending in endings})
+    _print_result(*_tabulate(curves), files, as_json)
+
+
+def _content(curves: Curves, ending: str, style: FigureStyle) -> Content:
+    """Return the content of the output file with this ending."""
+    if ending == "nc":
+        return bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
+    if ending == "csv":
         head, rows = _tabulate(curves)
-        table = "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
-        files = write_files({add_ending(stem, "nc"): netcdf, add_ending(stem, "csv"): table})
-    _print_result(head, rows, files, as_json)
+        return "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+    from plots.figure_files import curves_figure_bytes
+    from plots.figure_style import FigureFormat
+
+    return curves_figure_bytes(curves, FigureFormat(ending), style)
 
 
-def _tabulate(curves: EnergyCurves) -> tuple[list[str], list[list[float]]]:
-    """Return column names and rows: h, the shares, then the other curves; missing numbers are NaN."""
+def _tabulate(curves: Curves) -> tuple[list[str], list[list[float]]]:
+    """Return column names and rows: h or the parameter, the shares, then the other curves; missing numbers are NaN."""
     dataset = curves.to_xarray()
     others = [str(name) for name in dataset.data_vars if name != "share"]
-    head = ["h", "bounded", *(f"channel_{k}" for k in range(1, curves.shares.shape[1])), *others]
-    columns = [curves.energies, *curves.shares.T, *(curves.curve(name) for name in others)]
+    head = [curves.spec.name, "bounded", *(f"channel_{k}" for k in range(1, curves.shares.shape[1])), *others]
+    columns = [curves.values, *curves.shares.T, *(curves.curve(name) for name in others)]
     return head, [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -15,6 +15,20 @@ Content = str | bytes
 def add_ending(stem: Path, ending: str) -> Path:
     """Return the stem with a dot and the ending appended; dots in the stem are kept."""
     return stem.with_name(f"{stem.name}.{ending}")
+
+
+def split_ending(path: Path, endings: Collection[str], default: Sequence[str]) -> tuple[Path, Sequence[str]]:
+    """Return stem and ending of a file name with one of some endings; of another name, the name and the default endings.
+
+    Examples
+    --------
+    >>> split_ending(Path("map.pdf"), ["nc", "pdf"], ["nc"])
+    (PosixPath('map'), ['pdf'])
+    >>> split_ending(Path("map-0.19"), ["nc", "pdf"], ["nc"])
+    (PosixPath('map-0.19'), ['nc'])
+    """
+    ending = path.suffix.removeprefix(".")
+    return (path.with_suffix(""), [ending]) if ending in endings else (path, default)
 
 
 @contextmanager

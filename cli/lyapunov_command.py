@@ -10,7 +10,7 @@ import typer
 from cli import options
 
 if TYPE_CHECKING:
-    from engine import LyapunovOrbit
+    from engine import EscapeFlux, LyapunovOrbit
 
 EXAMPLES = """Examples:
 
@@ -31,16 +31,17 @@ def list_lyapunov_orbits(
     ] = None,
     as_json: options.AsJson = False,
 ) -> None:
-    """List the Lyapunov orbit of each open exit: its period and its turning points on the zero-velocity curve."""
+    """List the Lyapunov orbit of each open exit: its period, its turning points, and the flux through the exit."""
     from cli.files import reserve_output, write_files
     from cli.potential_argument import find_potential
-    from engine import find_lyapunov_orbits
+    from engine import compute_flux, find_lyapunov_orbits
 
     potential = find_potential(case)
     with reserve_output(output):
         orbits = find_lyapunov_orbits(potential, energy)
         files = write_files({output: _paths_csv(orbits)}) if output is not None else []
-    _print_result(energy, potential.escape_energy, orbits, files, as_json)
+    flux = compute_flux(potential, energy) if orbits else None
+    _print_result(energy, potential.escape_energy, orbits, flux, files, as_json)
 
 
 def _paths_csv(orbits: tuple[LyapunovOrbit, ...]) -> str:
@@ -54,21 +55,32 @@ def _paths_csv(orbits: tuple[LyapunovOrbit, ...]) -> str:
 
 
 def _print_result(
-    energy: float, escape_energy: float, orbits: tuple[LyapunovOrbit, ...], files: list[str], as_json: bool
+    energy: float,
+    escape_energy: float,
+    orbits: tuple[LyapunovOrbit, ...],
+    flux: EscapeFlux | None,
+    files: list[str],
+    as_json: bool,
 ) -> None:
     from cli.output import print_json, print_sentences, print_table
 
     found: list[dict[str, Any]] = [
-        {"channel": orbit.channel, "period": orbit.period, "ends": orbit.half_path[[0, -1]].tolist()} for orbit in orbits
+        {"channel": orbit.channel, "period": orbit.period, "flux": through, "ends": orbit.half_path[[0, -1]].tolist()}
+        for orbit, through in zip(orbits, [] if flux is None else flux.flux.tolist(), strict=True)
     ]
     if as_json:
-        print_json({"energy": energy, "escape_energy": escape_energy, "orbits": found, "files": files})
+        inside = {} if flux is None else {name: value for name, value in flux.numbers().items() if name != "energy"}
+        print_json({"energy": energy, "escape_energy": escape_energy, "orbits": found, **inside, "files": files})
         return
-    if not found:
+    if flux is None:
         print_sentences(f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}.")
     else:
-        rows = [(str(one["channel"]), f"{one['period']:.12g}", *(_point(end) for end in one["ends"])) for one in found]
-        print_table(("channel", "period", "turning point (x, y)", "turning point (x, y)"), rows)
+        rows = [
+            (str(one["channel"]), f"{one['period']:.12g}", f"{one['flux']:.9g}", *(_point(end) for end in one["ends"]))
+            for one in found
+        ]
+        print_table(("channel", "period", "flux", "turning point (x, y)", "turning point (x, y)"), rows)
+        print_sentences(flux.describe())
     print_sentences(*[f"Written: {', '.join(files)}"] if files else [])
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli import options
-from cli.options import DEFAULT_PLANE
+from cli.options import DEFAULT_PLANE, DEFAULT_STYLE
 
 if TYPE_CHECKING:
     from engine import EscapeMap
@@ -20,7 +20,13 @@ EXAMPLES = """Examples:
 
 escape-explorer map I --energy 0.19 --output first
 
+escape-explorer map II --energy 0.2 --axes y,py --fix x=0.1
+
+escape-explorer map I --energy 0.2 --axes x,epsilon=0.5:2
+
 escape-explorer map III --energies 0.25 1 --plane x_h --resolution 400x300 --format png --json
+
+escape-explorer map II --energy 0.2 --picture basins --output basins.pdf --width 8.5 --no-titles
 
 escape-explorer map II --energy 0.2 --resolution 4000 --format nc --scheduler tcp://node1:8786
 """
@@ -34,6 +40,11 @@ class Format(StrEnum):
 
     NC = "nc"
     PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+
+
+DEFAULT_FORMATS = (Format.NC, Format.PNG)
 
 
 def draw_map(
@@ -41,6 +52,7 @@ def draw_map(
     energy: options.Energy = None,
     energies: options.Energies = None,
     plane: options.Plane = DEFAULT_PLANE,
+    fix: options.Fix = None,
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
@@ -64,10 +76,14 @@ def draw_map(
             "--picture", help="Picture to draw: curves, basins, times, crossings, characters or origins; repeat for several."
         ),
     ] = None,
-    palette: Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")] = "paper",
-    side: Annotated[int, typer.Option("--side", help="Side of each picture in pixels, 100 to 4000.")] = 600,
+    palette: options.PaletteName = "paper",
+    width: options.Width = DEFAULT_STYLE.width,
+    dpi: options.Dpi = DEFAULT_STYLE.dpi,
+    font_size: options.FontSize = DEFAULT_STYLE.font_size,
+    titles: options.Titles = DEFAULT_STYLE.titles,
     formats: Annotated[
-        list[Format] | None, typer.Option("--format", help="Output format; repeat for both, which is the default.")
+        list[Format] | None,
+        typer.Option("--format", help="Output format; repeat for several. By default that of --output, or else nc and png."),
     ] = None,
     output: options.Output = None,
     threads: options.Threads = None,
@@ -82,24 +98,29 @@ def draw_map(
     from cli import map_output
     from cli.arguments import build_map_spec
     from cli.clusters import cluster_executor
-    from cli.files import reserve_output, write_files
+    from cli.files import reserve_output, split_ending, write_files
     from cli.map_analyses import AnalysisOptions, compute_map_with_analyses
     from cli.potential_argument import file_name_part
     from cli.run_context import cancellable_run
     from plots.exports import file_stem
+    from plots.figure_style import FigureStyle
 
-    spec = build_map_spec(case, plane, energy, energies, window, resolution, t_max, certify, backward)
+    spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, certify, backward)
     wanted = AnalysisOptions(judge or "characters" in (picture or ()), origins or "origins" in (picture or ()), trust, manifolds)
     wanted.check(spec)
-    drawing = map_output.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, side)
+    style = FigureStyle(width, dpi, font_size, titles)
+    drawing = map_output.Drawing.of(picture or [*FIRST_PICTURES, *wanted.pictures], palette, style)
     stem = output or Path(file_stem(spec, file_name_part(case)))
+    endings: Sequence[str] = formats or ()
+    if not endings:
+        stem, endings = split_ending(stem, list(Format), DEFAULT_FORMATS)
     with reserve_output(stem):
         with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
             frame, analyses = compute_map_with_analyses(spec, wanted, run)
         # After the cluster is closed: with a Dask client, xarray uses distributed locks, which in-memory files do not support.
         with cancellable_run() as run:
             run.start_stage("writing")
-            files = map_output.contents(stem, [one.value for one in formats or Format], frame, analyses, drawing)
+            files = map_output.contents(stem, endings, frame, analyses, drawing)
         written = write_files(files)
     _print_result(frame, analyses, written, count_outside, as_json)
 

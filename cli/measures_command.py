@@ -32,6 +32,7 @@ def measure_basins(
     energy: options.Energy = None,
     energies: options.Energies = None,
     plane: options.Plane = DEFAULT_PLANE,
+    fix: options.Fix = None,
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
@@ -48,7 +49,7 @@ def measure_basins(
     from cli.output import print_json, print_sentences
     from cli.run_context import cancellable_run
 
-    spec = build_map_spec(case, plane, energy, energies, window, resolution, t_max, certify)
+    spec = build_map_spec(case, plane, fix, energy, energies, window, resolution, t_max, certify)
     with cancellable_run(threads) as run:
         frame = compute_whole_map(spec, run, "map")
         measures = _measure(frame, exponent, run)
@@ -65,7 +66,7 @@ def _measure(frame: EscapeMap, exponent: bool, run: RunContext) -> dict[str, dic
     execution = run.start_stage("entropy, boundaries and decay laws")
     entropy = compute_basin_entropy(frame)
     merging = compute_wada_test(frame)
-    laws = fit_decay_laws(compute_statistics(frame), frame.spec.t_max, execution=execution)
+    laws = fit_decay_laws(compute_statistics(frame), execution=execution)
     measures = {"basin_entropy": _numbers(entropy, _ENTROPY), "merging": _numbers(merging, _MERGING)}
     measures["escape_laws"] = _numbers(laws, _LAWS) | {
         name: None if fit is None else {one: getattr(fit, one) for one in _FIT}

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from plots.figure_style import FigureStyle
 
-class PlaneName(StrEnum):
-    """Name of a plane of initial conditions on the command line; names as in `engine.Plane`."""
-
-    X_PX = "x_px"
-    X_Y = "x_y"
-    X_H = "x_h"
-    Y_PY = "y_py"
-
-
-DEFAULT_PLANE = PlaneName.X_PX
+DEFAULT_PLANE = "x_px"
 
 Edges = tuple[float, float, float, float]
 """x_low, x_high, ordinate_low, ordinate_high."""
@@ -28,14 +19,33 @@ Case = Annotated[
     typer.Argument(
         metavar="CASE",
         help="Potential: I, II or III as in Zotos (2014), another name that `potential` lists, or a formula in x and y; "
-        "optionally with parameters, as in III@omega_1=1.1,epsilon=0.5.",
+        "optionally with parameters, as in III@omega_1=1.1,epsilon=0.5; "
+        "letters of a formula are parameters, too: 0.5(x^2+y^2)-a x y^2@a=1.5.",
     ),
 ]
 Energy = Annotated[float | None, typer.Option("--energy", help="h, dimensionless.")]
 Energies = Annotated[
-    tuple[float, float] | None, typer.Option("--energies", metavar="LOW HIGH", help="Range of h, for the plane x_h.")
+    tuple[float, float] | None, typer.Option("--energies", metavar="LOW HIGH", help="Range of h, for slices with an axis h.")
 ]
-Plane = Annotated[PlaneName, typer.Option("--plane", help="Plane of initial conditions.")]
+Plane = Annotated[
+    str,
+    typer.Option(
+        "--plane",
+        "--axes",
+        metavar="AXES",
+        help="Slice of starts: x_px, x_y, x_h, y_py, tangential, or two axes such as x,theta: x, y, px, py, theta (angle of the "
+        "velocity), beta (its angle from the radius), h, or a parameter with its range, x,epsilon=0.5:2.",
+    ),
+]
+Fix = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fix",
+        metavar="NAME=VALUE",
+        help="Value of another coordinate, 0 by default; py=- for the momentum that the energy decides, and its sign. Repeat for "
+        "several.",
+    ),
+]
 Window = Annotated[
     Edges | None,
     typer.Option("--window", metavar="X0 X1 Y0 Y1", help="Window of the plane; by default the whole interior."),
@@ -61,5 +71,15 @@ LocalCluster = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables and sentences; missing numbers are null.")]
 Output = Annotated[
     Path | None,
-    typer.Option("--output", metavar="STEM", help="File names without ending; existing files are replaced."),
+    typer.Option(
+        "--output",
+        metavar="STEM",
+        help="File names without ending, or the name of one file, whose ending is its format; existing files are replaced.",
+    ),
 ]
+DEFAULT_STYLE = FigureStyle()
+Width = Annotated[float, typer.Option("--width", metavar="CM", help="Width of the figure in cm, 4 to 100.")]
+Dpi = Annotated[float, typer.Option("--dpi", help="Pixels per inch of a PNG file, 50 to 1200.")]
+FontSize = Annotated[float, typer.Option("--font-size", metavar="POINTS", help="Font size of the figure in points, 4 to 30.")]
+Titles = Annotated[bool, typer.Option("--titles/--no-titles", help="Whether the figure has titles and its provenance.")]
+PaletteName = Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")]

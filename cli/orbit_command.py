@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cli import options
-from cli.options import DEFAULT_PLANE
+from cli.options import DEFAULT_PLANE, DEFAULT_STYLE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from engine import Orbit, OrbitVerdict
-    from engine.service import IndicatorVerdict
+    from engine import IndicatorVerdict, Orbit, OrbitVerdict
 
 EXAMPLES = """Examples:
 
@@ -27,6 +26,7 @@ def follow_orbit(
     case: options.Case,
     energy: options.Energy = None,
     plane: options.Plane = DEFAULT_PLANE,
+    fix: options.Fix = None,
     start: Annotated[
         tuple[float, float] | None, typer.Option("--start", metavar="X ORDINATE", help="Start on the plane, at --energy.")
     ] = None,
@@ -38,25 +38,30 @@ def follow_orbit(
     most_rows: Annotated[
         int, typer.Option("--most-rows", min=1, help="Maximum number of rows of the table; longer orbits are thinned.")
     ] = 100_000,
-    palette: Annotated[str, typer.Option("--palette", help="Colours: paper, or safe for the colour-blind.")] = "paper",
+    palette: options.PaletteName = "paper",
+    width: options.Width = DEFAULT_STYLE.width,
+    dpi: options.Dpi = DEFAULT_STYLE.dpi,
+    font_size: options.FontSize = DEFAULT_STYLE.font_size,
+    titles: options.Titles = DEFAULT_STYLE.titles,
     output: options.Output = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Integrate one orbit: verdict, SALI, Lyapunov exponent and Birkhoff digits.
 
-    With --output, STEM.csv contains the path, SALI, exponent and R² against time, and STEM.png shows them.
+    With --output, STEM.csv contains the path, SALI, exponent and R² against time, and STEM.png shows them; or FILE.csv, FILE.png,
+    FILE.svg or FILE.pdf alone.
     """
     from cli.arguments import find_palette, find_start
-    from cli.files import add_ending, reserve_output, write_files
-    from cli.orbit_pictures import orbit_png
+    from cli.files import reserve_output, write_files
+    from cli.orbit_output import Drawing, contents
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import Fate, compute_birkhoff_digits, integrate_orbit, judge_orbit
-    from engine.service import evaluate_indicators
-    from plots.exports import orbits_csv
+    from engine import Fate, compute_birkhoff_digits, evaluate_indicators, integrate_orbit, judge_orbit
+    from plots.figure_style import FigureStyle
 
+    style = FigureStyle(width, dpi, font_size, titles)
     potential, colours = find_potential(case), find_palette(palette)
-    whole = find_start(case, plane, energy, start, state)
+    whole = find_start(case, plane, fix, energy, start, state)
     with reserve_output(output):
         with cancellable_run() as run:
             run.start_stage("orbit")
@@ -65,9 +70,7 @@ def follow_orbit(
             digits = compute_birkhoff_digits(potential, whole, t_max, execution=run.execution) if bounded else None
         verdict, files = judge_orbit(orbit, digits), []
         if output is not None:
-            drawn = orbit_png(potential, orbit, colours, verdict.describe())
-            table = orbits_csv([orbit], most_rows, [verdict])
-            files = write_files({add_ending(output, "csv"): table, add_ending(output, "png"): drawn})
+            files = write_files(contents(output, potential, orbit, verdict, Drawing(colours, style, most_rows)))
     _print_result(orbit, verdict, evaluate_indicators(orbit, digits), files, as_json)
 
 

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import re
 import reprlib
-from typing import Any
 
-from engine import POTENTIALS, Potential, review_potential
-from engine.service import PARAMETERS, TYPED, System
+from engine import POTENTIALS, Potential, System, review_potential
+from engine.service import PARAMETERS, TYPED, formula_letters
 from plots.accepted_potentials import refusal
 
 
 def find_potential(case: str) -> Potential:
-    """Return the potential of ``NAME`` or of a formula in x and y, with optional parameters ``@omega_1=1.2,epsilon=0.8``.
+    """Return the potential of ``NAME`` or of a formula in x and y, with optional parameters ``@omega_1=1.2,a=0.8``.
 
     Raises
     ------
     ValueError
         If it is neither a name nor a formula, a parameter is invalid, or the potential is not supported.
     """
-    potential = _find_system(case).potential
+    potential = find_system(case).potential
     problem = refusal(review_potential(potential))
     if problem is not None:
         raise ValueError(f"case={reprlib.repr(case)}: {problem}")
@@ -32,12 +31,13 @@ def file_name_part(case: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", "-".join([name if name in POTENTIALS else TYPED, *filter(None, [parameters])]))
 
 
-def _find_system(case: str) -> System:
+def find_system(case: str) -> System:
+    """Return the system of a case, which is not reviewed; ValueError if there is none."""
     name, _, parameters = case.partition("@")
-    chosen: dict[str, Any] = _read_parameters(case, parameters) if parameters else {}
+    chosen = _read_parameters(case, name, parameters) if parameters else {}
     if name in POTENTIALS:
-        return System(name, **chosen)
-    system = System(TYPED, name, **chosen)
+        return System(name, "", chosen)
+    system = System(TYPED, name, chosen)
     try:
         _ = system.potential
     except ValueError as error:
@@ -47,7 +47,8 @@ def _find_system(case: str) -> System:
     return system
 
 
-def _read_parameters(case: str, text: str) -> dict[str, float]:
+def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
+    legal = (*PARAMETERS, *_letters(formula))
     chosen: dict[str, float] = {}
     for part in text.split(","):
         name, _, value = part.partition("=")
@@ -55,9 +56,15 @@ def _read_parameters(case: str, text: str) -> dict[str, float]:
             number = float(value)
         except ValueError:
             number = None
-        if name.strip() not in PARAMETERS or number is None:
-            raise ValueError(
-                f"case={reprlib.repr(case)}: parameters are {', '.join(PARAMETERS)}, as in III@omega_1=1.1,epsilon=0.5"
-            )
+        if name.strip() not in legal or number is None:
+            raise ValueError(f"case={reprlib.repr(case)}: parameters are {', '.join(legal)}, as in III@omega_1=1.1,epsilon=0.5")
         chosen[name.strip()] = number
     return chosen
+
+
+def _letters(formula: str) -> tuple[str, ...]:
+    """The letters of a formula; none for a name and for text that is no formula, which is refused later."""
+    try:
+        return () if formula in POTENTIALS else formula_letters(formula)
+    except ValueError:
+        return ()

@@ -37,13 +37,13 @@ def describe_potential(
 
 def _list_catalogue(as_json: bool) -> None:
     from cli.output import print_json, print_table
-    from engine import POTENTIALS
+    from engine.service import CATALOGUE
 
     if as_json:
         names = ("name", "title", "formula", "description", "reference")
-        print_json({"potentials": [{name: getattr(entry, name) for name in names} for entry in POTENTIALS.values()]})
+        print_json({"potentials": [{name: getattr(entry, name) for name in names} for entry in CATALOGUE.values()]})
         return
-    rows = [(entry.name, entry.formula, f"{entry.potential.escape_energy:.6g}") for entry in POTENTIALS.values()]
+    rows = [(entry.name, entry.formula, f"{entry.potential.escape_energy:.6g}") for entry in CATALOGUE.values()]
     print_table(("name", "V(x, y)", "escape energy"), rows)
 
 

@@ -35,6 +35,7 @@ def sweep_energies(
         list[float] | None, typer.Option("--energy", help="An energy; repeat for several, instead of --low, --high and --count.")
     ] = None,
     plane: options.Plane = DEFAULT_PLANE,
+    fix: options.Fix = None,
     window: options.Window = None,
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
@@ -60,13 +61,12 @@ def sweep_energies(
     from cli.output import print_sentences
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import SweepSpec, Window, run_sweep
-    from engine.service import plan_sweep
+    from engine import SweepSpec, Window, plan_sweep, run_sweep
 
     energies = space_energies(low, high, count, energy)
     frame = None if window is None else Window(*window)
     sides = read_resolution(resolution)
-    spec = SweepSpec(find_potential(case), find_plane(plane), energies, sides, frame, t_max, certify, piece)
+    spec = SweepSpec(find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, certify, piece)
     try:
         with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
             if plan:

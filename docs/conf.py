@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import inspect
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +26,8 @@ exclude_patterns = [".*", "README.md", "site"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
+# A loaded machine, with an empty cache of kernels.
+nb_execution_timeout = 300
 # Progress bars, and what libraries say about this machine.
 nb_output_stderr = "remove"
 
@@ -41,14 +44,19 @@ html_extra_path = ["redirect"]
 
 
 def setup(app: Sphinx) -> None:
-    """Constants have their docstrings where they are defined; autodoc looks for them where they are imported."""
-    app.connect("autodoc-process-docstring", _describe_constant)
+    """Docstrings that the extensions do not find or misread are set after them."""
+    app.connect("autodoc-process-docstring", _set_docstring, priority=900)
 
 
-def _describe_constant(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
+def _set_docstring(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
     if what == "data":
+        # Constants have their docstrings where they are defined; autodoc looks for them where they are imported.
         module, constant = name.rsplit(".", 1)
-        lines[:] = [*_docstring(constant, module).splitlines(), ""]
+        # `escape_explorer` has the names of `engine`, which it imports at their first use.
+        lines[:] = [*_docstring(constant, module.replace("escape_explorer", "engine")).splitlines(), ""]
+    elif what == "property":
+        # Napoleon takes the words before a colon for a type.
+        lines[:] = [*inspect.cleandoc(obj.__doc__ or "").splitlines(), ""]
 
 
 def _docstring(name: str, module: str) -> str:

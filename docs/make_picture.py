@@ -18,15 +18,14 @@ from tests.browser.served_app import served_app
 
 HERE = Path(__file__).parent
 SWEPT = "?case=III&plane=x_y&h=0.28&t_max=1000"
-FRAMES, FRAME_MS, WIDTH = 36, 250, 1000
-# The maps with their legend, and the controls.
-HEIGHT = 510
+FRAMES, FRAME_MS, WIDTH = 30, 250, 900
+# Low enough for the tabs beside the maps to be short.
+HEIGHT = 800
 
 
 def open_page(browser: Browser, link: str, height: int) -> ExplorerPage:
-    """Open the page on a wide screen, without the tour of the first visit."""
+    """Open the page on a wide screen."""
     context = browser.new_context(viewport={"width": 1600, "height": height})
-    context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
     explorer = ExplorerPage(context.new_page())
     explorer.page.goto(link)
     explorer.wait_until_complete()
@@ -55,7 +54,9 @@ def main() -> None:
         served_app(Path(folder) / "log") as address,
         sync_playwright() as playwright,
     ):
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        browser = playwright.chromium.launch(
+            executable_path=shutil.which("chromium") or shutil.which("chromium-headless-shell"), args=["--no-sandbox"]
+        )
         take_animation(browser, address)
         browser.close()
 

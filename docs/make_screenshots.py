@@ -32,6 +32,7 @@ PICTURES: dict[str, tuple[str, Callable[[ExplorerPage], None], bool]] = {
     "gallery": ("", lambda explorer: explorer.press("Gallery"), False),
     "share": ("", lambda explorer: explorer.press("Share"), False),
     "help": ("", lambda explorer: explorer.press("Help"), False),
+    "slice": ("?case=I&plane=x,epsilon=0.5:2&h=0.2&t_max=1000", lambda explorer: explorer.press("(x, ε) …"), False),
     "potential": ("", lambda explorer: explorer.press("Other …"), False),
 }
 
@@ -48,7 +49,6 @@ def take(browser: Browser, address: str, name: str, width: int, theme: str) -> N
     context = browser.new_context(
         viewport={"width": width, "height": SIZES[width]}, color_scheme=theme, has_touch=width == min(SIZES)
     )
-    context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
     explorer = ExplorerPage(context.new_page())
     explorer.page.goto(address + link)
     explorer.wait_until_complete()

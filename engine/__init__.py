@@ -1,17 +1,19 @@
-"""Escapes in open Hamiltonian systems with two degrees of freedom and polynomial potentials.
+"""Escapes in open Hamiltonian systems with two degrees of freedom and any smooth potential with a well.
 
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
 `to_holoviews`, see `Result`. `engine.service` has the names for the page and other programs, which may change with any version.
 
-- systems: `Potential`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`, `review_potential`
-- starts: `Plane`, `Slice`, `Coordinate`, `Window`, `default_window`, `start_states`, `trace_zero_velocity_curve`
+- systems: `Potential`, `System`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`, `review_potential`
+- starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `default_window`, `start_states`,
+  `sample_starts`, `trace_zero_velocity_curve`
 - orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `find_section_crossings`, `compute_birkhoff_digits`,
-  `judge_orbit`, `compute_separation`, `find_divergent_start`
+  `judge_orbit`, `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`, `compute_origin_fates`,
   `find_stable_manifolds`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
-- energies: `compute_energy_curves`, `compute_crossing_statistics`, `run_sweep`, `fit_escape_shares`, `fit_direct_shares`,
+- files: `Result.to_xarray`, `open_result`
+- energies: `compute_curves`, `compute_crossing_statistics`, `plan_sweep`, `run_sweep`, `fit_escape_shares`, `fit_direct_shares`,
   `measure_deviation`, `PAPER_FITS`
 """
 
@@ -38,19 +40,32 @@ from engine.measures.share_fits import ShareFit, fit_direct_shares, fit_escape_s
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.potentials.catalogue import POTENTIALS, channel_family
-from engine.potentials.formula_parser import parse_formula, write_formula
+from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formula_writer import write_formula
 from engine.potentials.potential import CASES, Potential
+from engine.potentials.system import System
 from engine.potentials.validation_report import PotentialReview, review_potential
 from engine.results.result import Result
+from engine.slices.axes import Coordinate, Direction, ParameterAxis
 from engine.slices.default_window import default_window
 from engine.slices.limiting_curves import trace_zero_velocity_curve
-from engine.slices.slice import Coordinate, Plane, Slice, start_states
+from engine.slices.planes import Plane, start_states
+from engine.slices.sampling import sample_starts
+from engine.slices.slice import Slice
 from engine.slices.window import Window
 from engine.sweeps.crossing_statistics import compute_crossing_statistics
-from engine.sweeps.energy_curves import EnergyCurves, EnergyCurvesSpec, compute_energy_curves
-from engine.sweeps.run import run_sweep
+from engine.sweeps.curves import Curves, CurvesSpec, compute_curves
+from engine.sweeps.opened_results import open_result
+from engine.sweeps.run import SweepPlan, plan_sweep, run_sweep
 from engine.sweeps.spec import SweepSpec
-from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, compute_birkhoff_digits
+from engine.trajectories.chaos_indicators import (
+    BirkhoffDigits,
+    IndicatorVerdict,
+    Verdict,
+    compute_birkhoff_digits,
+    evaluate_indicators,
+)
+from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
 from engine.trajectories.section_crossings import find_section_crossings
@@ -66,20 +81,24 @@ __all__ = [
     "BirkhoffDigits",
     "Certificate",
     "Coordinate",
+    "Curves",
+    "CurvesSpec",
     "DecayLaws",
+    "Direction",
     "DivergentStart",
-    "EnergyCurves",
-    "EnergyCurvesSpec",
+    "EscapeFlux",
     "EscapeMap",
     "EscapeStatistics",
     "Execution",
     "Fate",
+    "IndicatorVerdict",
     "LyapunovOrbit",
     "MapSpec",
     "Orbit",
     "OrbitVerdict",
     "OriginFateMap",
     "Outcomes",
+    "ParameterAxis",
     "Plane",
     "Potential",
     "PotentialReview",
@@ -90,7 +109,9 @@ __all__ = [
     "ShareFit",
     "Slice",
     "StableManifolds",
+    "SweepPlan",
     "SweepSpec",
+    "System",
     "Trust",
     "TrustMap",
     "UncertaintyExponent",
@@ -102,7 +123,8 @@ __all__ = [
     "compute_basin_entropy",
     "compute_birkhoff_digits",
     "compute_crossing_statistics",
-    "compute_energy_curves",
+    "compute_curves",
+    "compute_flux",
     "compute_map",
     "compute_origin_fates",
     "compute_regularity",
@@ -112,6 +134,7 @@ __all__ = [
     "compute_uncertainty_exponent",
     "compute_wada_test",
     "default_window",
+    "evaluate_indicators",
     "find_divergent_start",
     "find_lyapunov_orbits",
     "find_section_crossings",
@@ -122,9 +145,12 @@ __all__ = [
     "integrate_orbit",
     "judge_orbit",
     "measure_deviation",
+    "open_result",
     "parse_formula",
+    "plan_sweep",
     "review_potential",
     "run_sweep",
+    "sample_starts",
     "start_states",
     "trace_zero_velocity_curve",
     "write_formula",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import os
+import reprlib
 import sys
 import threading
 import warnings
@@ -94,6 +95,16 @@ class Execution:
     cancel: threading.Event | None = None
     on_progress: Callable[[float], None] | None = None
 
+    def __post_init__(self) -> None:
+        if hasattr(self.executor, "get_executor"):
+            raise ValueError(f"executor={reprlib.repr(self.executor)}: must be an Executor, as client.get_executor() of Dask")
+        if not isinstance(self.executor, Executor | None):
+            raise ValueError(f"executor={reprlib.repr(self.executor)}: must be a concurrent.futures.Executor or None")
+        if self.cancel is not None and not hasattr(self.cancel, "is_set"):
+            raise ValueError(f"cancel={reprlib.repr(self.cancel)}: must be a threading.Event or None")
+        if self.on_progress is not None and not callable(self.on_progress):
+            raise ValueError(f"on_progress={reprlib.repr(self.on_progress)}: must be a function of the share done, or None")
+
     @property
     def _pool(self) -> Executor:
         return self.executor or default_executor()
@@ -149,6 +160,9 @@ class Execution:
 
 DEFAULT_EXECUTION = Execution()
 """In the thread pool of this process, not to be cancelled."""
+
+SERIAL_EXECUTION = Execution(SerialExecutor())
+"""In the calling thread, not to be cancelled."""
 
 
 def run_parts(

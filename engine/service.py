@@ -7,6 +7,8 @@ from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import describe_fate, judge_regularity
 from engine.dynamics.portable_system import PortableSystem, make_portable_system
 from engine.execution import DEFAULT_EXECUTION, count_cores
+from engine.expressions.nodes import Coordinate as CoordinateNode
+from engine.expressions.nodes import Expression, Function, Product, Sum
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
 from engine.jobs.client import MOST_REQUESTS, JobClient, JobSubmitter
 from engine.jobs.job import Job, Queue
@@ -14,8 +16,9 @@ from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import (
     BasinMeasures,
     basin_measures_job,
+    curves_job,
     decay_laws_job,
-    energy_curves_job,
+    flux_job,
     map_job,
     origin_fate_job,
     regularity_job,
@@ -25,8 +28,7 @@ from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
 from engine.maps.compute import run_map
 from engine.maps.origin_fates import join_origin_fates
-from engine.maps.result import describe_codes
-from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE
+from engine.maps.spec import DEFAULT_RESOLUTION, LARGEST_SIDE, finest_pixel
 from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from engine.measures.decay_laws import DecayLaw, LawFit
 from engine.measures.escape_statistics import compute_survival
@@ -34,22 +36,26 @@ from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, 
 from engine.measures.published_fits import HyperbolicTangent, PaperFits, Polynomial
 from engine.measures.share_fits import Deviation
 from engine.measures.uncertainty_exponent import fit_uncertainty
-from engine.potentials.catalogue import PotentialEntry
+from engine.potentials.catalogue import CATALOGUE, PotentialEntry
 from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange
-from engine.potentials.formula_parser import LONGEST_TEXT
-from engine.potentials.potential import FREQUENCIES, STRENGTHS
-from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED, System
+from engine.potentials.expression_form import ExpressionForm
+from engine.potentials.form import Form
+from engine.potentials.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value, formula_letters
+from engine.potentials.polynomial_form import PolynomialForm
+from engine.potentials.potential import PARAMETER_RANGES
+from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED
 from engine.potentials.validation_report import CriticalPoint, PointKind
-from engine.results.wording import format_number, format_time, format_whole
+from engine.results.codes import describe_codes
+from engine.results.wording import format_number, format_time, format_whole, short_fraction
+from engine.slices.energies import common_energy, highest_energy
 from engine.slices.limiting_curves import trace_equipotentials
+from engine.slices.planes import SPACE, checked_slice
 from engine.slices.section import SECTION
-from engine.slices.slice import SPACE, checked_slice, common_energy, highest_energy
+from engine.slices.slice_text import AXIS_NAMES, default_range, read_slice, write_slice
 from engine.storage.output_lock import hold_lock
 from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
-from engine.sweeps.energy_curves import EnergyPoint, EnergyPointSpec, compute_energy_point
-from engine.sweeps.run import SweepPlan, plan_sweep
+from engine.sweeps.curve_points import CurvePoint, CurvePointSpec, compute_curve_point
 from engine.taylor.jit.compiled_operations import compiled_operations
-from engine.trajectories.chaos_indicators import IndicatorVerdict, evaluate_indicators
 from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
 from engine.trajectories.separation import LONGEST_SEPARATION
 from engine.validation import LARGEST_NUMBER, LONGEST_TIME
@@ -62,13 +68,15 @@ from engine.warmup import (
 )
 
 __all__ = [
+    "AXIS_NAMES",
+    "CATALOGUE",
     "DEFAULT_EXECUTION",
     "DEFAULT_RESOLUTION",
     "ENTROPY_COUNTS_BOUNDED",
-    "FREQUENCIES",
     "HIGHEST_SHOWN",
     "LARGEST_NUMBER",
     "LARGEST_SIDE",
+    "LARGEST_VALUE",
     "LONGEST_SEPARATION",
     "LONGEST_TEXT",
     "LONGEST_TIME",
@@ -76,21 +84,25 @@ __all__ = [
     "MOST_REQUESTS",
     "PAPER_ENERGIES",
     "PARAMETERS",
+    "PARAMETER_RANGES",
     "SECTION",
     "SHOWN_DIGITS",
     "SPACE",
-    "STRENGTHS",
     "TYPED",
     "WADA_COUNTS_BOUNDED",
     "BasinMeasures",
+    "CoordinateNode",
     "CriticalPoint",
+    "CurvePoint",
+    "CurvePointSpec",
     "DecayLaw",
     "Deviation",
-    "EnergyPoint",
-    "EnergyPointSpec",
     "EnergyRange",
+    "Expression",
+    "ExpressionForm",
+    "Form",
+    "Function",
     "HyperbolicTangent",
-    "IndicatorVerdict",
     "Job",
     "JobClient",
     "JobStats",
@@ -101,34 +113,39 @@ __all__ = [
     "PaperFits",
     "PointKind",
     "Polynomial",
+    "PolynomialForm",
     "PortableSystem",
     "PotentialEntry",
+    "Product",
     "Queue",
     "RadiusEnvelope",
     "Subscription",
+    "Sum",
     "SuperStickySearch",
-    "SweepPlan",
-    "System",
     "basin_measures_job",
+    "checked_letter_value",
     "checked_slice",
     "common_energy",
     "compiled_operations",
-    "compute_energy_point",
+    "compute_curve_point",
     "compute_radius_envelope",
     "compute_survival",
     "count_cores",
+    "curves_job",
     "decay_laws_job",
+    "default_range",
     "describe_certificate",
     "describe_codes",
     "describe_fate",
-    "energy_curves_job",
-    "evaluate_indicators",
     "exit_labels",
     "find_super_sticky_orbits",
+    "finest_pixel",
     "fit_uncertainty",
+    "flux_job",
     "format_number",
     "format_time",
     "format_whole",
+    "formula_letters",
     "highest_energy",
     "hold_lock",
     "is_ready_for_maps",
@@ -137,14 +154,16 @@ __all__ = [
     "make_portable_system",
     "map_job",
     "origin_fate_job",
-    "plan_sweep",
     "prepare_for_certificates",
     "prepare_for_maps",
     "prepare_kernels",
+    "read_slice",
     "regularity_job",
     "run_map",
     "seconds_until_ready_for_maps",
+    "short_fraction",
     "tabulate_crossing_statistics",
     "trace_equipotentials",
     "trust_job",
+    "write_slice",
 ]

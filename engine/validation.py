@@ -5,9 +5,13 @@ A value of a wrong type raises a ValueError too, like one out of range.
 
 from __future__ import annotations
 
+import functools
+import inspect
 import numbers
 import operator
+import re
 import reprlib
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,28 +19,74 @@ import numpy as np
 LARGEST_NUMBER = 1e9
 """Largest magnitude of an energy, a coordinate or a momentum: far beyond all exits, and its powers do not overflow."""
 
+LARGEST_COEFFICIENT = 1e90
+"""Largest magnitude of a coefficient: with a unit of length of 1e-6 terms of degree 12 have a factor of 1e72."""
+
 LONGEST_TIME = 1e8
-"""Largest t_max; at this time the rounding error of t itself reaches 1e-8."""
+"""Largest t_max, in units of the well where these are longer than 1; at this time the rounding error of t itself reaches 1e-8."""
+
+
+_LINE_BREAK = re.compile(r"\s*\n\s*")
+_TYPE_NAMES = {"str": "text", "NoneType": "None", "Callable": "a function", "Mapping": "a mapping", "PathLike": "a path"}
 
 
 def short_repr(value: Any) -> str:
-    """`repr` of a value, shortened for an error message."""
-    return reprlib.repr(value)
+    """`repr` of a value, shortened for an error message, in one line."""
+    return _LINE_BREAK.sub(" ", reprlib.repr(value))
 
 
-def checked_number(name: str, value: Any, requirement: str = "a finite number") -> float:
-    """A real number of at most `LARGEST_NUMBER` in magnitude, as a float; the error says "must be <requirement>"."""
-    is_real = isinstance(value, numbers.Real)
+def checks_types[**P, T](**kinds: Any) -> Callable[[Callable[P, T]], Callable[P, T]]:
+    """Decorator that raises a ValueError for an argument that is not of its type, or of none of several; by name."""
+
+    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+        places = [(place, name) for place, name in enumerate(inspect.signature(function).parameters) if name in kinds]
+
+        @functools.wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> T:
+            for place, name in places:
+                if place < len(args):
+                    check_type(name, args[place], kinds[name])
+                elif name in kwargs:
+                    check_type(name, kwargs[name], kinds[name])
+            return function(*args, **kwargs)
+
+        return call
+
+    return decorate
+
+
+def check_type(name: str, value: Any, kind: Any) -> None:
+    """Raise a ValueError unless a value is of a type, or of one of several."""
+    if not isinstance(value, kind):
+        kinds = kind if isinstance(kind, tuple) else (kind,)
+        raise ValueError(f"{name}={short_repr(value)}: must be {' or '.join(map(_describe_type, kinds))}")
+
+
+def _describe_type(kind: type) -> str:
+    article = "an" if kind.__name__[0] in "AEIO" else "a"
+    return _TYPE_NAMES.get(kind.__name__, f"{article} {kind.__name__}")
+
+
+def checked_flag(name: str, value: Any) -> bool:
+    """True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name}={short_repr(value)}: must be True or False")
+    return bool(value)
+
+
+def checked_number(name: str, value: Any, requirement: str = "a finite number", largest: float = LARGEST_NUMBER) -> float:
+    """A real number of at most `largest` in magnitude, as a float; the error says "must be <requirement>"."""
+    is_real = isinstance(value, numbers.Real) and not isinstance(value, bool)
     # Compared before conversion: an integer may be too large for a float.
-    if not is_real or not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
-        raise ValueError(f"{name}={short_repr(value)}: must be {requirement}, at most {LARGEST_NUMBER:g} in magnitude")
+    if not is_real or not -largest <= value <= largest:
+        raise ValueError(f"{name}={short_repr(value)}: must be {requirement}, at most {largest:g} in magnitude")
     return float(value)
 
 
 def checked_count(name: str, value: Any, least: int, most: int) -> int:
     """An integer from `least` to `most`."""
     try:
-        count = operator.index(value)
+        count = operator.index(value) if not isinstance(value, bool) else least - 1
     except TypeError:
         count = least - 1
     if not least <= count <= most:
@@ -61,12 +111,17 @@ def checked_integers(name: str, value: Any) -> np.ndarray:
     return array.astype(np.int64)
 
 
-def checked_t_max(t_max: float, longest: float = LONGEST_TIME) -> float:
-    """`t_max` as a float, 0 < t_max ≤ longest."""
+def checked_t_max(
+    t_max: float, longest: float = LONGEST_TIME, unit: Callable[[], float] = lambda: 1.0, *, name: str = "t_max"
+) -> float:
+    """`t_max` as a float, 0 < t_max ≤ longest; in units of a well where its unit of time, that of `unit`, is longer than 1."""
     given: Any = t_max
+    is_number = isinstance(given, int | float | np.number) and not isinstance(given, bool)
+    if is_number and given > longest:
+        longest *= max(unit(), 1.0)
     # Compared before conversion: an integer may be too large for a float.
-    if not (isinstance(given, (int, float, np.number)) and 0 < given <= longest):
-        raise ValueError(f"t_max={short_repr(t_max)}: must be above 0 and at most {longest:g}")
+    if not (is_number and 0 < given <= longest):
+        raise ValueError(f"{name}={short_repr(t_max)}: must be above 0 and at most {longest:g}")
     return float(t_max)
 
 

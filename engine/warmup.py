@@ -107,7 +107,7 @@ def _expected_seconds(potential: Potential) -> float:
 def _known_kernels(potential: Potential) -> ModuleType | None:
     """The kernels of a potential; None if they are not generated yet, or cannot be compiled any more."""
     well = potential.in_well_units
-    if not is_generated(well.terms):
+    if not is_generated(well.form.definition, well.channels):
         return None
     try:
         return kernels_of(well)
@@ -116,7 +116,7 @@ def _known_kernels(potential: Potential) -> ModuleType | None:
 
 
 def is_ready_for_maps(potential: Potential) -> bool:
-    """Whether the kernels of maps are compiled; potentials that differ only in coefficients share kernels."""
+    """Whether the kernels of maps are compiled; potentials with the same powers of x and y and as many channels share kernels."""
     kernels = _known_kernels(potential)
     return kernels is not None and all(getattr(kernels, name).signatures for name in _MAP_KERNELS)
 
@@ -148,7 +148,7 @@ def prepare_for_maps(potential: Potential) -> None:
     """
     if is_ready_for_maps(potential):
         return
-    energy = 1.01 * potential.escape_energy
+    energy = potential.energy_at(1.01)
     _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
 
 
@@ -181,8 +181,8 @@ def prepare_kernels(potential: Potential) -> None:
     _make_in_turn(
         lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX * potential.units.time),
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
-        lambda: compute_regularity(_compute_small_map(potential, 0.5 * potential.escape_energy), execution=_EXECUTION),
-        lambda: find_stable_manifolds(potential, 1.01 * potential.escape_energy, images=1, execution=_EXECUTION),
+        lambda: compute_regularity(_compute_small_map(potential, potential.energy_at(0.5)), execution=_EXECUTION),
+        lambda: find_stable_manifolds(potential, potential.energy_at(1.01), images=1, execution=_EXECUTION),
     )
 
 
@@ -192,7 +192,7 @@ def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
 
 def _bounded_start(potential: Potential) -> np.ndarray:
     """(1, 4) a state of low energy."""
-    return SECTION.plane.states(potential, 0.5 * potential.escape_energy, np.zeros(1), np.zeros(1))
+    return SECTION.plane.states(potential, potential.energy_at(0.5), np.zeros(1), np.zeros(1))
 
 
 def _make_in_turn(*calls: Callable[[], object]) -> None:

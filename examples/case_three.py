@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from engine import (
+from escape_explorer import (
     CASES,
     PAPER_FITS,
     Fate,
@@ -167,7 +167,7 @@ plt.close(figure)
 # ## Save and load
 #
 # `to_xarray` returns a dataset with named axes and the provenance of the map: potential, window, integrator and version. Reading
-# the file needs xarray only.
+# the file needs xarray only; `open_result` makes the map of it again.
 
 # %%
 escape_map.to_xarray().to_netcdf("case-three.nc", engine="h5netcdf")
@@ -185,7 +185,7 @@ shown.plot.imshow(
     norm=BoundaryNorm(np.arange(-1.5, 5.0), len(colours)),
     cbar_kwargs={"ticks": range(-1, 5), "label": "−1 no start, 0 bounded, k channel"},
 )
-np.log10(dataset["escape_time"]).plot.imshow(ax=times, cmap="magma_r", cbar_kwargs={"label": "log10 of the escape time"})
+xr.ufuncs.log10(dataset["escape_time"]).plot.imshow(ax=times, cmap="magma_r", cbar_kwargs={"label": "log10 of the escape time"})
 basins.set(title=f"basins of escape, III, h = {ENERGY}", aspect="equal")
 times.set(title="escape times", aspect="equal")
 figure.savefig("basins.png", dpi=120)
@@ -197,4 +197,5 @@ plt.close(figure)
 # - `find_divergent_start`: the nearest start with another fate; `compute_separation`: the distance of two orbits against time.
 # - `find_stable_manifolds`: the curves that bound the basins; `compute_wada_test`: whether the boundaries are Wada.
 # - `fit_decay_laws`: exponential or algebraic decay; `evaluate_indicators`: several chaos indicators of one orbit.
+# - `open_result`: results from files.
 # - `run_sweep`: maps at hundreds of energies in one resumable store (`docs/long-runs.md`).

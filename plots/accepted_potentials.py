@@ -11,8 +11,6 @@ def refusal(found: PotentialReview) -> str | None:
     """Reason why the page cannot show a potential; None if it can."""
     if found.refusal is None and found.channels > MOST_CHANNELS:
         return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
-    if found.refusal is None and found.escape_energy <= 0.0:
-        return f"Its escape energy is {found.escape_energy:.6g}; leave out the constant term, so that it is above 0."
-    if found.refusal is None and HIGHEST_SHOWN * found.escape_energy > LARGEST_NUMBER:
+    if found.refusal is None and abs(found.potential.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
         return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     return found.refusal

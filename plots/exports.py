@@ -1,4 +1,4 @@
-"""Files of results: pictures, maps as NetCDF, orbits as CSV, and a Python script that reproduces them."""
+"""Files of results: maps as NetCDF, orbits as CSV, and a Python script that reproduces them."""
 
 from __future__ import annotations
 
@@ -7,39 +7,14 @@ import re
 from collections.abc import Iterator, Sequence
 from importlib import metadata
 
-from engine import CASES, EnergyCurves, EscapeMap, MapSpec, Orbit, OrbitVerdict, judge_orbit
-from engine.service import TYPED, System
+from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, System, judge_orbit
+from engine.service import TYPED
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
-from plots.palette import Palette
 
 MOST_ROWS = 100_000
 """Default number of rows that a table of orbits has at most."""
 
 _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
-
-
-def png_bytes(
-    frame: EscapeMap,
-    pictures: Sequence[str],
-    palette: Palette,
-    side: int,
-    *,
-    analyses: MapAnalyses = NO_ANALYSES,
-    starts: Sequence[tuple[float, float]] = (),
-    longest: float | None = None,
-) -> bytes:
-    """PNG file of some pictures side by side, with the map's provenance in its text fields.
-
-    Parameters and errors are those of `plots.map_figure.draw_map_figure`.
-    """
-    # Matplotlib takes longer to import than the rest of the page.
-    from plots.figure_axes import RENDER_LOCK, save_figure, software
-    from plots.map_figure import draw_map_figure
-
-    about = {"Software": software()} | {name: str(value) for name, value in frame.provenance().items()}
-    with RENDER_LOCK:
-        figure = draw_map_figure(frame, pictures, palette, side, analyses=analyses, starts=starts, longest=longest)
-        return save_figure(figure, "png", about, crop=True)
 
 
 def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
@@ -115,14 +90,17 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
         If a start is not four finite numbers.
     """
     source, expression = _potential_expression(system)
-    names = [source, "MapSpec", "Plane", "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
+    if spec.plane.parameter is not None:
+        # Each of its orbits belongs to another potential.
+        starts = ()
+    names = [source, "MapSpec", *_slice_names(spec.plane), "Window", "compute_map", *(["integrate_orbit"] if starts else [])]
     window = spec.find_window()
     edges = (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high)
     energy = repr(spec.energy)
     lines = [
         "from matplotlib import pyplot",
         "",
-        f"from engine import {', '.join(names)}",
+        f"from escape_explorer import {', '.join(dict.fromkeys(names))}",
         "",
         f"potential = {expression}",
         "spec = MapSpec(",
@@ -145,15 +123,24 @@ def python_lines(spec: MapSpec, system: System, starts: Sequence[Sequence[float]
     return "\n".join(lines) + "\n"
 
 
+def _slice_names(plane: Slice) -> list[str]:
+    """Names to import for the expression of a slice."""
+    if isinstance(plane, Plane):
+        return ["Plane"]
+    kinds = {type(axis).__name__ for axis in plane.axes} | {"Coordinate", "Slice"}
+    return sorted(kinds | ({"System"} if plane.parameter is not None else set()))
+
+
 def _potential_expression(system: System) -> tuple[str, str]:
     """Name to import, and the expression of the potential."""
-    parameters = ", ".join(f"{name}={value!r}" for name, value in system.changed.items())
+    parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
     changed = f".with_parameters({parameters})" if parameters else ""
     if system.case == TYPED:
-        return "parse_formula", f"parse_formula({system.formula!r}){changed}"
+        letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""
+        return "parse_formula", f"parse_formula({system.formula!r}{letters}){changed}"
     if system.case in CASES:
         return "CASES", f"CASES[{system.case!r}]{changed}"
-    return "POTENTIALS", f"POTENTIALS[{system.case!r}].potential{changed}"
+    return "POTENTIALS", f"POTENTIALS[{system.case!r}]{changed}"
 
 
 def _state(start: Sequence[float]) -> str:
@@ -180,11 +167,11 @@ def file_stem(spec: MapSpec, case: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 
-def curves_csv(curves: EnergyCurves) -> str:
-    """CSV table of curves against energy, one row per energy: h, a share per fate, and all other measures."""
+def curves_csv(curves: Curves) -> str:
+    """CSV table of curves, one row per energy or value of the parameter: it, a share per fate, and all other measures."""
     dataset = curves.to_xarray()
     names = ["share_bounded", *(f"share_channel_{k}" for k in range(1, curves.shares.shape[1]))]
-    columns = {"h": curves.energies} | dict(zip(names, curves.shares.T, strict=True))
+    columns = {curves.spec.name: curves.values} | dict(zip(names, curves.shares.T, strict=True))
     columns |= {str(name): dataset[name].to_numpy() for name in dataset.data_vars if name != "share"}
     lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
     lines += [f"# {name}: {value}" for name, value in dataset.attrs.items()]

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Iterable, Mapping, Sequence
-from datetime import datetime
-from decimal import Decimal
 from importlib import metadata
 from io import BytesIO
-from typing import Any, Literal, NamedTuple
+from textwrap import fill
+from typing import Any, Literal
 
+from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,80 +22,64 @@ from matplotlib.legend import Legend
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, NullFormatter
-from matplotlib.transforms import Bbox
 
+from plots.figure_style import CM_PER_INCH, POINTS_PER_INCH, SCREEN, FigureFormat, FigureStyle
 from plots.palette import LIGHT, PATCH_EDGE, Entry
 
 RENDER_LOCK = threading.Lock()
 """Held by a thread while it draws and saves a figure."""
 
-RESOLUTION = 180
-"""Pixels per inch of the PNG files of the reproduction."""
-
-LETTER, SMALL = 12.0, 10.5
-"""Font sizes of labels and of tick labels, in points."""
+MOST_PIXELS = 40_000_000
+"""Of a PNG file; at most 160 MB while it is drawn."""
 
 # The STIX fonts are part of Matplotlib; they have Greek letters, fractions and mathematical symbols.
-_FAMILY, _MATHS = "STIXGeneral", "stix"
+_FAMILY, _MATHS = ["STIXGeneral", "serif"], "stix"
+_FILE_OPTIONS: Any = {
+    # Text stays text. Programs without the STIX fonts show that of SVG files in another font of about the same width.
+    "svg.fonttype": "none",
+    "font.serif": ["STIXGeneral", "Times New Roman", "Times", "Liberation Serif", "DejaVu Serif"],
+    "pdf.fonttype": 42,
+    # The names of elements are the same each time.
+    "svg.hashsalt": "escape-explorer",
+}
 _FRAME = 0.7
 _MOST_TICKS = 5
+# In a line of text, about.
+_LETTERS_PER_EM = 2.0
+# Of a legend below a panel.
+_MOST_COLUMNS = 6
 # Padding around panels, in inches.
 _GAP = 0.07
-# Around a cropped figure, in pixels.
-_MARGIN = 8
-_FEWEST_TICKS = 3
-# Smaller tick steps than 10 to this power are labelled as distances from the middle tick: plain labels would overlap.
-_FINEST_PLAIN_STEP = -4
 
-Corner = Literal["upper left", "upper right", "lower left", "lower right", "center right"]
+Corner = Literal["upper left", "upper right", "lower left", "lower right", "center right", "best"]
 """Position of a legend in its panel."""
 
-POINTS_PER_INCH = 72.0
 
-
-class Axis(NamedTuple):
-    """Name of an axis, and for each tick its position, 0 to 1 along the axis, and its label."""
-
-    name: str
-    ticks: list[tuple[float, str]]
-
-
-def label_axis(name: str, low: float, high: float) -> Axis:
-    """Ticks at multiples of 1, 2 or 5 · 10^k between two numbers, three to eight of them, with exact labels.
-
-    If they are less than 1e-4 apart, the labels are distances from the middle tick, which the axis name then states.
-    """
-    most = (high - low) / _FEWEST_TICKS
-    exponent = math.floor(math.log10(most))
-    step = Decimal(next((m for m in (5, 2) if m * 10.0**exponent <= most), 1)).scaleb(exponent)
-    numbers = range(math.ceil(Decimal(low) / step), math.floor(Decimal(high) / step) + 1)
-    values = [number * step for number in numbers]
-    labels = [f"{value:f}" for value in values]
-    if exponent < _FINEST_PLAIN_STEP:
-        middle = values[len(values) // 2]
-        labels = [f"{(value - middle).scaleb(-exponent):f}" for value in values]
-        offset = f"({name} {'−' if middle > 0 else '+'} {abs(middle):f})" if middle else name
-        name = f"{offset} / 1e{exponent}"
-    positions = [float(value - Decimal(low)) / (high - low) for value in values]
-    return Axis(name, [(position, label.replace("-", "−")) for position, label in zip(positions, labels, strict=True)])
-
-
-def new_figure(width: float, height: float, title: str, *, equal: bool = False) -> Figure:
-    """Empty figure with a title, in inches; `equal` packs panels that have equal scales on both axes."""
-    figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal))
-    figure.suptitle(title, fontsize=LETTER + 2.0, color=LIGHT.text)
+def new_figure(style: FigureStyle, height: float, title: str, *, equal: bool = False) -> Figure:
+    """Empty figure, `height` cm high; `equal` packs panels that have equal scales on both axes."""
+    layout = ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal)
+    figure = Figure(figsize=(style.inches, height / CM_PER_INCH), dpi=style.dpi, layout=layout)
+    if style.titles:
+        figure.suptitle(title, fontsize=style.title_size, color=LIGHT.text)
     return figure
 
 
-def label_axes(axes: Axes, across: str, up: str) -> None:
+def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle) -> None:
+    """Write lines below all panels, broken so that they fit in the width of the figure."""
+    letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / style.small_size)
+    text = "\n".join(fill(line, letters) for line in lines)
+    figure.supxlabel(text, fontsize=style.small_size, color=LIGHT.text)
+
+
+def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) -> None:
     """Name both axes."""
-    axes.set_xlabel(across, fontsize=LETTER)
-    axes.set_ylabel(up, fontsize=LETTER)
+    axes.set_xlabel(across, fontsize=style.font_size)
+    axes.set_ylabel(up, fontsize=style.font_size)
 
 
-def style_axes(axes: Axes, *, grid: bool = False) -> None:
+def style_axes(axes: Axes, style: FigureStyle = SCREEN, *, grid: bool = False) -> None:
     """Thin frame, short ticks, at most five intervals between ticks on linear axes, and optionally a faint grid."""
-    axes.tick_params(direction="out", labelsize=SMALL, width=_FRAME, length=3.0, which="major")
+    axes.tick_params(direction="out", labelsize=style.small_size, width=_FRAME, length=3.0, which="major")
     axes.tick_params(direction="out", width=0.6 * _FRAME, length=1.8, which="minor")
     for spine in axes.spines.values():
         spine.set_linewidth(_FRAME)
@@ -108,9 +92,10 @@ def style_axes(axes: Axes, *, grid: bool = False) -> None:
         axes.grid(alpha=0.25, linewidth=0.5)
 
 
-def name_panel(axes: Axes, words: str) -> None:
-    """Write the title of a panel above its left end."""
-    axes.set_title(words, loc="left", fontsize=LETTER, color=LIGHT.text, pad=4.0)
+def name_panel(axes: Axes, words: str, style: FigureStyle = SCREEN) -> None:
+    """Write the title of a panel above its left end, if the figure has titles."""
+    if style.titles:
+        axes.set_title(words, loc="left", fontsize=style.font_size, color=LIGHT.text, pad=4.0)
 
 
 def name_panels(panels: Iterable[Axes], words: Sequence[str]) -> None:
@@ -124,12 +109,13 @@ def patches(entries: Iterable[Entry]) -> list[Artist]:
     return [Patch(facecolor=entry.colour, edgecolor=PATCH_EDGE, linewidth=0.5, label=entry.label) for entry in entries]
 
 
-def add_figure_legend(figure: Figure, handles: Sequence[Artist]) -> None:
-    """Add one legend for the whole figure, below all panels."""
-    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=len(handles), **_legend_style()))
+def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureStyle = SCREEN, columns: int | None = None) -> None:
+    """Add one legend for the whole figure, below all panels; by default in one row."""
+    columns = columns or len(handles)
+    _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, **_legend_style(style)))
 
 
-def add_legend_below(axes: Axes, handles: Sequence[Artist], offset: float, width: float) -> Legend:
+def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, float], width: float, style: FigureStyle) -> None:
     """Add a legend below a panel, in as many columns as fit.
 
     Parameters
@@ -138,23 +124,25 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], offset: float, width
         The panel.
     handles
         Of the entries.
-    offset
-        From the lower edge of the panel to the legend, in points.
+    place
+        Of its upper left corner, from the lower left corner of the panel to the right and up, in points.
     width
-        Available, in points.
+        Available, in points; longer entries are broken into lines.
+    style
+        Of the figure.
     """
-    place: dict[str, Any] = {
-        "loc": "upper left", "bbox_to_anchor": (0.0, -offset / size_in_points(axes)[1]), "borderaxespad": 0.0, "borderpad": 0.0,
-    }  # fmt: skip
-    figure, columns = figure_of(axes), 1
-    for _ in range(2):
-        legend = axes.legend(handles=list(handles), ncols=columns, **place, **_legend_style())
-        set_font(figure)
-        spacing = legend.columnspacing * LETTER
-        widest = legend.get_window_extent().width * POINTS_PER_INCH / figure.dpi
-        columns = max(1, min(len(handles), int((width + spacing) // (widest + spacing))))
+    corner = place[0] / size_in_points(axes)[0], place[1] / size_in_points(axes)[1]
+    options = {"loc": "upper left", "bbox_to_anchor": corner, "borderaxespad": 0.0, "borderpad": 0.0, **_legend_style(style)}
+    names = [str(handle.get_label()) for handle in handles]
+    for columns in range(min(len(names), _MOST_COLUMNS), 0, -1):
+        legend = axes.legend(list(handles), names, ncols=columns, **options)
+        share = width * figure_of(axes).dpi / POINTS_PER_INCH / legend.get_window_extent().width
+        if share >= 1.0:
+            break
+    else:
+        names = [fill(name, max(1, int(share * max(map(len, names))))) for name in names]
+        legend = axes.legend(list(handles), names, **options)
     _colour_text(legend)
-    return legend
 
 
 def size_in_points(axes: Axes) -> tuple[float, float]:
@@ -163,21 +151,22 @@ def size_in_points(axes: Axes) -> tuple[float, float]:
     return float(box.width * scale), float(box.height * scale)
 
 
-def figure_of(axes: Axes) -> Figure:
-    """Figure of a panel."""
-    figure = axes.get_figure(root=True)
+def figure_of(artist: Artist) -> Figure:
+    """Figure of a panel or a text."""
+    figure = artist.get_figure(root=True)
     assert figure is not None
     return figure
 
 
-def _legend_style() -> dict[str, Any]:
-    return {"frameon": False, "fontsize": LETTER - 1.0, "handlelength": 1.4, "handleheight": 0.9, "columnspacing": 1.3}
+def _legend_style(style: FigureStyle) -> dict[str, Any]:
+    font = {"family": _FAMILY, "size": style.font_size * 11.0 / 12.0}
+    return {"frameon": False, "prop": font, "handlelength": 1.4, "handleheight": 0.9, "columnspacing": 1.3}
 
 
-def add_panel_legend(axes: Axes, corner: Corner, columns: int = 1) -> None:
+def add_panel_legend(axes: Axes, corner: Corner, style: FigureStyle = SCREEN, columns: int = 1) -> None:
     """Add a legend inside a panel."""
     legend = axes.legend(
-        loc=corner, ncols=columns, fontsize=SMALL, framealpha=0.85, edgecolor="none",
+        loc=corner, ncols=columns, fontsize=style.small_size, framealpha=0.85, edgecolor="none",
         handlelength=1.7, labelspacing=0.3, columnspacing=1.2, borderaxespad=0.4,
     )  # fmt: skip
     _colour_text(legend)
@@ -202,32 +191,49 @@ def software() -> str:
     return f"escape-explorer {metadata.version('escape-explorer')}"
 
 
-def save_figure(figure: Figure, ending: str, about: Mapping[str, str | datetime | None], *, crop: bool = False) -> bytes:
+def save_figure(figure: Figure, format: FigureFormat, facts: Mapping[str, str]) -> bytes:
     """Save a figure to bytes; equal figures give equal bytes.
 
     Parameters
     ----------
     figure
         What to save.
-    ending
-        ``png`` or ``pdf``.
-    about
-        Metadata of the file. A date of None is left out.
-    crop
-        Whether the file shows exactly what was drawn, in whole pixels, instead of the figure's own size.
+    format
+        Of the file.
+    facts
+        What the metadata of the file say about the figure.
+
+    Raises
+    ------
+    ValueError
+        If a PNG file would have more than `MOST_PIXELS`.
     """
+    if format is FigureFormat.PNG:
+        _check_pixels(figure)
     set_font(figure)
-    box = _whole_pixels(figure) if crop else None
     file = BytesIO()
-    figure.savefig(file, format=ending, dpi=figure.dpi if crop else RESOLUTION, metadata=dict(about), bbox_inches=box)
+    with rc_context(_FILE_OPTIONS):
+        figure.savefig(file, format=format, dpi=figure.dpi, metadata=_metadata(format, facts))
     # Freeze the layout for the next file.
     figure.set_layout_engine("none")
     return file.getvalue()
 
 
-def _whole_pixels(figure: Figure) -> Bbox:
-    """Bounding box of everything drawn, in inches, with a margin, extended to whole pixels."""
-    box, dpi = figure.get_tightbbox(), figure.dpi
-    low = [math.floor(edge * dpi) - _MARGIN for edge in (box.x0, box.y0)]
-    high = [math.ceil(edge * dpi) + _MARGIN for edge in (box.x1, box.y1)]
-    return Bbox.from_extents(*(edge / dpi for edge in (*low, *high)))
+def _check_pixels(figure: Figure) -> None:
+    width, height = figure.get_size_inches()
+    most = math.sqrt(MOST_PIXELS / (width * height))
+    if figure.dpi > most:
+        size = f"{width * CM_PER_INCH:.3g} × {height * CM_PER_INCH:.3g} cm"
+        raise ValueError(f"dpi={figure.dpi:g}: must be at most {math.floor(most)} for a figure of {size}")
+
+
+def _metadata(format: FigureFormat, facts: Mapping[str, str]) -> dict[str, str | None]:
+    """The facts in the fields that a format has; without the date."""
+    sentence = ", ".join(f"{name}: {value}" for name, value in facts.items())
+    match format:
+        case FigureFormat.PNG:
+            return {"Software": software(), **facts}
+        case FigureFormat.SVG:
+            return {"Creator": software(), "Description": sentence, "Date": None}
+        case FigureFormat.PDF:
+            return {"Creator": software(), "Producer": software(), "Subject": sentence, "CreationDate": None}

@@ -12,16 +12,21 @@ from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
 
+# Images of a map without layers.
+_DRAWN = ("fate", "crossing_class", "crossings", "escape_time")
+
 _OUTCOME_CODES = {fate: code for code, fate in enumerate(OUTCOMES)}
 _FIRST_CLASS = len(OUTCOMES)
+_UNDECIDED = _OUTCOME_CODES[Fate.NOT_COMPUTED]
+_WITHOUT_ORBIT = (_OUTCOME_CODES[Fate.OUTSIDE], _OUTCOME_CODES[Fate.FORBIDDEN])
 _LEAST_CROSSINGS = np.array([least for least, _ in CROSSING_CLASSES])
 
 
 def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[Any]]:
     """One image per column, in the smallest integer types, and the position of the images in the plane.
 
-    Coarse frames have coarse images. The column of passages is a single pixel: it needs a follow-up analysis
-    (`passage_column`). The column of characters is one too, unless `characters` is true.
+    Coarse frames have coarse images. The columns of passages and of differences are a single pixel: they need
+    another map (`passage_column`, `difference_column`). The column of characters is one too, unless `characters` is true.
     """
     images, window = frame.thinned()
     fate, crossings = images["fate"], images["crossings"]
@@ -36,6 +41,7 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
         "escape_time": [images["escape_time"].astype(np.float32)],
         "character": character,
         "passage": NO_LAYER,
+        "difference": NO_LAYER,
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
@@ -45,12 +51,81 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
     }
 
 
+def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
+    """Columns of an unfinished frame over those of an earlier map of the same starts, whose pixels stay until finer ones come.
+
+    Parameters
+    ----------
+    columns, earlier
+        Columns of `map_columns`; their windows may differ.
+    sides
+        (columns, rows) of the finished map, which the images do not exceed; else they have the finer pixels of both.
+    """
+    if columns["complete"][0]:
+        return columns
+    pixels, earlier_pixels = _pixel_sides(columns), _pixel_sides(earlier)
+    finer = earlier_pixels[0] < pixels[0]
+    lengths = columns["dw"][0], columns["dh"][0]
+    shown = earlier_pixels if finer else pixels
+    across, up = (min(max(round(length / pixel), 1), side) for length, pixel, side in zip(lengths, shown, sides, strict=True))
+    x = columns["x"][0] + columns["dw"][0] * (np.arange(across) + 0.5) / across
+    y = columns["y"][0] + columns["dh"][0] * (np.arange(up) + 0.5) / up
+    (here, _), (there, inside) = _pixels_at(columns, x, y), _pixels_at(earlier, x, y)
+    keep = inside & (earlier["fate"][0][there] != _UNDECIDED) & (finer | (columns["fate"][0][here] == _UNDECIDED))
+    drawn = {name: [np.where(keep, earlier[name][0][there], columns[name][0][here])] for name in _DRAWN}
+    return columns | drawn
+
+
+def _pixel_sides(columns: dict[str, list[Any]]) -> tuple[float, float]:
+    """Width and height of the pixels of a map's columns."""
+    rows, across = columns["fate"][0].shape
+    return columns["dw"][0] / across, columns["dh"][0] / rows
+
+
+def _pixels_at(columns: dict[str, list[Any]], x: np.ndarray, y: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Index arrays (rows, columns) of the pixels at x (columns,) and y (rows,), and whether these points lie in the images."""
+    rows, across = columns["fate"][0].shape
+    column = np.floor((x - columns["x"][0]) / columns["dw"][0] * across).astype(int)
+    row = np.floor((y - columns["y"][0]) / columns["dh"][0] * rows).astype(int)
+    inside = ((row >= 0) & (row < rows))[:, None] & ((column >= 0) & (column < across))
+    return np.ix_(row.clip(0, rows - 1), column.clip(0, across - 1)), inside
+
+
+def difference_column(columns: dict[str, list[Any]], other: dict[str, list[Any]]) -> dict[str, list[Any]]:
+    """Column of the pixels whose orbits end otherwise in another view of a plane with the same axes.
+
+    Parameters
+    ----------
+    columns
+        Columns of `map_columns`, of which the result is another one.
+    other
+        Those of the other view; its window and the number of its pixels may differ.
+    """
+    (rows, across), (width, height) = columns["fate"][0].shape, _pixel_sides(columns)
+    x, y = columns["x"][0] + width * (np.arange(across) + 0.5), columns["y"][0] + height * (np.arange(rows) + 0.5)
+    there, inside = _pixels_at(other, x, y)
+    return {"difference": [_difference_codes(columns["fate"][0], np.where(inside, other["fate"][0][there], _UNDECIDED))]}
+
+
+def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Codes of `DIFFERENCES` for two arrays of pixel codes of the fates; pixels without an orbit in both keep their code."""
+    lack_one, lack_other = np.isin(one, _WITHOUT_ORBIT), np.isin(other, _WITHOUT_ORBIT)
+    classes = np.where(lack_one != lack_other, 2, np.where(one != other, 1, 0))
+    codes = np.where(lack_one & lack_other, one, _FIRST_CLASS + classes)
+    return np.where((one == _UNDECIDED) | (other == _UNDECIDED), _UNDECIDED, codes).astype(np.uint8)
+
+
 def pixel_coding() -> dict[str, Any]:
-    """How pixels become codes, for programs that make the columns elsewhere: outcomes, first class, classes of crossings."""
+    """How pixels become codes, for programs that make the columns elsewhere.
+
+    That is the outcomes, the first class, the classes of crossings, and the codes of pixels without a decision or an orbit.
+    """
     return {
         "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
         "first": _FIRST_CLASS,
         "leastCrossings": _LEAST_CROSSINGS.tolist(),
+        "undecided": _UNDECIDED,
+        "withoutOrbit": list(_WITHOUT_ORBIT),
     }
 
 
@@ -88,13 +163,3 @@ def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) 
         if not (bounded_too and outcome is Fate.BOUNDED):
             codes[fate == outcome] = code
     return codes
-
-
-def longest_typical_time(frame: EscapeMap) -> float:
-    """99th percentile of the escape times, at least 10, rounded up to 1, 2 or 5 · 10^k; 100 if nothing escapes."""
-    times = frame.escape_time[frame.fate > Fate.BOUNDED]
-    if times.size == 0:
-        return 100.0
-    high = max(float(np.quantile(times, 0.99)), 10.0)
-    power = 10.0 ** np.floor(np.log10(high))
-    return float(power * next(step for step in (1.0, 2.0, 5.0, 10.0) if step * power >= high))

@@ -23,6 +23,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 from engine import (
     CASES,
@@ -36,43 +38,41 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from engine.service import common_energy
+from plots.axis_labels import label_axis
 from plots.figure_axes import (
-    LETTER,
-    POINTS_PER_INCH,
-    SMALL,
     add_legend_below,
     figure_of,
     label_axes,
-    label_axis,
     name_panel,
     patches,
     set_font,
     size_in_points,
     style_axes,
 )
-from plots.image_columns import longest_typical_time
+from plots.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 from plots.manifold_strokes import Stroke, manifold_strokes
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.map_images import (
     CROSSED_BY_MANIFOLDS,
     DOUBTED,
-    LARGEST_PICTURE,
-    SHORTEST_TIME,
-    SMALLEST_PICTURE,
     TITLES,
     picture_pixels,
 )
 from plots.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
+from plots.time_scale import TimeScale, fitted_scale
 
-# Letters have a fixed size in points. Pixels per inch grow with the side of a map, so that letters grow with it, and are never
-# fewer than these, so that letters stay legible.
-_MAP_INCHES, _LEAST_DPI = 7.0, 80.0
-# Room for the longest entry of a legend, in inches.
-_LEGEND_INCHES = 2.6
-_PANEL_GAP = 0.25
-# From the lower edge of the map, in points: below the tick labels and the name of the axis; and below a colour bar there, too.
-_BELOW_AXIS, _BELOW_BAR, _BAR_HEIGHT = 44.0, 76.0, 9.0
-_PROVENANCE_LETTER = 9.0
+# In units of the font size: space around the figure and between panels; from the lower edge of a map to what is below the name of
+# its axis; height of a colour bar, and from its upper edge to what is below its labels.
+_MARGIN, _GAP = 0.5, 1.0
+_BELOW_AXIS, _BAR_HEIGHT, _BELOW_BAR = 3.7, 0.75, 2.7
+# In a line of a title, about.
+_LETTERS_PER_EM = 2.3
+# Of the width of a panel, about what its labels leave.
+_MAP_SHARE = 0.8
+# Of tick labels, in units of their font size.
+_LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
+# Least distance of the times at a colour bar, as a share of it.
+_BETWEEN_TIMES = 0.15
 _EXIT_DASHES = (0, (2.0, 1.5))
 # Of the widths of manifolds on the page, in a file.
 _LINE_SCALE = 0.6
@@ -89,13 +89,13 @@ def draw_map_figure(
     frame: EscapeMap,
     pictures: Sequence[str],
     palette: Palette,
-    side: int,
+    style: FigureStyle,
     *,
     analyses: MapAnalyses = NO_ANALYSES,
     starts: Sequence[tuple[float, float]] = (),
-    longest: float | None = None,
+    times: TimeScale | None = None,
 ) -> Figure:
-    """Draw pictures of a map side by side, each with title, axes, curves, legend and provenance; save with ``crop=True``.
+    """Draw pictures of a map in rows, each with title, axes, curves and legend; the provenance is below them.
 
     Parameters
     ----------
@@ -105,37 +105,110 @@ def draw_map_figure(
         Some of `TITLES`.
     palette
         Colours.
-    side
-        Of each map, 100 to 4000 pixels; letters and lines grow with it.
+    style
+        Width of the figure, resolution, letters and titles.
     analyses
         Results of follow-up analyses: regularity, origins, doubtful pixels and stable manifolds.
     starts
         (x, ordinate) of each chosen orbit, numbered from 1; those outside the window keep their number.
-    longest
-        Upper end of the scale of escape times; None for `longest_typical_time`.
+    times
+        Scale of the escape times; None for `fitted_scale`.
 
     Raises
     ------
     ValueError
-        If no picture is given, or a picture or the side is invalid.
+        If no picture is given, or a picture is invalid.
     """
-    if not SMALLEST_PICTURE <= side <= LARGEST_PICTURE:
-        raise ValueError(f"side={side}: must be from {SMALLEST_PICTURE} to {LARGEST_PICTURE} pixels")
     if not pictures:
         raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
-    dpi = max(_LEAST_DPI, side / _MAP_INCHES)
-    longest = longest or longest_typical_time(frame)
+    times = times or fitted_scale(frame)
     # In a figure of one square inch, positions in shares of the figure are inches.
-    figure = Figure(figsize=(1.0, 1.0), dpi=dpi)
-    left = 0.0
-    for picture in pictures:
-        axes = figure.add_axes((left, 0.0, side / dpi, side / dpi))
-        draw_picture(axes, frame, picture, palette, analyses, longest)
-        mark_starts(axes, starts, palette, frame.spec.find_window())
-        _explain_picture(axes, frame, picture, palette, analyses, longest)
-        width = max(side / dpi, _LEGEND_INCHES) + _width_of_labels(axes) + _PANEL_GAP
-        left += round(width * dpi) / dpi
+    figure = Figure(figsize=(1.0, 1.0), dpi=style.dpi)
+    em, columns = style.font_size / POINTS_PER_INCH, style.columns(len(pictures))
+    width = (style.inches - (2 * _MARGIN + (columns - 1) * _GAP) * em) / columns
+    panels = [figure.add_axes((0.0, 0.0, _MAP_SHARE * width, _MAP_SHARE * width), label=picture) for picture in pictures]
+    for axes, picture in zip(panels, pictures, strict=True):
+        draw_picture(axes, frame, picture, palette, analyses, times, style)
+        mark_starts(axes, starts, palette, frame.spec.find_window(), style)
+    left = _set_side(panels, width)
+    for axes, picture in zip(panels, pictures, strict=True):
+        _explain_picture(axes, frame, picture, palette, analyses, times, (left, width), style)
+    text = _write_provenance(figure, provenance_line(frame), style) if style.titles else None
+    set_font(figure)
+    places, height = _place_panels(panels, columns, em, (left, width), _height(text))
+    _resize(figure, panels, places, (style.inches, height))
+    if text is not None:
+        text.set_position((_MARGIN * em / style.inches, _MARGIN * em / height))
     return figure
+
+
+def _set_side(panels: Sequence[Axes], width: float) -> float:
+    """Make maps as large as their labels leave in a width, in whole pixels; return the inches that labels take on the left."""
+    dpi = figure_of(panels[0]).dpi
+    set_font(figure_of(panels[0]))
+    outer, inner = _box(panels[0]), panels[0].get_window_extent()
+    left = float(math.ceil(inner.x0 - outer.x0) / dpi)
+    side = math.floor((width - left) * dpi - max(outer.x1 - inner.x1, 0.0)) / dpi
+    for axes in panels:
+        axes.set_position((0.0, 0.0, side, side))
+    return left
+
+
+def _write_provenance(figure: Figure, line: str, style: FigureStyle) -> Text:
+    """Write a line in as many lines as the width of the figure needs."""
+    text = figure.text(0.0, 0.0, line, fontsize=style.smallest_size, color=LIGHT.text, va="bottom")
+    set_font(figure)
+    width = (style.inches - 2.0 * _MARGIN * style.font_size / POINTS_PER_INCH) * figure.dpi
+    text.set_text(textwrap.fill(line, int(_FILLED * len(line) * width / text.get_window_extent().width), break_on_hyphens=False))
+    return text
+
+
+def _height(text: Text | None) -> float:
+    """Of a text, in inches."""
+    return 0.0 if text is None else float(text.get_window_extent().height) / figure_of(text).dpi
+
+
+def _place_panels(
+    panels: Sequence[Axes], columns: int, em: float, span: tuple[float, float], below: float
+) -> tuple[list[tuple[float, float]], float]:
+    """The lower left corner of each map, from the upper left corner of the figure, and the height of the figure, in inches.
+
+    Parameters
+    ----------
+    panels
+        With their legends, all of the same size.
+    columns
+        In each row.
+    em
+        Font size in inches.
+    span
+        Width of the labels on the left of a map, and of a map with its labels.
+    below
+        Height to leave below the last row.
+    """
+    dpi, boxes = figure_of(panels[0]).dpi, [_box(axes) for axes in panels]
+    depth, places = _MARGIN * em, []
+    for first in range(0, len(boxes), columns):
+        row = boxes[first : first + columns]
+        depth = math.ceil(depth * dpi + max(box.y1 for box in row)) / dpi
+        places += [(math.ceil((_MARGIN * em + k * (span[1] + _GAP * em) + span[0]) * dpi) / dpi, depth) for k in range(len(row))]
+        depth += _GAP * em - min(box.y0 for box in row) / dpi
+    return places, math.ceil((depth + below + _MARGIN * em) * dpi) / dpi
+
+
+def _resize(figure: Figure, panels: Sequence[Axes], places: Sequence[tuple[float, float]], size: tuple[float, float]) -> None:
+    """Set the size of a figure of one square inch, whose panels keep theirs."""
+    (width, height), side = size, panels[0].get_position().width
+    figure.set_size_inches(width, height)
+    for axes, (x, depth) in zip(panels, places, strict=True):
+        axes.set_position((x / width, 1.0 - depth / height, side / width, side / height))
+
+
+def _box(axes: Axes) -> Bbox:
+    """Bounding box of a panel with its labels, title and legend, in pixels."""
+    box = axes.get_tightbbox()
+    assert box is not None
+    return box
 
 
 def draw_picture(
@@ -144,47 +217,44 @@ def draw_picture(
     picture: str,
     palette: Palette,
     analyses: MapAnalyses = NO_ANALYSES,
-    longest: float | None = None,
+    times: TimeScale | None = None,
+    style: FigureStyle = SCREEN,
 ) -> None:
-    """Title, pixels, curves and axes of one of `TITLES`; `longest` as for `picture_pixels`."""
+    """Title, pixels, curves and axes of one of `TITLES`; `times` as for `picture_pixels`."""
     spec, window = frame.spec, frame.spec.find_window()
-    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, longest), window, window)
+    draw_pixels(axes, picture_pixels(frame, picture, palette, analyses, times), window, window)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, window, palette.channels)
     if picture in CROSSED_BY_MANIFOLDS and analyses.manifolds is not None:
         draw_manifolds(axes, analyses.manifolds, window, palette)
-    show_window(axes, window, *spec.plane.axis_names)
-    name_panel(axes, TITLES[picture])
+    show_window(axes, window, *spec.plane.axis_symbols, style)
+    letters = int(_LETTERS_PER_EM * size_in_points(axes)[0] / style.font_size)
+    name_panel(axes, textwrap.fill(TITLES[picture], max(1, letters)), style)
 
 
-def _explain_picture(axes: Axes, frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses, longest: float) -> None:
-    """Colour bar, legend and provenance below a map."""
-    figure, offset = figure_of(axes), _BELOW_AXIS
-    map_width, map_height = size_in_points(axes)
+def _explain_picture(
+    axes: Axes,
+    frame: EscapeMap,
+    picture: str,
+    palette: Palette,
+    analyses: MapAnalyses,
+    times: TimeScale,
+    span: tuple[float, float],
+    style: FigureStyle,
+) -> None:
+    """Colour bar and legend below a map; `span` as for `_place_panels`."""
+    side, depth = size_in_points(axes)[1], _BELOW_AXIS * style.font_size
     if picture == "times":
-        bar = axes.inset_axes((0.0, -(offset + _BAR_HEIGHT) / map_height, 1.0, _BAR_HEIGHT / map_height))
-        add_time_bar(figure, longest, palette, cax=bar, orientation="horizontal")
-        offset = _BELOW_BAR
-    width = max(map_width, _LEGEND_INCHES * POINTS_PER_INCH)
-    handles = [*patches(_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
+        high = _BAR_HEIGHT * style.font_size
+        bar = axes.inset_axes((0.0, -(depth + high) / side, 1.0, high / side))
+        add_time_bar(figure_of(axes), times, palette, style, cax=bar, orientation="horizontal")
+        bar.get_xticklabels()[-1].set_horizontalalignment("right")
+        depth += high + _BELOW_BAR * style.font_size
+    handles = [*patches(picture_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
     # Matplotlib names curves without a label "_child…".
     handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
     handles += _manifold_handles(picture, palette, analyses)
-    legend = add_legend_below(axes, handles, offset, width)
-    below = axes.annotate(
-        provenance_line(frame), (0.0, 0.0), (0.0, -8.0), xycoords=legend, textcoords="offset points", va="top",
-        fontsize=_PROVENANCE_LETTER, color=LIGHT.text, annotation_clip=False,
-    )  # fmt: skip
-    set_font(figure)
-    share = width * figure.dpi / POINTS_PER_INCH / below.get_window_extent().width
-    below.set_text(textwrap.fill(below.get_text(), int(_FILLED * share * len(below.get_text())), break_on_hyphens=False))
-
-
-def _width_of_labels(axes: Axes) -> float:
-    """Width of the tick labels and the name of the upright axis, in inches."""
-    figure = figure_of(axes)
-    set_font(figure)
-    labels = axes.yaxis.get_tightbbox()
-    return float(axes.get_window_extent().x0 - labels.x0) / figure.dpi if labels is not None else 0.0
+    left, width = (inches * POINTS_PER_INCH for inches in span)
+    add_legend_below(axes, handles, (-left, -depth), width, style)
 
 
 def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown: Window) -> None:
@@ -282,45 +352,59 @@ def draw_curve(
     )
 
 
-def mark_starts(axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window) -> None:
+def mark_starts(
+    axes: Axes, starts: Sequence[tuple[float, float]], palette: Palette, shown: Window, style: FigureStyle = SCREEN
+) -> None:
     """Mark (x, ordinate) of starts by numbered crosses in the colours of their orbits; starts outside keep their number."""
+    scale = style.font_size / SCREEN.font_size
     for number, start in enumerate(starts, 1):
         x, y = _shares(shown, np.array(start))
         if not (0.0 <= x <= 1.0 and 0.0 <= y <= 1.0):
             continue
         # From back to front: light on a dark picture, dark on a light one, and the colour of the orbit.
         for colour, width in ((LIGHT.halo, 7.0), (MARK_EDGE, 4.8), (palette.orbits[(number - 1) % len(palette.orbits)], 2.4)):
-            axes.plot(x, y, "+", markersize=9.6 + width, markeredgewidth=width, color=colour, zorder=3)
+            size: dict[str, Any] = {"markersize": scale * (9.6 + width), "markeredgewidth": scale * width}
+            axes.plot(x, y, "+", color=colour, zorder=3, **size)
         right, high = x > 1.0 - _EDGE, y > 1.0 - _EDGE
+        aside = (-6.0 * scale if right else 6.0 * scale, -3.6 * scale if high else 3.6 * scale)
         axes.annotate(
-            str(number), (x, y), (-6.0 if right else 6.0, -3.6 if high else 3.6), textcoords="offset points",
-            ha="right" if right else "left", va="top" if high else "bottom", fontsize=LETTER, color=LIGHT.text, zorder=4,
+            str(number), (x, y), aside, textcoords="offset points",
+            ha="right" if right else "left", va="top" if high else "bottom", fontsize=style.font_size, color=LIGHT.text, zorder=4,
             path_effects=[withStroke(linewidth=4.0, foreground=LIGHT.halo)],
         )  # fmt: skip
 
 
-def show_window(axes: Axes, shown: Window, across: str, up: str, *, equal: bool = False) -> None:
+def show_window(axes: Axes, shown: Window, across: str, up: str, style: FigureStyle = SCREEN, *, equal: bool = False) -> None:
     """Limit, tick and name axes that show a window; `equal` gives both axes the same scale."""
-    style_axes(axes)
+    style_axes(axes, style)
     x, y = label_axis(across, shown.x_low, shown.x_high), label_axis(up, shown.ordinate_low, shown.ordinate_high)
-    axes.set_xticks(*zip(*x.ticks, strict=True))
+    axes.set_xticks(*zip(*_spaced(x.ticks, size_in_points(axes)[0] / style.small_size), strict=True))
     axes.set_yticks(*zip(*y.ticks, strict=True))
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)
     if equal:
         axes.set_box_aspect((shown.ordinate_high - shown.ordinate_low) / (shown.x_high - shown.x_low))
-    label_axes(axes, x.name, y.name)
+    label_axes(axes, x.name, y.name, style)
 
 
-def add_time_bar(figure: Figure, longest: float, palette: Palette, **place: Any) -> Colorbar:
+def _spaced(ticks: list[tuple[float, str]], width: float) -> list[tuple[float, str]]:
+    """Every tick, or one in several, so that the labels do not touch in a width, in units of their font size."""
+    needed = sum(_LETTER_WIDTH * len(label) + _BETWEEN_LABELS for _, label in ticks)
+    return ticks[:: max(1, math.ceil(needed / width))]
+
+
+def add_time_bar(figure: Figure, times: TimeScale, palette: Palette, style: FigureStyle = SCREEN, **place: Any) -> Colorbar:
     """Add a logarithmic colour bar of escape times; `place` as for `matplotlib.figure.Figure.colorbar`."""
-    scale = ScalarMappable(LogNorm(SHORTEST_TIME, longest), ListedColormap(list(palette.escape_time)))
+    scale = ScalarMappable(LogNorm(times.low, times.high), ListedColormap(list(palette.escape_time)))
     bar = figure.colorbar(scale, **place)
-    powers = [10.0**k for k in range(math.floor(math.log10(longest)) + 1)]
-    times = list(dict.fromkeys([*powers, longest]))
-    # The last colour stands for all longer times.
-    bar.set_ticks(times, labels=[f"{'≥ ' if time == longest else ''}{time:.0f}" for time in times])
-    bar.ax.tick_params(labelsize=SMALL)
+    powers = [10.0**k for k in range(math.ceil(math.log10(times.low)), math.floor(math.log10(times.high)) + 1)]
+    room = (times.high / times.low) ** _BETWEEN_TIMES
+    ticks = [times.low, *(power for power in powers if times.low * room < power < times.high / room), times.high]
+    # The colours at the ends stand for all shorter and all longer times.
+    signs = {times.low: "≤ ", times.high: "≥ "}
+    bar.set_ticks(ticks, labels=[f"{signs.get(tick, '')}{tick:g}" for tick in ticks])
+    bar.ax.minorticks_off()
+    bar.ax.tick_params(labelsize=style.small_size)
     return bar
 
 
@@ -336,7 +420,7 @@ def _corners(window: Window) -> np.ndarray:
     return np.array([[window.x_low, window.ordinate_low], [window.x_high, window.ordinate_high]])
 
 
-def _entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> list[Entry]:
+def picture_entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses) -> list[Entry]:
     """Legend of the colours: all classes of the picture, and the outcomes that occur."""
     judged = analyses.regularity is not None and analyses.regularity.complete
     occurring = set(np.unique(frame.fate).tolist())
@@ -344,7 +428,7 @@ def _entries(frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnal
     if picture == "characters":
         characters = palette.character_entries[:-1] if judged else palette.character_entries
         return [*characters, *(entry for entry in outcomes if entry != palette.outcomes[Fate.BOUNDED])]
-    channels = frame.spec.potential.channels
+    channels = frame.spec.channels
     if picture == "origins":
         return [*palette.passage_entries(channels), *outcomes]
     classes = {"basins": palette.channel_entries(channels), "crossings": palette.crossing_entries}
@@ -357,7 +441,7 @@ def provenance_line(frame: EscapeMap) -> str:
     x_low, x_high, low, high = (repr(float(edge)) for edge in facts["window"])
     name, (columns, rows) = facts["potential"], facts["resolution"]
     energy = "" if frame.spec.common_energy is None else f"h = {facts['energy']!r}, "
-    abscissa, ordinate = plane.axis_names
+    abscissa, ordinate = plane.axis_symbols
     return (
         f"{'Case' if name in CASES else 'Potential'} {name}, {energy}plane {plane.title}, {abscissa} from {x_low} to {x_high}, "
         f"{ordinate} from {low} to {high}, {columns} × {rows} starts, t_max = {facts['t_max']:g}, "

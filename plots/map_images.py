@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from engine import EscapeMap
-from plots.image_columns import character_column, doubt_tones, longest_typical_time, map_columns, passage_column
+from plots.image_columns import character_column, doubt_tones, map_columns, passage_column
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.palette import DOUBT, Palette, rgba
+from plots.time_scale import TimeScale, fitted_scale
 
 TITLES = {
     "curves": "Zero-velocity curve and exits",
@@ -21,6 +20,9 @@ TITLES = {
 }
 """Titles of all pictures."""
 
+COMPARISON_TITLES = {"compared": "The other view", "differences": "Where they differ"}
+"""Titles of the pictures that compare a map with that of another view."""
+
 PAINTED = {
     "curves": ("fate", "region_colours"),
     "basins": ("fate", "fate_colours"),
@@ -28,6 +30,8 @@ PAINTED = {
     "crossings": ("crossing_class", "crossing_colours"),
     "characters": ("character", "character_colours"),
     "origins": ("passage", "passage_colours"),
+    "compared": ("fate", "fate_colours"),
+    "differences": ("difference", "difference_colours"),
 }
 """For each picture its column of pixel codes and the attribute of `Palette` with the colours of the codes."""
 
@@ -40,15 +44,9 @@ DOUBTED = ("basins", "crossings")
 CROSSED_BY_MANIFOLDS = ("curves", "basins", "crossings")
 """Pictures in which stable manifolds are drawn."""
 
-SHORTEST_TIME = 1.0
-"""Lower end of the logarithmic scale of escape times."""
-
-SMALLEST_PICTURE, LARGEST_PICTURE = 100, 4000
-"""Sides in pixels that a map in a picture file may have."""
-
 
 def picture_pixels(
-    frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses = NO_ANALYSES, longest: float | None = None
+    frame: EscapeMap, picture: str, palette: Palette, analyses: MapAnalyses = NO_ANALYSES, times: TimeScale | None = None
 ) -> np.ndarray:
     """Pixels of a picture without axes and curves.
 
@@ -62,8 +60,8 @@ def picture_pixels(
         Colours.
     analyses
         Results of follow-up analyses: regularity, origins and doubtful pixels.
-    longest
-        Upper end of the scale of escape times; None for `longest_typical_time`.
+    times
+        Scale of the escape times; None for `fitted_scale`.
 
     Returns
     -------
@@ -85,20 +83,13 @@ def picture_pixels(
     column, colours = PAINTED[picture]
     pixels = rgba(getattr(palette, colours))[columns[column][0]]
     if picture == "times":
-        times = columns["escape_time"][0]
-        escaped = np.isfinite(times)
-        pixels[escaped] = time_colours(times[escaped], longest or longest_typical_time(frame), palette)
+        shown = columns["escape_time"][0]
+        escaped = np.isfinite(shown)
+        scale = times or fitted_scale(frame)
+        pixels[escaped] = rgba(palette.escape_time)[scale.classes(shown[escaped], len(palette.escape_time))]
     if analyses.trust is not None and picture in DOUBTED:
         tones = doubt_tones(analyses.trust)
         pixels[tones > 0] = rgba(DOUBT)[tones[tones > 0] - 1]
     rows, wide = frame.fate.shape
     whole: np.ndarray = pixels.repeat(frame.stride, axis=0).repeat(frame.stride, axis=1)[:rows, :wide]
     return np.ascontiguousarray(whole[::-1])
-
-
-def time_colours(times: np.ndarray, longest: float, palette: Palette) -> np.ndarray:
-    """(n, 4) colours of escape times, on a logarithmic scale from `SHORTEST_TIME` to `longest`."""
-    colours = rgba(palette.escape_time)
-    place = np.log(np.clip(times, SHORTEST_TIME, longest) / SHORTEST_TIME) / math.log(longest / SHORTEST_TIME) * len(colours)
-    chosen: np.ndarray = colours[np.minimum(place.astype(int), len(colours) - 1)]
-    return chosen

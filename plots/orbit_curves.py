@@ -1,4 +1,4 @@
-"""Orbits reduced for the browser: long paths as images, histories as envelopes, and a moving point with its trail."""
+"""Orbits reduced for the browser: long paths as images, their histories, and a moving point with its trail."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ import numpy as np
 
 from engine import Orbit, Potential, Window, default_window, find_section_crossings
 from engine.service import SPACE
-
-History = tuple[np.ndarray, np.ndarray]
-"""Times and values."""
+from plots.histories import History, reduce_history
 
 LEAST_SALI = 1e-17
 """Lower end of the logarithmic axis of SALI."""
@@ -24,8 +22,6 @@ MOST_LINE_POINTS = 20_000
 TRAIL = 25.0
 """Length of the trail behind the moving point in time, about four periods of the well."""
 
-# Bins of a history; each keeps its smallest and its largest value.
-_BINS = 1000
 # Twice the pixels of the plot, for high-density screens.
 _SHADED_PIXELS = 600
 _FAINTEST = 50
@@ -42,7 +38,7 @@ class OrbitCurves:
     window
         Window of the (x, y) plane that contains the interior at its energy.
     sali, exponent, r2
-        (t, value) envelopes of its histories.
+        Its histories, from the first sample after t = 0 on.
     section
         (n, 2) x and px of its upward crossings of y = 0.
     visits
@@ -107,15 +103,14 @@ def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurve
 
 
 def _histories(orbit: Orbit, part: slice) -> tuple[History, History, History]:
-    """Envelopes of SALI, of the Lyapunov exponent and of R² over some samples; the first two begin after t = 0."""
-    t = orbit.t[part]
-    later = slice(int(t.size > 0 and t[0] == 0.0), None)
-    sali = np.maximum(orbit.sali[part], LEAST_SALI)[later]
-    exponent = np.maximum(orbit.lyapunov_exponent[part], LEAST_EXPONENT)[later]
+    """SALI, the Lyapunov exponent and R² over some samples, from the first one after t = 0 on."""
+    later = slice(max(part.start or 0, int(orbit.t[0] == 0.0)), part.stop)
+    sali = np.maximum(orbit.sali[later], LEAST_SALI)
+    exponent = np.maximum(orbit.lyapunov_exponent[later], LEAST_EXPONENT)
     return (
-        envelope(t[later], sali, logarithmic=True),
-        envelope(t[later], exponent, logarithmic=True),
-        envelope(t, orbit.r2[part], logarithmic=False),
+        reduce_history(orbit.t[later], sali, logarithmic=True),
+        reduce_history(orbit.t[later], exponent, logarithmic=True),
+        reduce_history(orbit.t[later], orbit.r2[later], logarithmic=False),
     )
 
 
@@ -157,17 +152,3 @@ def moment(orbit: Orbit, t: float) -> Moment:
     first = int(np.searchsorted(orbit.t, orbit.t[last] - TRAIL))
     trail = slice(first, last + 1)
     return Moment(orbit.x[trail], orbit.y[trail])
-
-
-def envelope(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> History:
-    """Thin a history to the smallest and the largest value of each bin of time, in order of time."""
-    if t.size <= 2 * _BINS:
-        return t, values
-    scale = np.log(t) if logarithmic else t
-    edges = np.searchsorted(scale, np.linspace(scale[0], scale[-1], _BINS + 1)[:-1])
-    keep = {0, t.size - 1}
-    for begin, end in zip(edges, [*edges[1:], t.size], strict=True):
-        if end > begin:
-            keep |= {begin + int(np.argmin(values[begin:end])), begin + int(np.argmax(values[begin:end]))}
-    order = np.array(sorted(keep))
-    return t[order], values[order]

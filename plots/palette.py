@@ -42,6 +42,13 @@ CHARACTERS: dict[Regularity, str] = {
 }
 """Classes of the picture of regular and chaotic orbits."""
 
+DIFFERENCES: tuple[tuple[str, str], ...] = (
+    ("same end", "#7f7f7f30"),
+    ("other end", "#6a00f4"),
+    ("start in one view only", "#b0904aa0"),
+)
+"""(label, colour) of each class of pixels of two views."""
+
 MOST_CHANNELS = 8
 """Exit channels that have a colour."""
 
@@ -106,6 +113,11 @@ class Palette:
         return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
 
     @cached_property
+    def difference_entries(self) -> list[Entry]:
+        """Legend of the comparison of two views."""
+        return [Entry(label, colour) for label, colour in DIFFERENCES]
+
+    @cached_property
     def crossing_entries(self) -> list[Entry]:
         """Legend of the crossing classes."""
         return [Entry(label, colour) for (_, label), colour in zip(CROSSING_CLASSES, self.classes, strict=True)]
@@ -152,6 +164,11 @@ class Palette:
     def character_colours(self) -> list[str]:
         """Colours of the pixel codes of regular and chaotic orbits."""
         return [*self._outcome_colours, *(entry.colour for entry in self.character_entries)]
+
+    @cached_property
+    def difference_colours(self) -> list[str]:
+        """Colours of the pixel codes of the comparison of two views."""
+        return [*self._outcome_colours, *(entry.colour for entry in self.difference_entries)]
 
     @cached_property
     def passage_colours(self) -> list[str]:

@@ -7,21 +7,30 @@ from matplotlib.axes import Axes
 
 from engine import Potential, Window
 from engine.service import SPACE, trace_equipotentials
-from plots.palette import LIGHT
+from plots.map_figure import draw_curve, draw_limits
+from plots.palette import LIGHT, Palette
 
-# Equipotentials in units of the escape energy: dense inside the well, sparse outside.
+# Equipotentials in units of the depth of the well, from its bottom: dense inside the well, sparse outside.
 _LEVELS = (-6.0, -4.0, -2.0, -1.0, 0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.25, 1.6, 2.2, 3.0, 4.5, 6.5, 9.0)
+_INNER_LEVELS = (0.1, 0.3, 0.5, 0.7, 0.9)
 # Side of the panels in units of the side of the interior.
 _ENLARGED = 1.35
 
 
 def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
     """Draw equipotentials of a potential with exits in axes with equal scales."""
-    escape = potential.escape_energy
-    for pieces in trace_equipotentials(potential, SPACE, [escape * level for level in _LEVELS], window):
+    for pieces in trace_equipotentials(potential, SPACE, [potential.energy_at(level) for level in _LEVELS], window):
         draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
-    (critical,) = trace_equipotentials(potential, SPACE, [escape], window)
+    (critical,) = trace_equipotentials(potential, SPACE, [potential.escape_energy], window)
     draw_pieces(axes, critical, LIGHT.critical_equipotential, 1.6)
+
+
+def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, palette: Palette) -> None:
+    """Draw equipotentials, zero-velocity curve and Lyapunov orbits of an energy in shares of a window."""
+    levels = [potential.energy_at(level) for level in _INNER_LEVELS]
+    for pieces in trace_equipotentials(potential, SPACE, levels, window):
+        draw_curve(axes, pieces, window, colors=LIGHT.equipotential, linewidths=0.6)
+    draw_limits(axes, potential, SPACE, energy, window, palette.channels)
 
 
 def draw_pieces(axes: Axes, pieces: list[np.ndarray], colour: str, width: float) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+import inspect
 from functools import singledispatch
 from io import BytesIO
 from typing import Any
@@ -14,8 +15,9 @@ from matplotlib.figure import Figure
 
 from engine import (
     BirkhoffDigits,
+    Curves,
     DecayLaws,
-    EnergyCurves,
+    EscapeFlux,
     EscapeMap,
     EscapeStatistics,
     LyapunovOrbit,
@@ -28,6 +30,7 @@ from engine import (
     Separation,
     ShareFit,
     StableManifolds,
+    Trust,
     TrustMap,
     UncertaintyExponent,
     WadaTest,
@@ -39,20 +42,21 @@ from engine.service import (
     SPACE,
     RadiusEnvelope,
     SuperStickySearch,
-    format_number,
 )
-from plots.curve_figures import draw_decay_laws, draw_line, draw_shares
+from plots.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
 from plots.image_columns import passage_column
-from plots.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, show_window
+from plots.map_analyses import MapAnalyses
+from plots.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, picture_entries, show_window
 from plots.map_images import TITLES
 from plots.orbit_curves import compute_orbit_curves
 from plots.orbit_figure import draw_path, draw_r2, draw_sali
-from plots.palette import LIGHT, MEASURED, PALETTES, Entry, Palette, rgba
+from plots.palette import LIGHT, PALETTES, Entry, Palette, rgba
 from plots.potential_figure import draw_equipotentials, enlarge
 
 _INCHES, _NOTEBOOK_DPI = (4.6, 4.0), 72.0
-_BINS = 40
+# In shares of the axes: the middle of the legend of a map, below the name of its abscissa.
+_BELOW_AXES = (0.5, -0.13)
 _SIDE_BY_SIDE = "display:flex;gap:1em;flex-wrap:wrap;align-items:flex-start"
 TRUST_COLOURS = ("#ffffff", "#dfe6ee", "#7da7c9", "#d1495b", "#b0b0b0")
 """Of the codes of `Trust`."""
@@ -63,10 +67,16 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
     """Draw a result, as `engine.results.result.Result.plot` describes."""
     if palette not in PALETTES:
         raise ValueError(f"palette={palette!r}: must be one of {', '.join(PALETTES)}")
+    legal = list(inspect.signature(_draw.dispatch(type(result))).parameters)[3:]
+    if unknown := [name for name in options if name not in legal]:
+        legal_here = f"the picture of {type(result).__name__} has {', '.join(['palette', *legal])}"
+        raise TypeError(f"{unknown[0]}: no such option; {legal_here}")
     if ax is None:
         from matplotlib import pyplot
 
         _, ax = pyplot.subplots(figsize=_INCHES, layout="constrained")
+    if not isinstance(ax, Axes):
+        raise TypeError(f"ax={ax!r}: must be Matplotlib axes or None")
     _draw(result, ax, PALETTES[palette], **options)
     return ax
 
@@ -74,8 +84,8 @@ def plot_result(result: Result, ax: Axes | None = None, *, palette: str = "paper
 def to_html(result: Result) -> str:
     """What a notebook shows: the picture if there is one, the sentence that describes the result, and a table of its numbers."""
     describe = getattr(result, "describe", None)
-    numbers = result.numbers()
-    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{_shown(value)}</td></tr>" for name, value in numbers.items())
+    shown = result.shown_numbers().items()
+    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>" for name, value in shown)
     sentence = f"<p>{html.escape(describe())}</p>" if describe is not None else ""
     return (
         f"<div><strong>{type(result).__name__}</strong>{sentence}<div style='{_SIDE_BY_SIDE}'>"
@@ -92,10 +102,6 @@ def to_holoviews(result: Result) -> Any:
     table = result.to_pandas()
     index, *others = table.columns
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
-
-
-def _shown(value: Any) -> str:
-    return format_number(value) if isinstance(value, float) else html.escape(str(value))
 
 
 def _picture(result: Result) -> str:
@@ -130,7 +136,12 @@ def _panel(axes: Axes, window: Window) -> Axes:
 def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str = "basins") -> None:
     if picture not in TITLES:
         raise ValueError(f"picture={picture!r}: must be one of {', '.join(TITLES)}")
-    draw_picture(_panel(axes, result.spec.find_window()), result, picture, palette)
+    panel = _panel(axes, result.spec.find_window())
+    draw_picture(panel, result, picture, palette)
+    if entries := picture_entries(result, picture, palette, MapAnalyses()):
+        panel.legend(
+            handles=patches(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
+        )
 
 
 def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], palette: Palette) -> Axes:
@@ -140,7 +151,7 @@ def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], 
     panel = _panel(axes, window)
     draw_pixels(panel, rgba(colours)[codes][::-1], window, window)
     draw_limits(panel, spec.potential, spec.plane, spec.energy, window, palette.channels)
-    show_window(panel, window, *spec.plane.axis_names)
+    show_window(panel, window, *spec.plane.axis_symbols)
     return panel
 
 
@@ -154,7 +165,7 @@ def _draw_regularity(result: RegularityMap, axes: Axes, palette: Palette) -> Non
 @_draw.register
 def _draw_trust(result: TrustMap, axes: Axes, palette: Palette) -> None:
     panel = _draw_codes(axes, result, result.trust, list(TRUST_COLOURS), palette)
-    names = [code.name.lower().replace("_", " ") for code in result.codes]
+    names = [code.name.lower().replace("_", " ") for code in Trust]
     panel.legend(handles=patches(Entry(name, colour) for name, colour in zip(names[1:4], TRUST_COLOURS[1:4], strict=True)))
 
 
@@ -171,7 +182,7 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
     curves = compute_orbit_curves(result.potential, result)
     if show == "path":
         axes.set_box_aspect(1.0)
-        draw_path(_panel(axes, curves.window), result.potential, curves, palette)
+        draw_path(_panel(axes, curves.window), result.potential, [curves], palette)
         axes.set_box_aspect(axes.child_axes[-1].get_box_aspect())
     elif show in ("sali", "r2"):
         (draw_sali if show == "sali" else draw_r2)(axes, curves, palette.orbits[0])
@@ -189,12 +200,21 @@ def _draw_lyapunov(result: LyapunovOrbit, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
+def _draw_flux(result: EscapeFlux, axes: Axes, palette: Palette) -> None:
+    names = [str(channel) for channel in result.channels]
+    axes.bar(names, result.flux, color=[palette.channels[channel - 1] for channel in result.channels])
+    style_axes(axes)
+    label_axes(axes, "channel", "flux")
+    name_panel(axes, f"Flux through the exits at h = {result.energy:.6g}")
+
+
+@_draw.register
 def _draw_stable_manifolds(result: StableManifolds, axes: Axes, palette: Palette) -> None:
     window = default_window(result.potential, SECTION.plane, result.energy)
     panel = _panel(axes, window)
     draw_limits(panel, result.potential, SECTION.plane, result.energy, window, palette.channels)
     draw_manifolds(panel, result, window, palette)
-    show_window(panel, window, *SECTION.plane.axis_names)
+    show_window(panel, window, *SECTION.plane.axis_symbols)
     name_panel(panel, f"Stable manifolds at h = {result.energy:.6g}")
 
 
@@ -222,9 +242,9 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
-def _draw_energy_curves(result: EnergyCurves, axes: Axes, palette: Palette) -> None:
-    draw_shares(axes, result.energies, result.shares, result.spec.potential)
-    label_axes(axes, "h", "percentage of starts")
+def _draw_curves(result: Curves, axes: Axes, palette: Palette) -> None:
+    draw_shares(axes, result.values, result.shares, result.spec.potential)
+    label_axes(axes, result.spec.symbol, "percentage of starts")
     add_panel_legend(axes, "center right")
 
 
@@ -236,11 +256,7 @@ def _draw_laws(result: DecayLaws, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> None:
-    edges, counts = result.time_histogram(_BINS)
-    axes.stairs(counts, edges, fill=True, color=MEASURED)
-    axes.set_xscale("log")
-    style_axes(axes, grid=True)
-    label_axes(axes, "escape time", "starts")
+    draw_escape_times(axes, result)
 
 
 @_draw.register
@@ -283,5 +299,5 @@ def _draw_sticky(result: SuperStickySearch, axes: Axes, palette: Palette) -> Non
     window = result.spec.find_window()
     panel = _panel(axes, window)
     draw_limits(panel, result.spec.potential, result.spec.plane, result.spec.energy, window, palette.channels)
-    show_window(panel, window, *result.spec.plane.axis_names)
+    show_window(panel, window, *result.spec.plane.axis_symbols)
     axes.scatter(result.x, result.ordinate, s=9.0, color=palette.characters[2])

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from engine import Coordinate, Slice
+from engine import Slice
 
-_SYMBOLS = {
-    Coordinate.X: "x", Coordinate.Y: "y", Coordinate.PX: r"\dot{x}", Coordinate.PY: r"\dot{y}", Coordinate.H: "h"
-}  # fmt: skip
+_SYMBOLS = {"x": "x", "y": "y", "px": r"\dot{x}", "py": r"\dot{y}", "h": "h"}
 
 
-def axis_label(axis: Coordinate) -> str:
-    """Name of an axis."""
-    return f"${_SYMBOLS[axis]}$"
+def axis_label(name: str) -> str:
+    """Label of an axis, by its name."""
+    return f"${_SYMBOLS[name]}$"
 
 
 def plane_label(plane: Slice) -> str:
     """Name of a slice by its axes."""
-    return f"$({_SYMBOLS[plane.abscissa]}, {_SYMBOLS[plane.ordinate]})$"
+    return f"$({', '.join(_SYMBOLS[name] for name in plane.axis_names)})$"

@@ -19,6 +19,7 @@ from engine import service
 ROOT = Path(__file__).parents[1]
 PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "benchmarks" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
+EXAMPLE_FILES = ["examples/case_three.py", "examples/tutorial.ipynb"]
 EXAMPLES = [name for name in engine.__all__ if ">>>" in (getattr(engine, name).__doc__ or "")]
 
 
@@ -71,8 +72,10 @@ def test_example_of_a_docstring_prints_what_it_says(name: str) -> None:
     assert doctest.DocTestRunner().run(test).failed == 0
 
 
-def test_examples_of_the_start_page_print_what_it_says() -> None:
-    assert doctest.testfile(str(ROOT / "docs" / "start.md"), module_relative=False).failed == 0
+@pytest.mark.parametrize("page", [page for page in PAGES if ">>>" in page.read_text(encoding="utf-8")], ids=page_name)
+def test_examples_of_a_page_print_what_it_says(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert doctest.testfile(str(page), module_relative=False).failed == 0
 
 
 def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
@@ -83,10 +86,11 @@ def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
     assert not any(cell.get("outputs") for cell in cells)
 
 
-def test_python_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
-    monkeypatch.chdir(tmp_path)
-    exec(compile(code, "README.md", "exec"), {})
+@pytest.mark.parametrize("name", ["README.md", "docs/long-runs.md", "docs/slices.md", "docs/start.md", *EXAMPLE_FILES])
+def test_document_for_users_recommends_public_names_only(name: str) -> None:
+    words = set(re.findall(r"\w+", (ROOT / name).read_text(encoding="utf-8")))
+    assert words & set(service.__all__) == set()
+    assert not re.search(r"from engine\b", (ROOT / name).read_text(encoding="utf-8"))
 
 
 def _is_defined(name: str) -> bool:

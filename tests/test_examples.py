@@ -32,7 +32,7 @@ def output(folder: Path) -> str:
     """Standard output of the example."""
     run = subprocess.run(
         [sys.executable, "-W", "error", str(ROOT / "examples" / "case_three.py")],
-        cwd=folder, env={**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT)},
+        cwd=folder, env={**os.environ, "MPLBACKEND": "Agg"},
         capture_output=True, text=True, timeout=600, check=False,
     )  # fmt: skip
     assert run.returncode == 0, run.stderr

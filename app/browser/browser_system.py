@@ -45,7 +45,7 @@ class BrowserSystem:
 
 def system_key(potential: Potential) -> str:
     """A text that is different for each potential."""
-    return hashlib.sha256(repr(potential.terms).encode()).hexdigest()[:16]
+    return hashlib.sha256(repr(potential.form).encode()).hexdigest()[:16]
 
 
 def make_browser_system(potential: Potential, low: float, high: float, *, execution: Execution) -> BrowserSystem:

@@ -25,6 +25,10 @@ ADDRESS = f"{_FOLDER}/main.js"
 """Address of the first module, relative to the page."""
 
 
+WATCH_ADDRESS = f"{_FOLDER}/watch.js"
+"""Address of the player of many orbits, which the page loads when it is asked for."""
+
+
 class ModuleHandler(StaticFileHandler):
     """Serves a module."""
 

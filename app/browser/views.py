@@ -6,6 +6,7 @@ from typing import Any
 
 from app.browser.browser_system import system_key
 from app.state.view_state import ViewState
+from engine.service import write_slice
 from plots.image_columns import pixel_coding
 
 
@@ -13,8 +14,9 @@ def describe_view(state: ViewState) -> dict[str, Any]:
     """The view as `ServerView` in modules/preview.js describes it."""
     return {
         "system": system_key(state.potential),
-        "plane": state.plane.key,
-        "slice": state.plane.to_dict(),
+        "plane": ";".join(filter(None, write_slice(state.plane))),
+        # The potentials along a parameter are known to the server only.
+        "slice": state.plane.to_dict(state.potential.units) if state.plane.parameter is None else None,
         "energy": state.energy,
         "home": state.window is None,
         "resolution": state.resolution,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.state.view_state import Start, ViewState
+from app.state.view_state import SYSTEM, Start, ViewState
 from engine import DivergentStart, find_divergent_start
 from engine.service import Job, JobSubmitter, describe_fate
 
@@ -18,6 +18,8 @@ class DivergentStartRequests:
         self._state, self._notify = state, notify
         self._searched: Start | None = None
         self._request = LatestRequest(jobs, self._on_result, notify, locked)
+        # What is found at another energy is no twin.
+        state.param.watch(lambda *events: self._request.cancel(), [*SYSTEM, "plane", "energy", "t_max"])
 
     def search(self) -> None:
         """Search around the chosen start."""
@@ -42,5 +44,5 @@ class DivergentStartRequests:
             self._notify("No start near this one escapes elsewhere.")
         else:
             added = self._state.add_start((twin.x, twin.ordinate))
-            full = "" if added else f" Remove an orbit to add it at {twin.x!r}, {twin.ordinate!r}."
+            full = "" if added else " Remove an orbit, and search again to see it."
             self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate)}{full}")

@@ -10,8 +10,8 @@ from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import BirkhoffDigits, Fate, Orbit, compute_birkhoff_digits
-from engine.service import IndicatorVerdict, Job, JobSubmitter, Queue, Subscription, evaluate_indicators
+from engine import BirkhoffDigits, Fate, IndicatorVerdict, Orbit, compute_birkhoff_digits, evaluate_indicators
+from engine.service import Job, JobSubmitter, Queue, Subscription
 
 
 class IndicatorsRequests:

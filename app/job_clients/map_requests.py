@@ -13,7 +13,7 @@ from app.job_clients.locking import Locked
 from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
 from engine.service import Job, JobSubmitter, Queue, Subscription, is_ready_for_maps, map_job, prepare_for_maps
-from plots.image_columns import map_columns
+from plots.image_columns import draw_over, map_columns
 
 
 class MapListener(Protocol):
@@ -68,6 +68,8 @@ class MapRequests:
         self._generation_lock = threading.RLock()
         # Generation of which a frame has been delivered.
         self._delivered = -1
+        # What was delivered last: a map and its columns.
+        self._painted: tuple[MapSpec, dict[str, list[Any]]] | None = None
         self._is_overloaded = is_overloaded
         self._continue = locked(self._on_compiled)
         self._show_frame = locked(self._on_frame)
@@ -105,6 +107,9 @@ class MapRequests:
         if self._delivered == generation and not frame.complete and self._is_overloaded():
             return
         columns = map_columns(frame, characters=self._state.judge)
+        if self._painted is not None and _has_same_starts(self._painted[0], frame.spec):
+            columns = draw_over(columns, self._painted[1], frame.spec.resolution)
+        self._painted = frame.spec, columns
         self._deliver(self._show_frame, generation, frame, columns)
         self._delivered = generation
 
@@ -151,3 +156,8 @@ class MapRequests:
     def _on_error(self, generation: int, error: Exception) -> None:
         if generation == self._generation:
             self._listener.map_failed(sentence(error))
+
+
+def _has_same_starts(one: MapSpec, other: MapSpec) -> bool:
+    """Whether two maps show the same plane at the same energy; window, resolution and t_max may differ."""
+    return (one.potential, one.plane, one.energy) == (other.potential, other.plane, other.energy)

@@ -35,6 +35,8 @@ class ProcessState:
         Returns the open Bokeh sessions; none until the server sets it.
     sockets
         Number of open WebSockets by address.
+    link_pictures
+        Number of requests for the picture of a link under way, by address.
     jobs
         Background jobs of all sessions.
     load
@@ -54,6 +56,7 @@ class ProcessState:
     settings: Settings = field(default_factory=Settings)
     sessions: Callable[[], Iterable[Any]] = tuple
     sockets: Counter[str] = field(default_factory=Counter, init=False)
+    link_pictures: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
     overload: OverloadMonitor = field(init=False)

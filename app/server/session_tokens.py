@@ -16,7 +16,7 @@ from tornado.httputil import HTTPServerRequest
 
 from app.state.permalink import PARAMETERS
 
-_SUBPROTOCOL, _TOKEN = "bokeh", "bokeh-token"
+_SUBPROTOCOL, _TOKEN, _SESSION_ID = "bokeh", "bokeh-token", "bokeh-session-id"
 
 # Made when the server starts, before it forks: the processes of `--num-procs` share it.
 _own_key = generate_secret_key().encode()
@@ -50,7 +50,8 @@ def issue_token(application: BokehTornado, request: HTTPServerRequest, extra: Ma
 
 
 def use_token(request: HTTPServerRequest, token: str) -> None:
-    """Let Bokeh take the token for the session of a request, instead of one that the client may have sent."""
+    """Let Bokeh take the token for the session of a request, instead of a token or an id that the client may have sent."""
+    request.arguments.pop(_SESSION_ID, None)
     request.arguments[_TOKEN] = [token.encode()]
 
 

@@ -15,7 +15,10 @@ from typing import Any
 from panel.io.server import DocHandler, RootHandler, WSHandler
 
 from app.browser.module_files import ROUTE as MODULES
+from app.runtime.process_state import process_state
 from app.server.endpoints import ROUTES
+from app.server.link_pictures import ROUTE as PICTURE
+from app.server.link_pictures import LinkPictureHandler, picture_address
 from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
 from app.server.session_tokens import issue_token, use_token
@@ -28,7 +31,10 @@ class PageHandler(SecurityHeaders, DocHandler):
         """Create the session of a new token."""
         extra = self.application_context.application.process_request(self.request)
         use_token(self.request, issue_token(self.application, self.request, extra))
-        return await super().get_session()
+        session = await super().get_session()
+        if process_state().settings.link_pictures:
+            session.document.template_variables["picture_address"] = picture_address(self.request)
+        return session
 
     def write(self, chunk: Any) -> None:
         """Write a response; a page gets the nonce and the matching policy."""
@@ -40,7 +46,7 @@ class PageHandler(SecurityHeaders, DocHandler):
 
 
 def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) -> None:
-    """Add security headers to the handlers in the lists, and append the operator's endpoints; a second call does nothing.
+    """Add security headers to the handlers in the lists, and append the server's own endpoints; a second call does nothing.
 
     Parameters
     ----------
@@ -52,6 +58,7 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     modules = (MODULES[0], _secured(MODULES[1]), MODULES[2])
     if all(path != modules[0] for path, *_ in toplevel_patterns):
         toplevel_patterns += [*ROUTES, modules]
+        per_app_patterns.append((PICTURE, LinkPictureHandler))
 
 
 def _secured(handler: type) -> type:

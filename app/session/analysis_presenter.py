@@ -14,20 +14,24 @@ from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
+from app.state.glossary import with_terms
 from app.state.view_state import IMAGES, SYSTEM, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
-from app.views.analysis.energy_curves import EnergyCurvesView
-from app.views.maps.map_plots import MapsView
+from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
+from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from engine import (
-    EnergyCurves,
-    EnergyCurvesSpec,
+    Curves,
+    CurvesSpec,
     EscapeMap,
     MapSpec,
     OriginFateMap,
+    ParameterAxis,
     RegularityMap,
     StableManifolds,
+    System,
     TrustMap,
     UncertaintyExponent,
+    Window,
     compute_uncertainty_exponent,
     find_stable_manifolds,
 )
@@ -36,8 +40,10 @@ from engine.service import (
     Job,
     JobSubmitter,
     basin_measures_job,
+    curves_job,
     decay_laws_job,
-    energy_curves_job,
+    default_range,
+    flux_job,
     is_ready_for_maps,
     origin_fate_job,
     regularity_job,
@@ -47,9 +53,6 @@ from plots.manifold_strokes import select_image
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.map_images import ON_DEMAND
 from plots.palette import Palette
-
-SWEPT_ENERGIES = 33
-"""Energies of the curves against energy."""
 
 # Column of `map_columns` and attribute of `MapAnalyses` that each layer controls.
 _COLUMN_OF = {"judge": "character", "origins": "passage"}
@@ -65,9 +68,12 @@ class AnalysisPresenter:
         jobs: JobSubmitter,
         maps: MapsView,
         on_analyses: Callable[[MapAnalyses], None],
-        on_curves: Callable[[EnergyCurves | None], None],
+        on_curves: Callable[[Curves | None], None],
+        on_copy: Callable[[str], None],
+        open_view: Callable[[System, dict[str, Any]], None],
         locked: Locked,
     ) -> None:
+        self._open_view = open_view
         self._state, self._maps, self._on_analyses, self._on_curves = state, maps, on_analyses, on_curves
         self._spec: MapSpec | None = None
         self._analyses = NO_ANALYSES
@@ -75,8 +81,10 @@ class AnalysisPresenter:
         self._manifolds: StableManifolds | None = None
         self._notes: dict[str, str] = {}
         self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
-        self.measures = BasinMeasuresView(locked(self._measure))
-        self.curves = EnergyCurvesView(locked(self._sweep), self._open_energy)
+        self.measures = BasinMeasuresView(locked(self._measure), on_copy, locked(lambda: state.param.update(box=None)))
+        state.param.watch(lambda event: self.measures.show_box(event.new), "box")
+        self.measures.show_box(state.box)
+        self.curves = CurvesView(locked(self._sweep), self._open_value)
         self._exponent = LatestRequest(jobs, self._show_exponent, self.measures.say, locked)
         self._sweeping = LatestRequest(jobs, self._show_curves, self._sweep_failed, locked)
         self._connect()
@@ -88,8 +96,9 @@ class AnalysisPresenter:
             self._layer("trust", lambda frame: trust_job(frame.spec), self._show_trust),
             self._layer("origins", lambda frame: origin_fate_job(frame.spec), self._show_origins),
             self._layer("manifolds", _manifolds_job, self._show_manifolds),
-            self._measure_of_basins(lambda frame: basin_measures_job(frame.spec), self.measures.show_basins),
-            self._measure_of_basins(lambda frame: decay_laws_job(frame.spec, self._state.box), self.measures.show_laws, "box"),
+            self._measure_of_basins(basin_measures_job, self.measures.show_basins),
+            self._measure_of_basins(decay_laws_job, self.measures.show_laws),
+            self._measure_of_basins(lambda spec, box: flux_job(spec), self.measures.show_flux),
         ]
 
     def begin(self, spec: MapSpec) -> None:
@@ -103,7 +112,7 @@ class AnalysisPresenter:
         self.measures.begin()
         if self._analyses != NO_ANALYSES:
             self._update(**dict.fromkeys(_RESULT_OF.values()))
-        self._note(**dict.fromkeys(_RESULT_OF, ""))
+        self.note(**dict.fromkeys(_RESULT_OF, ""))
         self._explain_manifolds()
 
     def set_palette(self, palette: Palette) -> None:
@@ -118,15 +127,16 @@ class AnalysisPresenter:
 
     def _connect(self) -> None:
         watch, state = self._state.param.watch, self._state
-        watch(lambda *events: self._show_pictures(), list(ON_DEMAND.values()))
+        watch(lambda *events: self._show_pictures(), [*ON_DEMAND.values(), "compared"])
         watch(self._remove_switched_off, list(_RESULT_OF))
         watch(lambda event: self._draw_manifolds(), "images")
         watch(lambda *events: self._explain_manifolds(), ["manifolds", "plane"])
         watch(lambda event: self.curves.follow_energy(event.new), "energy")
         watch(lambda *events: self._stop_sweep(), [*SYSTEM, "plane", "t_max"])
-        watch(lambda *events: self._show_curves(None), list(SYSTEM))
+        watch(lambda *events: self._follow_system(), list(SYSTEM))
         self._show_pictures()
         self.curves.follow_energy(state.energy)
+        self.curves.follow_system(state.system)
 
     def _layer(
         self, name: str, request: Callable[[EscapeMap], Job[Any] | None], show: Callable[[EscapeMap, Any], None]
@@ -134,19 +144,21 @@ class AnalysisPresenter:
         return FollowUp(lambda frame: request(frame) if getattr(self._state, name) else None, show, (name,))
 
     def _measure_of_basins(
-        self, request: Callable[[EscapeMap], Job[Any]], show: Callable[[Any], None], *watched: str
+        self, job: Callable[[MapSpec, Window | None], Job[Any] | None], show: Callable[[Any], None]
     ) -> FollowUp:
+        """A measure of the whole view or of the box, requested while the tab is open."""
         return FollowUp(
-            lambda frame: request(frame) if self._state.analysis is Analysis.MEASURES else None,
+            lambda frame: job(frame.spec, self._state.box) if self._state.analysis is Analysis.MEASURES else None,
             lambda _, result: show(result),
-            ("analysis", *watched),
+            ("analysis", "box"),
         )
 
     # Layers.
 
     def _show_pictures(self) -> None:
-        shown = [picture for picture, toggle in ON_DEMAND.items() if getattr(self._state, toggle)]
-        self._maps.show_pictures(frozenset(shown))
+        state = self._state
+        layers = [picture for picture, toggle in ON_DEMAND.items() if getattr(state, toggle)]
+        self._maps.show_pictures([*(PICTURES_ALONE if state.compared is None else PICTURES_COMPARED), *layers])
 
     def _remove_switched_off(self, *events: Any) -> None:
         for event in events:
@@ -163,7 +175,7 @@ class AnalysisPresenter:
             self._manifolds = None
             self._maps.overlays.show_manifolds(None)
         self._update(**{_RESULT_OF[name]: None})
-        self._note(**{name: ""})
+        self.note(**{name: ""})
 
     # Results of follow-up analyses.
 
@@ -174,12 +186,13 @@ class AnalysisPresenter:
 
     def _explain_manifolds(self) -> None:
         if self._state.manifolds and self._state.plane != SECTION.plane:
-            self._note(manifolds=f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn there only.")
+            self.note(manifolds=f"Stable manifolds are curves in the {SECTION.plane.title} plane and are drawn there only.")
 
-    def _note(self, **sentences: str) -> None:
+    def note(self, **sentences: str) -> None:
+        """Show a sentence for each of some layers; an empty one removes it."""
         self._notes |= sentences
         body = " ".join(escape(sentence) for sentence in self._notes.values() if sentence)
-        self.notes.object = body
+        self.notes.object = with_terms(body)
 
     def _show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         self._maps.show_regularity(frame, regularity)
@@ -188,13 +201,13 @@ class AnalysisPresenter:
 
     def _show_trust(self, frame: EscapeMap, trust: TrustMap) -> None:
         self._maps.overlays.show_trust(trust)
-        self._note(trust=trust.describe())
+        self.note(trust=trust.describe())
         if trust.complete:
             self._update(trust=trust)
 
     def _show_origins(self, frame: EscapeMap, origins: OriginFateMap) -> None:
         self._maps.show_origins(origins)
-        self._note(origins=origins.describe())
+        self.note(origins=origins.describe())
         self._update(origins=origins)
 
     def _show_manifolds(self, frame: EscapeMap, manifolds: StableManifolds) -> None:
@@ -208,7 +221,7 @@ class AnalysisPresenter:
         image = self._state.images
         chosen = select_image(self._manifolds, image)
         self._maps.overlays.show_manifolds(chosen)
-        self._note(manifolds=_describe_manifolds(chosen, image))
+        self.note(manifolds=_describe_manifolds(chosen, image))
         self._update(manifolds=chosen)
 
     # Measurements started by buttons.
@@ -224,15 +237,27 @@ class AnalysisPresenter:
         self._exponent.cancel()
         self.measures.show_exponent(exponent)
 
+    def _follow_system(self) -> None:
+        self._show_curves(None)
+        self.curves.follow_system(self._state.system)
+
     def _sweep(self) -> None:
         if self.curves.running:
             self._stop_sweep()
             return
         state, energies = self._state, self._state.energies
-        plane = state.plane if state.plane.energy_axis is None else SECTION.plane
-        swept = np.round(np.linspace(energies.low, energies.high, SWEPT_ENERGIES), 4).tolist()
+        plane = state.plane if state.plane.energy_axis is None and state.plane.parameter is None else SECTION.plane
+        name, energy, along = self.curves.against.value, None, None
+        low, high = energies.low, energies.high
+        if name != "h":
+            low, high = default_range(state.system, name)
+            along, energy = ParameterAxis(name, low, high, state.system), state.energy
+        swept = np.round(np.linspace(low, high, SWEPT_VALUES), 4).tolist()
+        spec = CurvesSpec(
+            state.potential, plane, tuple(swept), t_max=state.t_max, along=along, energy=energy, refine=REFINED_VALUES
+        )
         self.curves.show_running(True)
-        self._sweeping.submit(energy_curves_job(EnergyCurvesSpec(state.potential, plane, tuple(swept), t_max=state.t_max)))
+        self._sweeping.submit(curves_job(spec))
 
     def _stop_sweep(self) -> None:
         self._sweeping.cancel()
@@ -242,17 +267,22 @@ class AnalysisPresenter:
         self.curves.show_running(False)
         self.curves.say(sentence)
 
-    def _show_curves(self, curves: EnergyCurves | None) -> None:
+    def _show_curves(self, curves: Curves | None) -> None:
         if curves is not None and curves.complete:
             self._stop_sweep()
         self.curves.show(curves)
         self._on_curves(curves)
 
-    def _open_energy(self, energy: float) -> None:
-        """Show the map of an energy on the plane of the curves."""
-        curves = self.curves.shown
-        if curves is not None:
-            self._state.param.update(energy=energy, plane=curves.spec.plane)
+    def _open_value(self, value: float) -> None:
+        """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
+        if self.curves.shown is None:
+            return
+        spec = self.curves.shown.spec
+        if spec.along is None:
+            self._state.param.update(energy=value, plane=spec.plane)
+        else:
+            system = spec.along.system.with_parameter(spec.along.key, value)
+            self._open_view(system, {"energy": spec.energy, "plane": spec.plane, "window": None, "starts": (), "chosen": 0})
 
 
 def _manifolds_job(frame: EscapeMap) -> Job[StableManifolds] | None:

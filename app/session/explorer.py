@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -12,37 +13,41 @@ import panel as pn
 from app.browser.browser_system import make_browser_system
 from app.browser.engine_component import BrowserEngine
 from app.browser.views import describe_view
-from app.job_clients.error_messages import WINDOW_UNKNOWN
+from app.job_clients.error_messages import WINDOW_UNKNOWN, ZOOM_ENDS
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.map_requests import MapRequests
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.runtime.disconnects import on_disconnect
+from app.runtime.page_address import page_address
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
 from app.session.analysis_presenter import AnalysisPresenter
+from app.session.comparison_presenter import ComparisonPresenter
 from app.session.link_presenter import LinkPresenter
 from app.session.orbit_presenter import OrbitPresenter
 from app.session.potential_presenter import PotentialPresenter
-from app.state.navigation import window_moves
+from app.session.watch_presenter import WatchPresenter
+from app.state.glossary import glossary_list
+from app.state.navigation import DIVE_FACTOR, window_moves, zoom
 from app.state.presets import Preset
-from app.state.view_state import SYSTEM, Analysis
+from app.state.view_state import SYSTEM, Analysis, Start
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.analysis_choice import AnalysisTabs
-from app.views.components.collapsible_section import Drawers, Stack
+from app.views.components.collapsible_section import Drawers, Fold, Stack
 from app.views.components.notice import Notice
 from app.views.components.progress import ProgressView
-from app.views.components.widgets import button
-from app.views.maps.map_plots import MapsView
+from app.views.maps.map_plots import MapActions, MapsView
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.panels.accessible_table import AccessibleTable
-from app.views.panels.browser_events import BrowserActions, BrowserEvents, key_legend
+from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents, key_legend
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
+from app.views.panels.embedding import embed_code
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
-from app.views.panels.tour import Act, Tour
-from engine import EscapeMap, Fate, Potential, Window
-from engine.service import Job, JobClient, Queue, System, describe_fate, is_ready_for_maps, seconds_until_ready_for_maps
+from app.views.panels.slice_panel import SlicePanel
+from engine import EscapeMap, Fate, Potential, Slice, System, Window
+from engine.service import Job, JobClient, Queue, checked_slice, describe_fate, is_ready_for_maps, seconds_until_ready_for_maps
 from plots.palette import MOST_ORBITS
 
 
@@ -55,10 +60,11 @@ class Explorer:
         parameters = _parameters()
         self.links = LinkPresenter(document, parameters)
         self.state = self.links.state
-        # A tour over a shared view would hide it.
-        self._offers_tour = not parameters
         self._document = document
+        self._by_touch = False
         self._countdown: Any = None
+        # The start of the last click; None if it was chosen before.
+        self._just_added: Start | None = None
         callbacks = SessionCallbacks(document)
         # Panel runs widget callbacks without the session's lock, which changes of bare Bokeh models need.
         self._locked, self._latest = callbacks.every, callbacks.latest
@@ -66,26 +72,51 @@ class Explorer:
         process = process_state()
         jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session)
         on_disconnect(document, self._client.close)
-        self.potential = PotentialPresenter(self.state, jobs, self._locked)
+        self.potential = PotentialPresenter(self.state, jobs, self.links.history, self._locked)
         self.analyses = AnalysisPresenter(
-            self.state, jobs, self.maps, self.downloads.show_analyses, self.downloads.show_curves, self._locked
+            self.state,
+            jobs,
+            self.maps,
+            self.downloads.show_analyses,
+            self.downloads.show_curves,
+            self._copy_text,
+            self._open_view,
+            self._locked,
+        )
+        self.comparison = ComparisonPresenter(
+            self.state, jobs, self.maps, lambda sentence: self.analyses.note(compared=sentence), self._locked
         )
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
         self.orbits: OrbitPresenter = OrbitPresenter(
-            self.state, jobs, self.maps.marks, self.maps.well, self._add_start, self._show_orbits, self._locked, self._latest
+            self.state,
+            jobs,
+            self.maps.marks,
+            self.maps.well,
+            self._add_start,
+            self._show_orbits,
+            self._copy_text,
+            self._open_view,
+            self._locked,
+            self._latest,
         )
+        self.watch = WatchPresenter(self.state, jobs, self._locked)
         self.analysis = Stack(
             {
-                Analysis.ORBIT: lambda: [self.orbits.inspector.layout()],
+                Analysis.ORBIT: lambda: [self.orbits.inspector.layout(), self.gallery.invitation()],
                 Analysis.STATISTICS: self.statistics.build,
                 Analysis.MEASURES: self.analyses.measures.build,
                 Analysis.ENERGIES: self.analyses.curves.build,
+                Analysis.WATCH: self.watch.build,
             },
             "analysis",
             head=[AnalysisTabs(self.state).tabs],
         )
-        self.progress = ProgressView(self._locked(self.map_requests.stop_map), self._locked(self.map_requests.request_map))
+        self.progress = ProgressView(
+            self._locked(self.map_requests.stop_map),
+            self._locked(self.map_requests.request_map),
+            self._locked(lambda: self.state.param.update(trust=True)),
+        )
         self._requested_at: float | None = None
         self._connect()
         pn.state.on_session_destroyed(self.close)
@@ -94,15 +125,18 @@ class Explorer:
     def _make_views(self) -> None:
         state, locked = self.state, self._locked
         self.maps = MapsView(
-            locked(self._add_start), locked(self._zoom_to), locked(self.links.history.end_gesture), locked(self._count_in)
+            MapActions(
+                tap=locked(self._add_start),
+                dive=locked(self._dive),
+                zoom=locked(self._zoom_to),
+                rest=locked(self.links.history.end_gesture),
+                box=locked(self._count_in),
+                choose=locked(lambda name: state.param.update(focus=name)),
+            ),
+            alone=self.links.embedded,
         )
-        self.toolbar = MapToolbar(
-            lambda: self.browser.go_back(),
-            lambda: self.browser.go_forward(),
-            locked(lambda: state.param.update(window=None)),
-            locked(self.maps.set_drag),
-        )
-        self.statistics = StatisticsView(locked(lambda: self._count_in(None)), lambda text: self.browser.copy(text))
+        self.toolbar = MapToolbar(locked(lambda: state.param.update(window=None)), locked(self.maps.set_drag))
+        self.statistics = StatisticsView(locked(lambda: self._count_in(None)), self._copy_text)
         self.accessible_table = AccessibleTable(state)
         self.browser = BrowserEvents(
             BrowserActions(
@@ -110,45 +144,57 @@ class Explorer:
                 navigate=locked(self.links.navigate),
                 dark=locked(self.set_dark),
                 touch=locked(self._begin_touch),
-                first_visit=locked(self._welcome),
                 copied=locked(self._copied),
-            )
+                enlarge=locked(self._enlarge),
+            ),
+            WINDOW_KEYS if self.links.embedded else KEYS,
         )
         self.engine = BrowserEngine(locked(self._end_animation))
-        self.downloads: Downloads = Downloads(state, self._copy_link)
+        self.downloads: Downloads = Downloads(state, self._copy_link, self._copy_embed_code, locked(self._copied))
         self.notice = Notice()
         self.gallery = Gallery(locked(self._show_preset))
-        self.tour: Tour = Tour(locked(self._act))
         actions = ControlActions(
             play=locked(self._play),
-            choose_potential=locked(lambda: self.potential.toggle()),
-            lock_times=locked(lambda on: state.param.update(lock_times=self.maps.longest_time if on else None)),
+            choose_potential=locked(lambda: self.drawers.toggle("potential")),
+            choose_slice=locked(lambda: self.drawers.toggle("slice")),
+            compare=locked(self._compare),
+            swap=locked(self._swap_views),
+            lock_times=locked(lambda on: state.param.update(lock_times=self.maps.times if on else None)),
         )
         self.controls = Controls(state, actions)
         self.drawers = Drawers(
             {
+                "potential": ("", "Potential", lambda: self.potential.panel.build()),
+                "slice": ("", "Slice", lambda: SlicePanel(state, locked(self._show_slice)).build()),
                 "gallery": ("Gallery", "Gallery", self.gallery.build),
                 "share": ("Share", "Share and download", self.downloads.build),
                 "help": ("Help", "Help", self._build_help),
-            }
+            },
+            self.browser.focus_drawer,
         )
 
     def _connect(self) -> None:
         watch, state = self.state.param.watch, self.state
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda event: self.maps.lock_times(event.new), "lock_times")
+        watch(lambda event: self.toolbar.follow(zoomed=event.new is not None), "window")
+        watch(lambda event: self.gallery.invite(on=not event.new), "starts")
         watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
         watch(lambda event: self._show_box(event.new), "box")
         watch(lambda event: self._show_analysis(), "analysis")
-        self.links.connect(self.potential, self.browser, self.toolbar, self.progress, self.notice)
+        watch(lambda event: self.maps.grid.enlarge(event.new), "focus")
+        self.links.connect(self.potential, self.browser, self.progress, self.notice)
         self._set_palette()
         self.maps.lock_times(state.lock_times)
+        self.toolbar.follow(zoomed=state.window is not None)
+        self.gallery.invite(on=state.chosen_start is None)
         self._show_analysis()
         self._show_box(state.box)
+        self.maps.grid.enlarge(state.focus)
 
     def close(self, *_: Any) -> None:
         """Cancel all requests at the end of the session."""
-        for requests in (self.map_requests, self.orbits, self.analyses, self.potential):
+        for requests in (self.map_requests, self.orbits, self.analyses, self.comparison, self.watch, self.potential):
             requests.close()
         self._browser_systems.cancel()
         self._client.close()
@@ -169,39 +215,14 @@ class Explorer:
             for view in (self.maps, self.orbits, self.statistics, self.analyses):
                 view.set_palette(palette)
 
-    def _welcome(self) -> None:
-        if self._offers_tour:
-            self.tour.start()
-
-    def _act(self, act: Act) -> None:
-        """Do on the page what a step of the tour is about."""
-        state = self.state
-        match act:
-            case Act.PLAY:
-                self._play()
-            case Act.ZOOM:
-                self._press("+")
-            case Act.ORBIT:
-                self._add_example()
-            case Act.TWIN:
-                self.orbits.find_divergent_start()
-            case Act.LAYER:
-                state.judge = True
-            case Act.GALLERY:
-                self.drawers.show("gallery")
-
-    def _add_example(self) -> None:
-        """Add a start beside the middle of the window."""
-        try:
-            window = self._window()
-        except ValueError as error:
-            self.notice.warn(str(error))
-            return
-        x = 0.6 * window.x_low + 0.4 * window.x_high
-        ordinate = 0.6 * window.ordinate_low + 0.4 * window.ordinate_high
+    def _add_middle(self) -> None:
+        """Add the start in the middle of the window."""
+        window = self._window()
+        x, ordinate = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
         self._add_start(*self.maps.snapped(x, ordinate))
 
     def _begin_touch(self) -> None:
+        self._by_touch = True
         self.toolbar.begin_touch()
         self.maps.begin_touch()
         self.controls.begin_touch()
@@ -209,9 +230,9 @@ class Explorer:
 
     def _build_help(self) -> list[pn.viewable.Viewable]:
         return [
-            button("Take the tour", self.tour.start),
             pn.pane.HTML(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
             equations_pane(self.state),
+            *Fold("Terms", lambda: [pn.pane.HTML(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),
             *self.accessible_table.fold.parts(),
         ]
 
@@ -224,7 +245,29 @@ class Explorer:
 
     def _zoom_to(self, window: Window | None) -> None:
         self.links.history.begin_gesture()
-        self.state.window = window
+        self._show_window(window)
+
+    def _show_window(self, window: Window | None) -> None:
+        """Show another window; where double precision ends, the last one stays."""
+        try:
+            if window is not None:
+                replace(self.state.map_spec(), window=window).find_window()
+        except ValueError:
+            self.notice.show(ZOOM_ENDS)
+            self.maps.ranges.follow(self._window())
+        else:
+            self.state.window = window
+
+    def _dive(self, x: float, ordinate: float) -> None:
+        """Zoom to a point that is clicked twice; the first click is no choice of an orbit."""
+        state = self.state
+        if self._just_added in state.starts:
+            state.remove_start(state.starts.index(self._just_added))
+        self._show_window(zoom(self._window(), DIVE_FACTOR, (x, ordinate)))
+
+    def _enlarge(self, name: str) -> None:
+        """Show a picture large, or all side by side if it is large already."""
+        self.state.focus = "" if name == self.state.focus else name
 
     def _add_start(self, x: float, ordinate: float) -> None:
         """Add a start, or say why not; a forbidden start takes no place."""
@@ -233,15 +276,18 @@ class Explorer:
             self.notice.show(describe_fate(Fate.FORBIDDEN))
             return
         # The first orbits add figures and buttons: Bokeh searches the models of the page once for all of them.
+        before = state.starts
         with self._document.models.freeze():
             added = state.add_start((x, ordinate))
             state.analysis = Analysis.ORBIT
+        self._just_added = (x, ordinate) if state.starts != before else None
         if not added:
             self.notice.show(f"{MOST_ORBITS} orbits are shown already. Remove one first.")
 
     def _count_in(self, box: Window | None) -> None:
-        """Count in a box, and show the statistics; None removes the box."""
-        self.state.param.update(box=box, analysis=self.state.analysis if box is None else Analysis.STATISTICS)
+        """Count in a box, and show the statistics unless the measures are in view; None removes the box."""
+        shown = self.state.analysis
+        self.state.param.update(box=box, analysis=shown if box is None or shown is Analysis.MEASURES else Analysis.STATISTICS)
 
     def _remove_box(self, *events: Any) -> None:
         """Remove the box of another view, unless a link gives a new one."""
@@ -252,26 +298,60 @@ class Explorer:
         self.maps.marks.show_box(box)
         self.statistics.show_box(box)
 
+    def _compare(self, on: bool) -> None:
+        """Compare later views with the present one in the same window, or end the comparison."""
+        state = self.state
+        if not on:
+            state.compared = None
+            return
+        window = self._window() if is_ready_for_maps(state.potential) else state.window
+        state.param.update(compared=state.present_view(), window=window)
+
+    def _swap_views(self) -> None:
+        """Exchange the view of the controls and the one that it is compared with."""
+        state, other = self.state, self.state.compared
+        if other is None:
+            return
+        energy = {} if isinstance(other.energy, tuple) else {"energy": other.energy}
+        self._open_view(other.system, {"plane": other.plane, **energy, "window": state.window, "compared": state.present_view()})
+
+    def _show_slice(self, plane: Slice) -> None:
+        self.state.show_slice(checked_slice(plane))
+
+    def _open_view(self, system: System, values: dict[str, Any]) -> None:
+        """Show a system, once it is reviewed, with other values of the state."""
+        self.links.open(system, partial(self.state.show, **values))
+
     def _show_preset(self, preset: Preset) -> None:
         self.engine.stop()
-        show = partial(self.state.show, chosen=0, **preset.values())
-        self.links.open(System(preset.case), show)
+        # On a narrow screen the drawer covers the maps.
+        if self._by_touch:
+            self.drawers.show(None)
+        self._open_view(System(preset.case), {"chosen": 0, **preset.values()})
 
     def _copied(self, success: bool) -> None:
         self.notice.show("Copied." if success else "The browser does not allow copying.")
 
+    def _copy_text(self, text: str) -> None:
+        self.browser.copy(text)
+
     def _copy_link(self) -> None:
         self.browser.copy(None)
+
+    def _copy_embed_code(self) -> None:
+        self.browser.copy(embed_code(page_address(self._document.session_context.request), self.state))
 
     def _press(self, key: str) -> None:
         """Handle a key of `KEYS`."""
         moves: dict[str, Callable[[], Any]] = {
-            **window_moves(self.state, self._window),
+            **window_moves(self._show_window, self._window),
             "b": self.browser.go_back,
             "f": self.browser.go_forward,
             "p": self._play,
+            "Enter": self._add_middle,
             "Escape": self._escape,
             "?": lambda: self.drawers.toggle("help"),
+            **{key: partial(self._enlarge, name) for key, name in PICTURE_KEYS.items()},
         }
         try:
             moves[key]()
@@ -285,11 +365,13 @@ class Explorer:
         return self.state.map_spec().find_window()
 
     def _escape(self) -> None:
-        """Close the open drawer, or stop the animation, or else the map."""
+        """Close the open drawer, or stop the animation, or show all pictures, or else stop the map."""
         if self.drawers.shown is not None:
             self.drawers.show(None)
         elif self.engine.playing:
             self.engine.stop()
+        elif self.state.focus:
+            self.state.focus = ""
         else:
             self.map_requests.stop_map()
 
@@ -334,10 +416,9 @@ class Explorer:
             self._requested_at = None
         with pn.io.hold():
             self.analyses.begin(frame.spec)
+            self.maps.ranges.set_home(replace(frame.spec, window=None))
             self.maps.show(frame, columns)
-            self.maps.mark_stale(False)
-            if self.state.window is None:
-                self.maps.set_home(frame.spec.find_window())
+            self.maps.grid.mark_stale(False)
             self.progress.show(frame)
             self._request_browser_system(frame.spec.potential)
             if frame.stride == 1:
@@ -345,6 +426,8 @@ class Explorer:
             self.downloads.show_map(frame)
             if frame.complete:
                 self.accessible_table.show_map(frame)
+                self.comparison.follow(frame)
+                self.watch.request_rate()
 
     def _request_browser_system(self, potential: Potential) -> None:
         """Request the system of the maps for the engine in the browser, which needs the compiled kernels, once."""
@@ -361,7 +444,7 @@ class Explorer:
         """Show why there is no map; the last pictures stay, greyed out."""
         self._count_down(False)
         self.progress.fail()
-        self.maps.mark_stale(True)
+        self.maps.grid.mark_stale(True)
         self.notice.warn(sentence)
 
     def _show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:

@@ -12,14 +12,15 @@ from bokeh.document import Document
 
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
-from app.state.permalink import LINKED, fit_to_system, linked_system, read_link, refused_link, without_system, write_link
+from app.state.link_picture import picture_of
+from app.state.permalink import EMBED, LINKED, fit_to_system, linked_system, read_link, refused_link, without_system, write_link
 from app.state.system_review import SystemReview, is_known, review_catalogue_entry
-from app.state.view_state import ViewState
+from app.state.view_state import PICTURES, ViewState
 from app.views.components.notice import Notice
 from app.views.components.progress import ProgressView
-from app.views.maps.map_toolbar import MapToolbar
 from app.views.panels.browser_events import BrowserEvents
-from engine.service import System
+from app.views.panels.embedding import OpenLink
+from engine import System
 
 
 class LinkPresenter:
@@ -37,22 +38,26 @@ class LinkPresenter:
         self._document = document
         self._link, self._problems = read_link(parameters)
         self._navigating = False
+        self.embedded = parameters.get(EMBED) in PICTURES
+        """Whether the page shows one picture only, in a frame of another page."""
+        self.open_link = OpenLink()
         self.history = History()
         self.state = self._first_state()
+        self.picture = picture_of(self._link)
+        """What programs show of the link in the page's address."""
 
     def connect(
         self,
         potential: PotentialPresenter,
         browser: BrowserEvents,
-        toolbar: MapToolbar,
         progress: ProgressView,
         notice: Notice,
     ) -> None:
         """Follow the changes of the state, which these parts of the page show."""
-        self._potential, self._browser, self._toolbar = potential, browser, toolbar
+        self._potential, self._browser = potential, browser
         self._progress, self._notice = progress, notice
         self.state.param.watch(self._write, list(LINKED))
-        self._follow_history()
+        self.open_link.show(write_link(self.state))
 
     def begin(self, begin_view: Callable[[], object]) -> None:
         """Show the view of the first link once its system is reviewed; `begin_view` requests what the state describes."""
@@ -72,7 +77,7 @@ class LinkPresenter:
         self._browser.follow_steps(steps)
         values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
-        self.open(linked_system(values), partial(self._show, values))
+        self.open(linked_system(values), partial(self._return, values))
 
     def _first_state(self) -> ViewState:
         """The view of the link, with the first system in place of one that must be reviewed."""
@@ -86,7 +91,6 @@ class LinkPresenter:
     def _begin_with(self, reviewed: SystemReview) -> None:
         """Show the view of the first link with the system that it names."""
         self._problems += self._show(self._link, reviewed)
-        self._potential.panel.section.open(True)
         self._show_problems()
 
     def _begin_without(self, begin_view: Callable[[], object], problem: str) -> None:
@@ -119,15 +123,18 @@ class LinkPresenter:
                 self.state.show(reviewed, **{name: getattr(shown, name) for name in LINKED})
         finally:
             self._navigating = False
-        self._follow_history()
         return problems
+
+    def _return(self, values: Mapping[str, Any], reviewed: SystemReview) -> None:
+        """Show the values of an entry of the browser's history, and its address as it is understood."""
+        self._show(values, reviewed)
+        self._browser.write_link(write_link(self.state, embedded=self.embedded), self.history.entry)
 
     def _write(self, *events: Any) -> None:
         """Show the state as the address; a choice among the orbits is not an entry of the browser's history."""
         if not self._navigating:
-            entry = self.history.entry if {event.name for event in events} == {"chosen"} else self.history.record()
-            self._browser.write_link(write_link(self.state), entry)
-        self._follow_history()
-
-    def _follow_history(self) -> None:
-        self._toolbar.follow(self.history, zoomed=self.state.window is not None)
+            # "Back" of a page would lead through the entries of the frames in it.
+            is_entry = not self.embedded and {event.name for event in events} != {"chosen"}
+            entry = self.history.record() if is_entry else self.history.entry
+            self._browser.write_link(write_link(self.state, embedded=self.embedded), entry)
+            self.open_link.show(write_link(self.state))

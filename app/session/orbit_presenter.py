@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 import panel as pn
 
@@ -13,7 +14,7 @@ from app.job_clients.indicators_requests import IndicatorsRequests
 from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
-from app.state.view_state import ViewState
+from app.state.view_state import SYSTEM, ViewState
 from app.views.maps.markers import NO_POINTS, Markers
 from app.views.maps.well import WellView
 from app.views.orbits.inspector import Inspector
@@ -21,7 +22,8 @@ from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
-from engine.service import SECTION, IndicatorVerdict, JobSubmitter
+from engine import IndicatorVerdict, System
+from engine.service import SECTION, JobSubmitter
 from plots.orbit_curves import OrbitCurves, restrict_curves
 from plots.palette import Palette
 
@@ -42,6 +44,8 @@ class OrbitPresenter:
         Called with x and ordinate of a start that is typed.
     on_verdicts
         Called with the orbits when what is known of them changes.
+    on_copy
+        Called with a table as tab-separated text.
     locked, latest
         Wrap functions that change the document; of the calls of the second kind only the latest runs.
     """
@@ -54,10 +58,13 @@ class OrbitPresenter:
         well: WellView,
         on_start: Callable[[float, float], None],
         on_verdicts: Callable[[Sequence[ChosenOrbit]], None],
+        on_copy: Callable[[str], None],
+        open_view: Callable[[System, dict[str, Any]], None],
         locked: Locked,
         latest: Locked,
     ) -> None:
         self._state, self._marks, self._well, self._on_verdicts = state, marks, well, on_verdicts
+        self._open_view = open_view
         self._shown: tuple[ChosenOrbit, ...] = ()
         # The interval of time in view, and the curves restricted to it; None is the whole duration.
         self._interval: Interval | None = None
@@ -71,6 +78,7 @@ class OrbitPresenter:
             find_divergent_start=locked(lambda: self._divergent_start.search()),
             open_plane=locked(self._open_plane),
             show_all_times=locked(lambda: self._brush(None)),
+            copy=on_copy,
         )
         self.controls: OrbitControls = OrbitControls(actions)
         self.plots: OrbitPlots = OrbitPlots(locked(self._brush))
@@ -82,12 +90,14 @@ class OrbitPresenter:
         self._divergent_start = DivergentStartRequests(state, jobs, self.controls.say, locked)
         self._separation = SeparationRequests(state, jobs, self._separation_plot.show, self.controls.say, locked)
         self._indicators = IndicatorsRequests(state, jobs, self._show_verdicts, self.controls.say, locked)
+        state.param.watch(lambda *events: self._end_message(), ["starts", "chosen", *SYSTEM, "plane", "energy", "t_max"])
         state.param.watch(lambda event: self.controls.follow_plane(event.new), "plane")
         state.param.watch(lambda event: self._show(self._shown), "chosen")
         self.controls.follow_plane(state.plane)
 
     def begin(self) -> None:
         """Request the orbits of the state."""
+        self._end_message()
         self._orbits.follow()
 
     def find_divergent_start(self) -> None:
@@ -109,12 +119,21 @@ class OrbitPresenter:
         for requests in (self._orbits, self._divergent_start, self._separation, self._indicators):
             requests.close()
 
+    def _end_message(self) -> None:
+        self.controls.end_message(has_orbits=bool(self._state.starts))
+
     def _open_plane(self) -> None:
-        """Open the section at the energy of the chosen orbit, with that orbit."""
-        start, axis = self._state.chosen_start, self._state.plane.energy_axis
-        if start is not None and axis is not None:
-            on_section = (start[1 - axis], 0.0)
-            self._state.param.update(plane=SECTION.plane, energy=start[axis], window=None, starts=(on_section,), chosen=0)
+        """Open the section at the energy, or the value of the parameter, of the chosen orbit, with that orbit."""
+        state, start = self._state, self._state.chosen_start
+        if start is None:
+            return
+        x, y, px, py = state.start_state(start)
+        starts = ((x, px),) if y == 0.0 and SECTION.direction * py > 0.0 else ()
+        energy = float(state.plane.energies(state.energy, *start))
+        self._open_view(
+            state.plane.system_at(state.system, *start),
+            {"plane": SECTION.plane, "energy": energy, "window": None, "starts": starts, "chosen": 0},
+        )
 
     def _show(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Show the orbits that are known."""

@@ -12,6 +12,7 @@ from jinja2 import Template
 from panel.io.resources import parse_template
 
 from app.session.explorer import Explorer
+from app.state.link_picture import LinkPicture
 from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.notice import watch_connection
 from app.views.components.theme import THEME_KEY, ExplorerDesign, theme_css
@@ -36,8 +37,10 @@ class RootColumn(pn.Column):
 class ExplorerTemplate(pn.Template):
     """The page of one session: a header, the controls, and the stage with the maps."""
 
-    def __init__(self, **roots: pn.viewable.Viewable) -> None:
+    def __init__(self, picture: LinkPicture, **roots: pn.viewable.Viewable) -> None:
         super().__init__(_frame(), items=roots, design=ExplorerDesign, location=False)
+        self.add_variable("picture", picture)
+        self.add_variable("is_embedded", "picture_alone" in roots)
         self.add_variable("theme_css", theme_css())
         self.add_variable("theme_key", THEME_KEY)
 
@@ -49,11 +52,25 @@ class ExplorerTemplate(pn.Template):
 
 
 def explorer_page(explorer: Explorer) -> ExplorerTemplate:
-    """The page of one explorer."""
+    """The page of one explorer, or in a frame of another page that of one picture."""
+    if explorer.links.embedded:
+        return ExplorerTemplate(explorer.links.picture, picture_alone=_picture_alone(explorer))
     return ExplorerTemplate(
+        explorer.links.picture,
         header=explorer.drawers.buttons,
-        controls=_column(*explorer.controls.layout(explorer.potential.panel.section.layout()), css_class="controls"),
+        controls=_column(*explorer.controls.layout(), css_class="controls"),
         stage=_stage(explorer),
+    )
+
+
+def _picture_alone(explorer: Explorer) -> pn.viewable.Viewable:
+    """The picture that is shown large, and the link to the whole page."""
+    return _column(
+        explorer.progress.bar,
+        explorer.maps.grid.layout(),
+        explorer.links.open_link.pane,
+        *(view.layout() for view in (explorer.browser, explorer.engine, explorer.notice)),
+        css_class="picture-alone",
     )
 
 
@@ -64,13 +81,12 @@ def _stage(explorer: Explorer) -> pn.viewable.Viewable:
         explorer.drawers,
         explorer.browser,
         explorer.engine,
-        explorer.tour,
         explorer.notice,
     )
     return _column(
         explorer.progress.bar,
         explorer.toolbar.layout(*explorer.progress.layout()),
-        *explorer.maps.layout(),
+        explorer.maps.grid.layout(),
         explorer.analyses.notes,
         *(view.layout() for view in views),
         css_class="stage",

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
-from app.state.system_review import SystemReview, is_known, review_catalogue_entry, review_system
+from app.state.history import History
+from app.state.system_review import SystemReview, is_known, review_catalogue_entry, review_job
 from app.state.view_state import SYSTEM, ViewState
-from app.views.analysis.potential_panel import PotentialPanel
-from engine.service import Job, JobSubmitter, Queue, System
+from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
+from engine import System
+from engine.service import TYPED, JobSubmitter, is_ready_for_maps
 
 
 @dataclass(frozen=True)
@@ -22,33 +24,35 @@ class _Proposal:
     system
         The system.
     use
-        Called with the review of a valid system; None if only its properties are shown.
+        Called with the review of a valid system.
     refuse
-        Called with the reason if it cannot be used; None if it stands beside the text.
+        Called with the reason if it cannot be used; None if the reason stands beside the text.
+    done
+        Whether the visitor has chosen it; False while he or she is typing or dragging.
     """
 
     system: System
-    use: Callable[[SystemReview], object] | None = None
+    use: Callable[[SystemReview], object]
     refuse: Callable[[str], None] | None = None
+    done: bool = True
 
 
 class PotentialPresenter:
-    """Potential of one session; a chosen valid potential goes to the view state."""
+    """Potential of one session; a valid potential that is chosen, typed or set by a slider goes to the view state.
 
-    def __init__(self, state: ViewState, jobs: JobSubmitter, locked: Locked) -> None:
-        self._state = state
+    All that is typed or dragged until it is done makes one entry of the history.
+    """
+
+    def __init__(self, state: ViewState, jobs: JobSubmitter, history: History, locked: Locked) -> None:
+        self._state, self._history = state, history
         self._proposal: _Proposal | None = None
+        # The latest one that was taken during a review.
+        self._next: _Proposal | None = None
         self._last: SystemReview | None = None
-        self.panel = PotentialPanel(state.reviewed, locked(self._preview), locked(self._choose))
+        self.panel = PotentialPanel(state.reviewed, locked(self._take))
         self._request = LatestRequest(jobs, self._on_review, self._on_failure, locked)
         state.param.watch(lambda *events: self._follow(), list(SYSTEM))
-        self._follow()
-
-    def toggle(self) -> None:
-        """Open the section with the properties of its system, or close it."""
-        self.panel.section.open(not self.panel.section.is_open)
-        if self.panel.section.is_open:
-            self._preview(self.panel.shown)
+        self.panel.show(state.reviewed)
 
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
         """Use the system of a link, a preset or the browser's history, or refuse it; returns whether it is under review."""
@@ -70,21 +74,35 @@ class PotentialPresenter:
         """Cancel the request at the end of the session."""
         self._request.cancel()
 
-    def _preview(self, system: System) -> None:
-        # The event of the last letter may arrive after Enter.
-        if self._proposal is None or self._proposal.system != system:
-            self._propose(_Proposal(system))
+    def _take(self, system: System, *, done: bool) -> None:
+        """Review a system of the panel, after the previous one of the panel: so the maps follow a steady drag."""
+        proposal = _Proposal(system, self._use if done else self._use_if_ready, done=done)
+        if self._proposal is None or self._proposal.refuse is not None:
+            self._propose(proposal)
+        else:
+            self._next = proposal
 
-    def _choose(self, system: System) -> None:
-        use = None if system == self._state.system else lambda reviewed: self._use(reviewed)
-        self._propose(_Proposal(system, use))
+    def _use_if_ready(self, reviewed: SystemReview) -> None:
+        """Use a system that is being typed, unless an integrator must be compiled: a server can keep only some dozens of them."""
+        if is_ready_for_maps(reviewed.potential):
+            self._use(reviewed)
+        else:
+            self.panel.show(reviewed, NEW_INTEGRATOR)
 
     def _use(self, reviewed: SystemReview) -> None:
-        self._state.show_system(reviewed, self._energy_for(reviewed))
+        self.panel.used = reviewed
+        self.panel.show(reviewed)
+        if reviewed.system == self._state.system:
+            return
+        self._history.begin_gesture()
+        if reviewed.potential == self._state.potential:
+            self._state.show(reviewed)
+        else:
+            self._state.show_system(reviewed, self._energy_for(reviewed))
 
     def _propose(self, proposal: _Proposal) -> None:
         """Review a system, unless its review is known."""
-        self._proposal = proposal
+        self._proposal, self._next = proposal, None
         known = self._known_review(proposal.system)
         if known is not None:
             self._request.cancel()
@@ -92,7 +110,7 @@ class PotentialPresenter:
         else:
             if proposal.refuse is None:
                 self.panel.wait()
-            self._request.submit(Job(review_system, (proposal.system,), queue=Queue.LONG_CALL))
+            self._request.submit(review_job(proposal.system))
 
     def _known_review(self, system: System) -> SystemReview | None:
         if is_known(system):
@@ -104,35 +122,43 @@ class PotentialPresenter:
         self._show(reviewed)
 
     def _on_failure(self, sentence: str) -> None:
-        proposal, self._proposal = self._proposal, None
-        if proposal is not None and proposal.refuse is not None:
-            proposal.refuse(sentence)
-        else:
-            self.panel.say(sentence)
+        self._end(lambda proposal: self.panel.say(sentence) if proposal.refuse is None else proposal.refuse(sentence))
 
     def _show(self, reviewed: SystemReview) -> None:
+        self._end(lambda proposal: self._judge(proposal, reviewed))
+
+    def _judge(self, proposal: _Proposal, reviewed: SystemReview) -> None:
+        if reviewed.problem is None:
+            proposal.use(reviewed)
+        elif proposal.refuse is None:
+            self.panel.show(reviewed)
+        else:
+            proposal.refuse(reviewed.problem)
+
+    def _end(self, answer: Callable[[_Proposal], None]) -> None:
+        """Answer the proposal, if there still is one."""
         proposal, self._proposal = self._proposal, None
         if proposal is None:
             return
-        if reviewed.problem is not None and proposal.refuse is not None:
-            proposal.refuse(reviewed.problem)
-        elif reviewed.problem is None and proposal.use is not None:
-            proposal.use(reviewed)
-        else:
-            self.panel.show(reviewed.review, reviewed.problem)
+        answer(proposal)
+        if proposal.done:
+            self._history.end_gesture()
+        if self._next is not None:
+            self._propose(self._next)
 
     def _energy_for(self, reviewed: SystemReview) -> float | None:
-        """Energy in the same ratio to the escape energy as before; None for another potential."""
-        before, system = self._state.reviewed, reviewed.system
-        if (system.case, system.formula) != (before.system.case, before.system.formula) or reviewed.energies is None:
+        """Energy at the same multiple of the well's depth as before; None if it is too high, or for another known potential."""
+        before, energies = self._state.reviewed, reviewed.energies
+        if reviewed.system.case not in (TYPED, before.system.case) or energies is None:
             return None
-        ratio = reviewed.review.escape_energy / before.review.escape_energy
-        return round(float(self._state.energy * ratio), reviewed.energies.decimals + 1)
+        depth = before.review.escape_energy - before.potential.bottom
+        multiple = (self._state.energy - before.potential.bottom) / depth
+        energy = round(float(reviewed.potential.energy_at(multiple)), energies.decimals + 1)
+        return energy if energy < reviewed.review.highest_energy else None
 
     def _follow(self) -> None:
-        """Follow the view state; a system that is still under review comes too late."""
-        self._proposal = None
-        self._request.cancel()
-        self.panel.follow(self._state.reviewed)
-        if self.panel.section.is_open:
-            self._preview(self._state.system)
+        """Follow the view state, unless it follows the panel; a system that is still under review comes too late."""
+        if self._state.reviewed is not self.panel.used:
+            self._proposal = self._next = None
+            self._request.cancel()
+            self.panel.follow(self._state.reviewed)

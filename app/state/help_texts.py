@@ -19,7 +19,7 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "Each pixel is a start, and its colour shows the exit channel through which its orbit escapes. Inside a large "
             "region of one colour all neighbours escape through the same exit. Elsewhere the colours are mixed on every "
             "scale: however close two starts are, they may escape through different exits. Bounded orbits have not escaped by "
-            "t_max; many of them never will."
+            "t_max; many of them never will; dots are passages of the chosen orbits through the plane."
         ),
         "times": (
             "The escape time is the time at which an orbit crosses a Lyapunov orbit outward. It is short and smooth inside "
@@ -42,6 +42,16 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "basins; the tone shows the exit through which it came in. The exit changes across the stable manifolds of the "
             "Lyapunov orbits, the origin across the unstable ones. Where both kinds of curves accumulate lies the chaotic "
             "saddle, the set of orbits that stay for ever."
+        ),
+        "compared": (
+            "The basins of the view with which this one is compared: another energy, system or plane, with the same window, "
+            "resolution and t_max. Zoom and cursor are those of all pictures; a click marks the same place in both, and its "
+            "orbit is that of the view in the controls."
+        ),
+        "differences": (
+            "Starts whose orbits end otherwise in the two views: through another exit, or inside in one of them only. Exits "
+            "are compared by their numbers. Close to a basin boundary any change moves starts across it, so small changes of "
+            "the energy show where the boundaries are."
         ),
         "sali": (
             "SALI, the smaller alignment index, follows two small deviations from the orbit. Chaos aligns them, and SALI "
@@ -85,9 +95,9 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "one."
         ),
         "shares": (
-            "The shares of the interior starts that escape through each exit, and of those that stay, against energy. Just "
-            "above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one after the other as "
-            "the energy rises."
+            "The shares of the interior starts that escape through each exit, and of those that stay, against the energy or a "
+            "parameter. Just above the escape energy nearly all stay. The islands of bounded orbits shrink and vanish one after "
+            "the other as the energy rises."
         ),
         "entropies": (
             "How mixed the basins are in boxes of 5 by 5 pixels: S_b over all boxes, S_bb over those with more than one fate. "
@@ -95,13 +105,26 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "at the scale of a box. Below it there is no conclusion."
         ),
         "exponents": (
-            "The uncertainty exponent α, measured with new pairs of starts at each energy. Near 0 a more accurate start "
+            "The uncertainty exponent α, measured with new pairs of starts at each value. Near 0 a more accurate start "
             "hardly helps to predict the exit: the boundary nearly fills the plane. Near 1 boundaries are smooth. Bars are 95 "
             "% intervals."
         ),
         "escapes": (
             "Mean and median of the escape time of the orbits that escape. A mean far above the median comes from a few "
             "sticky orbits, and then it depends on t_max."
+        ),
+        "decays": (
+            "The rate κ of the exponential law S(t) ∝ exp(−κ t) that the late escapes follow, with its 95 % interval. There is "
+            "no point where an exponential law is ruled out, mostly because orbits stick to islands, or where few orbits escape."
+        ),
+        "boundaries": (
+            "The distance in pixels within which 99 % of the boundary pixels are close to all basins at once. A few pixels at "
+            "any resolution are a sign of Wada basins, in which each boundary point touches all basins. With two basins "
+            "there is nothing to measure."
+        ),
+        "islands": (
+            "The area that bounded starts cover on the slice, and that of the largest island: of pixels that touch each "
+            "other, four or more of them. At a resonance an island splits or loses its edge, and the area falls at once."
         ),
     }
 )
@@ -111,4 +134,4 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
 def title_with_help(title: str, name: str) -> str:
     """HTML of the title of a picture or plot, with a button that opens its help text."""
     button = f"<button type='button' class='help' popovertarget='help-{name}' aria-label='About: {escape(title)}'>?</button>"
-    return f"<h3>{escape(title)} {button}</h3><p id='help-{name}' class='help-text' popover>{escape(HELP_TEXTS[name])}</p>"
+    return f"<h2>{escape(title)} {button}</h2><p id='help-{name}' class='help-text' popover>{escape(HELP_TEXTS[name])}</p>"

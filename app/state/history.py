@@ -12,16 +12,6 @@ class History:
         self._in_gesture = False
         self._gesture_recorded = False
 
-    @property
-    def can_go_back(self) -> bool:
-        """Whether the page has an earlier entry."""
-        return self.entry > 0
-
-    @property
-    def can_go_forward(self) -> bool:
-        """Whether the page has a later entry."""
-        return self.entry < self._last
-
     def record(self) -> int:
         """Number of the entry of a new state; all states of one gesture have the same."""
         if not (self._in_gesture and self._gesture_recorded):

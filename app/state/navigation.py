@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from app.state.view_state import ViewState
 from engine import Window
 
 PAN_SHARE = 0.25
@@ -13,6 +12,9 @@ PAN_SHARE = 0.25
 
 ZOOM_FACTOR = 2.0
 """Factor of a zoom key."""
+
+DIVE_FACTOR = 4.0
+"""Factor of the zoom to a point that is clicked twice."""
 
 DIRECTIONS = {"ArrowLeft": (-1, 0), "ArrowRight": (1, 0), "ArrowDown": (0, -1), "ArrowUp": (0, 1)}
 """Direction of each arrow key in x and in the ordinate."""
@@ -26,30 +28,47 @@ def pan(window: Window, key: str) -> Window:
     return Window(window.x_low + dx, window.x_high + dx, window.ordinate_low + dy, window.ordinate_high + dy)
 
 
-def zoom(window: Window, factor: float) -> Window:
-    """Shrink a window about its centre by `factor`; ValueError if its edges become equal in double precision."""
-    x, ordinate = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
-    half_x = 0.5 * (window.x_high - window.x_low) / factor
-    half = 0.5 * (window.ordinate_high - window.ordinate_low) / factor
-    return Window(x - half_x, x + half_x, ordinate - half, ordinate + half)
+def zoom(window: Window, factor: float, about: tuple[float, float] | None = None) -> Window:
+    """Shrink a window by `factor`; ValueError if its edges become equal in double precision.
+
+    Parameters
+    ----------
+    window
+        The window.
+    factor
+        How many times smaller its sides become, dimensionless; below 1 they become larger.
+    about
+        x and ordinate of the point that stays where it is; None for the centre.
+    """
+    x, ordinate = about or (0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high))
+    return Window(
+        x - (x - window.x_low) / factor,
+        x + (window.x_high - x) / factor,
+        ordinate - (ordinate - window.ordinate_low) / factor,
+        ordinate + (window.ordinate_high - ordinate) / factor,
+    )
 
 
-def window_moves(state: ViewState, find_window: Callable[[], Window]) -> dict[str, Callable[[], None]]:
-    """Actions of the keys that move the window of a view state; they raise ValueError at the limit of double precision.
+def window_moves(
+    show_window: Callable[[Window | None], None], find_window: Callable[[], Window]
+) -> dict[str, Callable[[], None]]:
+    """Actions of the keys that move the window.
 
-    `find_window` returns the window in view, which is not that of the state if that is None.
+    Parameters
+    ----------
+    show_window
+        Shows another window; None is the whole interior.
+    find_window
+        Returns the window in view.
     """
 
-    def show(change: Callable[[Window], Window | None]) -> Callable[[], None]:
-        def act() -> None:
-            state.window = change(find_window())
-
-        return act
+    def show(change: Callable[[Window], Window]) -> Callable[[], None]:
+        return lambda: show_window(change(find_window()))
 
     return {
         "+": show(lambda window: zoom(window, ZOOM_FACTOR)),
         "-": show(lambda window: zoom(window, 1.0 / ZOOM_FACTOR)),
-        "h": lambda: state.param.update(window=None),
+        "h": lambda: show_window(None),
         **{arrow: show(partial(_pan_by, arrow)) for arrow in DIRECTIONS},
     }
 

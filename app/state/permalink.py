@@ -9,11 +9,13 @@ from urllib.parse import urlencode
 
 import numpy as np
 
+from app.state.compared_view import ComparedView
+from app.state.link_letters import LETTERS, drop_unknown_letters, letters_in_link, read_letters
 from app.state.system_review import SystemReview
 from app.state.view_state import (
     IMAGE_CHOICES,
     LAYERS,
-    LOCKED_TIMES,
+    PICTURES,
     SYSTEM,
     Analysis,
     Start,
@@ -21,29 +23,46 @@ from app.state.view_state import (
     allowed_resolutions,
     allowed_t_max,
 )
-from engine import POTENTIALS, Plane, Window
-from engine.service import FREQUENCIES, LARGEST_NUMBER, LONGEST_TEXT, STRENGTHS, TYPED, System
+from app.state.watched_starts import COUNTS, DEFAULT_STARTS, StartsFrom, WatchedStarts
+from engine import POTENTIALS, Plane, Slice, System, Window
+from engine.service import LARGEST_NUMBER, LARGEST_VALUE, LONGEST_TEXT, PARAMETER_RANGES, TYPED, read_slice, write_slice
+from plots.map_images import ON_DEMAND
 from plots.palette import MOST_ORBITS, PALETTES
+from plots.time_scale import TimeScale
 
 LONGEST_VALUE = LONGEST_TEXT
 """Maximal length of a value in a link, in characters."""
 
+EMBED = "embed"
+"""Parameter of a page in a frame of another one, which shows one picture only; its value is that of ``focus``."""
+
+_FIRST_EMBEDDED = "basins"
+# The lower end of a scale of escape times whose link names the upper end only.
+_SHORTEST = 1.0
 _SHOWN = 40
 # Attributes that have no meaning for another system.
 _OF_SYSTEM = ("energy", "window", "box", "starts", "chosen")
 
 
-def write_link(state: ViewState) -> str:
-    """Query string of a view state, with its question mark."""
+def write_link(state: ViewState, *, embedded: bool = False) -> str:
+    """Query string of a view state, with its question mark.
+
+    Parameters
+    ----------
+    state
+        The view.
+    embedded
+        Whether the page shows one picture only: the one that is shown large, or else the basins.
+    """
     chosen: dict[str, Any] = {
-        "case": state.case,
-        **({"V": state.formula} if state.case == TYPED else {}),
-        **{name: repr(value) for name, value in state.system.changed.items()},
-        "plane": state.plane.key,
+        **_system_in_link(state.system),
+        **_slice_in_link(state.plane),
         "h": repr(float(state.energy)),
         "t_max": f"{state.t_max:g}",
         "resolution": state.resolution,
     }
+    if state.compared is not None:
+        chosen |= _compared_in_link(state.compared)
     for name in ("window", "box"):
         part: Window | None = getattr(state, name)
         if part is not None:
@@ -53,15 +72,21 @@ def write_link(state: ViewState) -> str:
         chosen["images"] = state.images
     if state.analysis is not Analysis.ORBIT:
         chosen["analysis"] = state.analysis.value
+    if state.watched != DEFAULT_STARTS:
+        chosen["watch"] = f"{state.watched.where},{state.watched.count},{state.watched.seed},{state.watched.radius:g}"
+    if embedded:
+        chosen[EMBED] = state.focus or _FIRST_EMBEDDED
+    elif state.focus:
+        chosen["focus"] = state.focus
     if state.palette != ViewState.param.palette.default:
         chosen["palette"] = state.palette
     if state.lock_times is not None:
-        chosen["lock_times"] = f"{state.lock_times:g}"
+        chosen["lock_times"] = f"{state.lock_times.low:g},{state.lock_times.high:g}"
     starts: tuple[Start, ...] = state.starts
     if starts:
         chosen["orbits"] = ";".join(map(_joined, starts))
         chosen["look"] = state.chosen + 1
-    return "?" + urlencode(chosen, safe=",;")
+    return "?" + urlencode(chosen, safe=",;:=")
 
 
 def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
@@ -88,12 +113,77 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
         try:
             if len(text) > LONGEST_VALUE:
                 raise ValueError
-            values[attribute] = read(text)
+            value = read(text)
+            values[attribute] = values.get(attribute, {}) | value if isinstance(value, dict) else value
         except (ValueError, KeyError):
             problems.append(f"Ignored {_quoted(name, text)}: choose {legal}.")
+    problems += drop_unknown_letters(values)
+    problems += [*_read_slice(parameters, values), *_read_compared(parameters, values)]
+    if EMBED in parameters and values.get("focus") in ON_DEMAND:
+        values[ON_DEMAND[values["focus"]]] = True
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
         values["chosen"] = 0
     return values, problems
+
+
+def _system_in_link(system: System) -> dict[str, str]:
+    """The system as parameters of a link."""
+    return {
+        "case": system.case,
+        **({"V": system.formula} if system.case == TYPED else {}),
+        **{name: repr(value) for name, value in system.well_parameters.items()},
+        **letters_in_link(system),
+    }
+
+
+def _compared_in_link(view: ComparedView) -> dict[str, str]:
+    """The view with which the state is compared; the names of its parameters are those of the state with a prefix."""
+    energies = view.energy if isinstance(view.energy, tuple) else (view.energy,)
+    parts = {**_system_in_link(view.system), **_slice_in_link(view.plane), "h": _joined(energies)}
+    return {f"{_COMPARED}{name}": text for name, text in parts.items()}
+
+
+def _read_compared(parameters: Mapping[str, str], values: dict[str, Any]) -> list[str]:
+    """Add the view with which the state is compared to the values of a link, or return messages why there is none."""
+    given = {name.removeprefix(_COMPARED): text for name, text in parameters.items() if name.startswith(_COMPARED)}
+    if not given:
+        return []
+    energy = given.pop("h", "")
+    described = {name: text for name, text in given.items() if name in _DESCRIBES_VIEW}
+    found, problems = read_link(described)
+    try:
+        plane = found.get("plane", ViewState.param.plane.default)
+        if len(energy) > LONGEST_VALUE:
+            raise ValueError
+        first, *last = _read_numbers(energy, 1 if plane.energy_axis is None else 2)
+        if max(map(abs, (first, *last))) > LARGEST_NUMBER:
+            raise ValueError
+    except ValueError:
+        return [*problems, f"Ignored {_quoted(f'{_COMPARED}h', energy)}: choose a number, such as 0.25, or two for an axis h."]
+    if not problems:
+        values["compared"] = ComparedView(linked_system(found), plane, (first, last[0]) if last else first)
+    return problems
+
+
+def _slice_in_link(chosen: Slice) -> dict[str, str]:
+    """The slice as parameters of a link."""
+    axes, held = write_slice(chosen)
+    return {_PLANE: axes, **({_FIX: held} if held else {})}
+
+
+def _read_slice(parameters: Mapping[str, str], values: dict[str, Any]) -> list[str]:
+    """Add the slice of a link to its values, or return a message why there is none."""
+    axes, held = (parameters.get(name, "") for name in (_PLANE, _FIX))
+    if not axes and not held:
+        return []
+    try:
+        if len(axes) + len(held) > LONGEST_VALUE:
+            raise ValueError
+        values["plane"] = read_slice(axes, held, linked_system(values))
+    except ValueError:
+        shown = ", ".join(_quoted(name, parameters[name]) for name in (_PLANE, _FIX) if name in parameters)
+        return [f"Ignored {shown}: choose {_listed(plane.key for plane in Plane)}, or two axes such as x,theta held by y=0.1."]
+    return []
 
 
 def linked_system(values: Mapping[str, Any]) -> System:
@@ -104,7 +194,11 @@ def linked_system(values: Mapping[str, Any]) -> System:
 
 def without_system(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values of a link that have a meaning for any system."""
-    return {name: value for name, value in values.items() if name not in (*SYSTEM, *_OF_SYSTEM)}
+    return {
+        name: value
+        for name, value in values.items()
+        if name not in (*SYSTEM, *_OF_SYSTEM) and not (name == "plane" and value.parameter is not None)
+    }
 
 
 def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[dict[str, Any], list[str]]:
@@ -117,8 +211,7 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
     reviewed
         The review of their `linked_system`, which is not refused.
     """
-    assert reviewed.energies is not None, "a refused system is not shown"
-    lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.energies.first
+    lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.shown_energies.first
     shown = {"energy": first} | {name: value for name, value in values.items() if name not in SYSTEM}
     if shown["energy"] > lowest:
         return shown, []
@@ -164,11 +257,21 @@ def _read_window(text: str) -> Window:
     return Window(*_read_numbers(text, 4))
 
 
+def _read_times(text: str) -> TimeScale:
+    """A scale of escape times; a single number is its upper end."""
+    return TimeScale(*_read_numbers(text, 2)) if "," in text else TimeScale(_SHORTEST, _read_number(text))
+
+
 def _read_starts(text: str) -> tuple[tuple[float, ...], ...]:
     starts = tuple(_read_numbers(pair, 2) for pair in text.split(";"))
     if len(starts) > MOST_ORBITS:
         raise ValueError
     return starts
+
+
+def _read_watched(text: str) -> WatchedStarts:
+    where, count, seed, radius = text.split(",")
+    return WatchedStarts(StartsFrom(where), int(count), int(seed), _read_number(radius))
 
 
 def _between(low: float, high: float) -> Callable[[str], float]:
@@ -179,6 +282,12 @@ def _between(low: float, high: float) -> Callable[[str], float]:
         return number
 
     return read
+
+
+def _parameter(name: str, low: float, high: float) -> Callable[[str], dict[str, float]]:
+    """A parser of the value of ω1, ω2 or ε."""
+    read = _between(low, high)
+    return lambda text: {name: read(text)}
 
 
 def _one_of(choices: Mapping[str, Any]) -> Callable[[str], Any]:
@@ -197,9 +306,12 @@ def _listed(choices: Iterable[str]) -> str:
 
 
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
-_PLANES = {plane.key: plane for plane in Plane}
+_PLANE, _FIX = "plane", "fix"
+_COMPARED = "with_"
+_DESCRIBES_VIEW = ("case", "V", *PARAMETER_RANGES, LETTERS, _PLANE, _FIX)
 _SWITCH = {"yes": True, "no": False}
 _ANALYSES = {analysis.value: analysis for analysis in Analysis}
+_PICTURES = {name: name for name in PICTURES}
 _PALETTES = {name: name for name in PALETTES}
 _PLACES = {str(place + 1): place for place in range(MOST_ORBITS)}
 _WINDOW = "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below its high"
@@ -207,19 +319,31 @@ _WINDOW = "four numbers x_low,x_high,ordinate_low,ordinate_high, each low below 
 # For each parameter: attribute of the view state, parser, and legal values.
 _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "case": ("case", _one_of(_CASES), _listed(_CASES)),
-    "V": ("formula", str, f"a polynomial in x and y of at most {LONGEST_TEXT} characters"),
-    "omega_1": ("omega_1", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
-    "omega_2": ("omega_2", _between(*FREQUENCIES), f"a number from {FREQUENCIES[0]:g} to {FREQUENCIES[1]:g}"),
-    "epsilon": ("epsilon", _between(*STRENGTHS), f"a number from {STRENGTHS[0]:g} to {STRENGTHS[1]:g}"),
-    "plane": ("plane", _one_of(_PLANES), _listed(_PLANES)),
+    "V": ("formula", str, f"a formula in x and y of at most {LONGEST_TEXT} characters"),
+    **{
+        name: ("parameters", _parameter(name, low, high), f"a number from {low:g} to {high:g}")
+        for name, (low, high) in PARAMETER_RANGES.items()
+    },
+    LETTERS: (
+        "parameters",
+        read_letters,
+        f"letter:number pairs such as a:1.5,b:-2, from {-LARGEST_VALUE:g} to {LARGEST_VALUE:g}",
+    ),
     "h": ("energy", _between(-LARGEST_NUMBER, LARGEST_NUMBER), "a number, such as 0.25"),
     "window": ("window", _read_window, _WINDOW),
     "box": ("box", _read_window, _WINDOW),
     **{name: (name, _one_of(_SWITCH), "yes or no") for name in LAYERS},
     "analysis": ("analysis", _one_of(_ANALYSES), _listed(_ANALYSES)),
+    "watch": (
+        "watched",
+        _read_watched,
+        f"{_listed(StartsFrom)}, {_listed(map(str, COUNTS))}, a seed, and a power of ten, such as well,5000,1,-2",
+    ),
+    "focus": ("focus", _one_of(_PICTURES), _listed(_PICTURES)),
+    EMBED: ("focus", _one_of(_PICTURES), _listed(_PICTURES)),
     "images": ("images", _one_of(IMAGE_CHOICES), _listed(IMAGE_CHOICES)),
     "palette": ("palette", _one_of(_PALETTES), _listed(_PALETTES)),
-    "lock_times": ("lock_times", _between(*LOCKED_TIMES), f"a number from {LOCKED_TIMES[0]:g} to {LOCKED_TIMES[1]:g}"),
+    "lock_times": ("lock_times", _read_times, "two positive numbers low,high, the first below the second"),
     "orbits": ("starts", _read_starts, f"up to {MOST_ORBITS} starts x,ordinate, separated by semicolons"),
     "look": ("chosen", _one_of(_PLACES), _listed(_PLACES)),
 }
@@ -234,8 +358,8 @@ def _limited_readers() -> dict[str, tuple[str, Callable[[str], Any], str]]:
     }
 
 
-PARAMETERS = (*_READERS, "t_max", "resolution")
+PARAMETERS = (*_READERS, _PLANE, _FIX, *(f"{_COMPARED}{name}" for name in (*_DESCRIBES_VIEW, "h")), "t_max", "resolution")
 """Names of the parameters of a link."""
 
-LINKED = (*(attribute for attribute, _, _ in _READERS.values()), "t_max", "resolution")
+LINKED = (*dict.fromkeys(attribute for attribute, _, _ in _READERS.values()), "plane", "compared", "t_max", "resolution")
 """Attributes of the view state that a link contains."""

@@ -6,12 +6,13 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from app.state.view_state import DEFAULT_SIDE, Analysis
-from engine import Plane, Slice, Window
+from app.state.watched_starts import DEFAULT_STARTS, StartsFrom, WatchedStarts
+from engine import Coordinate, ParameterAxis, Plane, Slice, System, Window
 
-GROUPS = ("The paper", "Places", "Explanations")
-"""Kinds of figures in the paper, details found by zooming, and analyses that explain both."""
+GROUPS = ("The paper", "Places", "Explanations", "Other slices")
+"""Kinds of figures in the paper, details found by zooming, analyses that explain both, and slices that are not in the paper."""
 
-_DESCRIPTION = ("key", "title", "caption", "group", "picture")
+_DESCRIPTION = ("key", "title", "caption", "group", "picture", "invitation")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +29,8 @@ class Preset:
         One of `GROUPS`.
     picture
         Picture of its thumbnail, one of `plots.map_images.TITLES`.
+    invitation
+        One line of text if the view is offered before there is an orbit; empty for others.
     case, plane, energy, window, t_max, resolution, starts, judge, trust, manifolds, images, origins, analysis
         As in `ViewState`.
     """
@@ -50,13 +53,15 @@ class Preset:
     images: int = 0
     origins: bool = False
     analysis: Analysis = Analysis.ORBIT
+    watched: WatchedStarts = DEFAULT_STARTS
+    invitation: str = ""
 
     def values(self) -> dict[str, Any]:
         """Values of the attributes of the view state."""
         return {part.name: getattr(self, part.name) for part in fields(self) if part.name not in _DESCRIPTION}
 
 
-_PAPER, _PLACES, _EXPLANATIONS = GROUPS
+_PAPER, _PLACES, _EXPLANATIONS, _SLICES = GROUPS
 
 # fmt: off
 PRESETS: tuple[Preset, ...] = (
@@ -69,6 +74,7 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="four-exits", title="Four exits", group=_PAPER, picture="curves",
+        invitation="0.09 apart, opposite exits",
         case="III", plane=Plane.X_Y, energy=0.30, t_max=1e3,
         starts=((-0.46, -0.79), (0.46, -0.79), (-0.46, -0.7), (0.46, -0.7)),
         caption="With the term x²y² the well opens at four saddles at the same energy, h = 1/4. On each side two orbits start "
@@ -103,6 +109,7 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="all-energies", title="All energies", group=_PAPER, picture="basins",
+        invitation="Every energy in one picture",
         case="II", plane=Plane.X_H, energy=0.20, starts=((0.36, 0.36), (-0.33, 0.24), (0.63, 0.21), (0.63, 0.19)),
         caption="The vertical axis is the energy: each row is a well with its own exits. At the lowest energies, just above h "
         "= 1/6, grey islands lie in a chaotic sea. With rising energy they vanish one after the other, and wide arcs "
@@ -124,6 +131,7 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="super-sticky", title="A sticky orbit", group=_PAPER, picture="times",
+        invitation="Regular for 20 000 time units, then gone",
         case="III", plane=Plane.X_PX, energy=0.26, starts=((0.2285, 0.5405),),
         caption="For more than 20 000 time units, about two thousand periods, R² and SALI of this orbit look regular: it stays "
         "close to a torus. Then SALI drops, and soon after the orbit escapes. If the start is moved by 10⁻¹², it may "
@@ -131,6 +139,7 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="three-meet", title="Three basins with one boundary", group=_PLACES, picture="basins",
+        invitation="Where two meet, so does the third",
         case="II", plane=Plane.X_Y, energy=0.26, window=Window(-0.2, 0.2, -0.5, -0.1),
         starts=((0.11, -0.3), (0.115, -0.3), (0.12, -0.3)),
         caption="Wherever two colours seem to touch, the third lies between them at every magnification: all three basins "
@@ -145,6 +154,7 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="closer", title="300 000 000 000 times enlarged", group=_PLACES, picture="basins",
+        invitation="Fractal down to 8·10⁻¹²",
         case="III", plane=Plane.X_Y, energy=0.60, t_max=1e3,
         window=Window(0.114912643464, 0.114912643472, 0.300643524596, 0.300643524604),
         starts=(
@@ -203,6 +213,7 @@ PRESETS: tuple[Preset, ...] = (
     ),
     Preset(
         key="owl", title="Closed exits", group=_PLACES, picture="characters", judge=True, t_max=1e4,
+        invitation="Islands in a chaotic sea",
         case="I", plane=Plane.X_PX, energy=0.12, starts=((0.12, 0.155), (-0.1, 0.24), (0.0, 0.28), (0.2, 0.0)),
         caption="Below the escape energy of 1/8 no orbit escapes, but there is chaos (magenta) before the exits open. The cyan "
         "islands in it form chains: the first orbit visits three islands in turn, the second alternates between two. "
@@ -231,7 +242,7 @@ PRESETS: tuple[Preset, ...] = (
         "the grey edge of a regular region, where orbits may stay for thousands of time units.",
     ),
     Preset(
-        key="section", title="The section of Hénon and Heiles", group=_EXPLANATIONS, picture="basins",
+        key="section", title="The section of Hénon and Heiles", group=_SLICES, picture="basins",
         case="HH", plane=Plane.Y_PY, energy=0.18, t_max=1e4,
         starts=((0.05, 0.0), (0.61, 0.0), (0.7, 0.0), (-0.2, 0.0), (0.2, 0.0)),
         caption="Hénon and Heiles drew their orbits in this plane, y and py where an orbit passes x = 0 to the right. At their "
@@ -265,6 +276,42 @@ PRESETS: tuple[Preset, ...] = (
         caption="Hénon and Heiles' potential with three exits. The measures below state how mixed the colours are, whether all "
         "three basins share one boundary, and how slowly a more accurate start reduces the uncertainty: press the "
         "button there to compute pairs of orbits.",
+    ),
+    Preset(
+        key="draining", title="A draining well", group=_EXPLANATIONS, picture="basins", analysis=Analysis.WATCH,
+        case="III", plane=Plane.X_PX, energy=0.45, t_max=1e4,
+        caption="Five thousand orbits start all over the well, in the colours of the exits that they will take. At first they "
+        "leave as fast as flux over volume says: at t = 5 a little more than four in ten are left. At t = 50 it is one in "
+        "seven, near islands and in them, where mixed motion would have left one in four thousand.",
+    ),
+    Preset(
+        key="torn", title="Torn four ways", group=_EXPLANATIONS, picture="basins", analysis=Analysis.WATCH,
+        case="III", plane=Plane.X_PX, energy=0.45, t_max=1e4, starts=((-0.45, 0.175),),
+        watched=WatchedStarts(StartsFrom.DISC, 5000, 1, -3.0),
+        caption="Five thousand orbits start within a thousandth of the picture from one another. Until t = 15 all of them stay "
+        "inside, stretched into a thread and folded; then they leave through all four exits, a sixth to three tenths through "
+        "each.",
+    ),
+    Preset(
+        key="tangential", title="Thrown sideways", group=_SLICES, picture="basins",
+        case="HH", plane=Plane.TANGENTIAL, energy=0.2, t_max=1e4, starts=((-0.3, 0.1), (0.1, -0.2), (0.0, 0.1)),
+        caption="Every orbit of this picture starts at right angles to the line from the centre, with all its energy: the plane "
+        "in which Aguirre, Vallejo and Sanjuán showed in 2001 that the three basins of Hénon and Heiles share one boundary.",
+    ),
+    Preset(
+        key="launch", title="A throw in any direction", group=_SLICES, picture="basins",
+        case="III", plane=Slice(Coordinate.THETA, Coordinate.H), energy=0.45, t_max=1e4,
+        starts=((0.8, 0.3), (2.35, 0.3), (-2.35, 0.3), (-0.78, 0.3), (0.0, 0.35)),
+        caption="All orbits start in the middle of the well. To the right the direction of the throw turns, upward its energy "
+        "grows. Just above the escape energy only a throw straight at an exit leaves; the four windows widen with the energy, "
+        "until few throws between them stay inside.",
+    ),
+    Preset(
+        key="strength", title="From order to escape", group=_SLICES, picture="basins",
+        case="I", plane=Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), energy=0.2, t_max=1e4,
+        starts=((0.1, 0.7), (0.1, 1.5), (0.55, 1.2), (-0.5, 1.9)),
+        caption="The energy stays the same, and upward grows ε, the strength of the perturbation. Where 1/(8 ε²) falls below the "
+        "energy, the exits open: the islands of bounded orbits shrink, split at resonances and are gone.",
     ),
 )
 """All presets in the order of the page."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 
-from engine import CASES, Potential, PotentialReview, review_potential
-from engine.service import EnergyRange, System
+from engine import CASES, Potential, PotentialReview, Slice, System, review_potential
+from engine.service import EnergyRange, Job, Queue
 from plots.accepted_potentials import refusal
 
 
@@ -39,10 +39,20 @@ class SystemReview:
         """The potential, with its saddles already found."""
         return self.review.potential
 
+    @property
+    def shown_energies(self) -> EnergyRange:
+        """The energy range of a system that is shown, which has no problem."""
+        assert self.energies is not None, "a refused system is not shown"
+        return self.energies
+
+    def energy_on(self, plane: Slice, energy: float) -> float | tuple[float, float]:
+        """The energy of a map on a plane: `energy`, or the range of an axis h."""
+        return energy if plane.energy_axis is None else (self.potential.escape_energy, self.shown_energies.high)
+
 
 def is_known(system: System) -> bool:
     """Whether this is a case of the paper, whose review is known from the start."""
-    return system.case in CASES and not system.changed
+    return system.case in CASES and not system.parameters
 
 
 def review_system(system: System) -> SystemReview:
@@ -56,6 +66,11 @@ def review_system(system: System) -> SystemReview:
     review = review_potential(system.potential)
     problem = refusal(review)
     return SystemReview(system, review, problem, system.formula_shown, None if problem else system.energies)
+
+
+def review_job(system: System) -> Job[SystemReview]:
+    """The job of `review_system`."""
+    return Job(review_system, (system,), queue=Queue.LONG_CALL)
 
 
 @cache

@@ -11,10 +11,14 @@ import numpy as np
 import param
 
 from app.runtime.process_state import process_state
+from app.state.compared_view import ComparedView
 from app.state.system_review import SystemReview, review_catalogue_entry
-from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Window, integrate_orbit, start_states
-from engine.service import FREQUENCIES, LARGEST_NUMBER, PAPER_ENERGIES, STRENGTHS, TYPED, EnergyRange, Job, Queue, System
+from app.state.watched_starts import DEFAULT_STARTS, WatchedStarts
+from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Slice, System, Window, integrate_orbit, start_states
+from engine.service import LARGEST_NUMBER, PAPER_ENERGIES, TYPED, EnergyRange, Job, Queue
+from plots.map_images import COMPARISON_TITLES, TITLES
 from plots.palette import MOST_ORBITS, PALETTES, Palette
+from plots.time_scale import TimeScale
 
 
 def _up_to[Number: (int, float)](limit: float, choices: dict[str, Number]) -> dict[str, Number]:
@@ -27,9 +31,6 @@ SYSTEM = tuple(field.name for field in fields(System))
 """Attributes of a view state that define its system."""
 
 T_MAX_CHOICES = {"100": 1e2, "1 000": 1e3, "10 000": 1e4, "100 000": 1e5, "1 000 000": 1e6}
-LOCKED_TIMES = (10.0, 1e6)
-"""Limits of the upper end of a locked scale of escape times."""
-
 IMAGES = 3
 """Images of the stable manifolds that are computed: later ones are less than a pixel apart."""
 
@@ -63,10 +64,23 @@ class Analysis(StrEnum):
     STATISTICS = "statistics"
     MEASURES = "measures"
     ENERGIES = "energies"
+    WATCH = "watch"
 
+
+PICTURES = ("well", *(name for name in TITLES if name != "curves"), *COMPARISON_TITLES)
+"""Names of the pictures: the well, the maps of starts, and the comparison with another view."""
 
 Start = tuple[float, float]
 """x and ordinate of a start in the plane."""
+
+
+def plane_of_system(plane: Slice, system: System) -> Slice:
+    """The same slice for another system; the default one if this has not its parameter."""
+    try:
+        return plane.of_system(system)
+    except ValueError:
+        default: Slice = ViewState.param.plane.default
+        return default
 
 
 class _Starts(param.Parameter):
@@ -87,10 +101,8 @@ class ViewState(param.Parameterized):
 
     case = param.Selector(default="I", objects=[*POTENTIALS, TYPED])
     formula = param.String(default="", doc="V(x, y) as text if the case is TYPED")
-    omega_1 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along x")
-    omega_2 = param.Number(default=1.0, bounds=FREQUENCIES, doc="frequency of the well along y")
-    epsilon = param.Number(default=1.0, bounds=STRENGTHS, doc="strength of the perturbation")
-    plane = param.Selector(default=Plane.X_PX, objects=list(Plane))
+    parameters = param.Dict(default={}, doc="values of ω1, ω2, ε and the letters of the formula that are not 1, by name")
+    plane = param.ClassSelector(class_=Slice, default=Plane.X_PX)
     energy = param.Number(
         default=PAPER_ENERGIES["I"].first, bounds=(-LARGEST_NUMBER, LARGEST_NUMBER), doc="h; not used on (x, h)"
     )
@@ -107,10 +119,15 @@ class ViewState(param.Parameterized):
     manifolds = param.Boolean(default=False, doc="whether the stable manifolds of the Lyapunov orbits are drawn")
     images = param.Selector(default=0, objects=list(IMAGE_CHOICES.values()), doc="image of the manifolds drawn; 0 for all")
     origins = param.Boolean(default=False, doc="whether orbits are integrated backward in time, too")
+    compared = param.ClassSelector(
+        class_=ComparedView, default=None, allow_None=True, doc="view with which this one is compared; None for no comparison"
+    )
+    watched = param.ClassSelector(class_=WatchedStarts, default=DEFAULT_STARTS, doc="starts of the orbits that are watched")
     analysis = param.Selector(default=Analysis.ORBIT, objects=list(Analysis), doc="what is shown beside the maps")
+    focus = param.Selector(default="", objects=["", *PICTURES], doc="picture that is shown large; empty for none")
     palette = param.Selector(default="paper", objects=list(PALETTES), doc="name of the palette")
-    lock_times = param.Number(
-        default=None, bounds=LOCKED_TIMES, allow_None=True, doc="upper end of the scale of escape times; None follows the map"
+    lock_times = param.ClassSelector(
+        class_=TimeScale, default=None, allow_None=True, doc="scale of the escape times; None fits it to the map in view"
     )
     starts = _Starts(default=(), doc="starts of up to MOST_ORBITS orbits")
     chosen = param.Integer(default=0, bounds=(0, MOST_ORBITS - 1), doc="index of the chosen start")
@@ -125,13 +142,13 @@ class ViewState(param.Parameterized):
     @property
     def system(self) -> System:
         """The chosen case with its parameters."""
-        return System(self.case, self.formula, float(self.omega_1), float(self.omega_2), float(self.epsilon))
+        return System(self.case, self.formula, self.parameters)
 
     @property
     def reviewed(self) -> SystemReview:
         """The chosen system with its review; RuntimeError if it is no catalogue entry and `show` did not get its review."""
         if self._reviewed.system != self.system:
-            if self.case == TYPED or self.system.changed:
+            if self.case == TYPED or self.system.parameters:
                 raise RuntimeError(f"{self.system} has not been reviewed")
             self._reviewed = review_catalogue_entry(self.case)
         return self._reviewed
@@ -144,9 +161,7 @@ class ViewState(param.Parameterized):
     @property
     def energies(self) -> EnergyRange:
         """The energy range of the chosen system."""
-        energies = self.reviewed.energies
-        assert energies is not None, "a refused system is not shown"
-        return energies
+        return self.reviewed.shown_energies
 
     @property
     def colours(self) -> Palette:
@@ -160,17 +175,25 @@ class ViewState(param.Parameterized):
 
     def map_spec(self) -> MapSpec:
         """Specification of the map; ValueError if a choice is invalid."""
-        energy: float | tuple[float, float] = self.energy
-        if self.plane.energy_axis is not None:
-            energy = (self.potential.escape_energy, self.energies.high)
+        energy = self.reviewed.energy_on(self.plane, self.energy)
         return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
+
+    def present_view(self) -> ComparedView:
+        """System, plane and energy, to compare others with."""
+        return ComparedView(self.system, self.plane, self.reviewed.energy_on(self.plane, self.energy))
+
+    def start_state(self, start: Start) -> tuple[float, ...]:
+        """x, y, px, py of a start; NaN if it is forbidden."""
+        x, ordinate = (np.array([value]) for value in start)
+        return tuple(start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist())
 
     def orbit_job(self, start: Start) -> Job[Orbit] | None:
         """The job of the orbit of a start; None if the start is forbidden at this energy."""
-        x, ordinate = (np.array([value]) for value in start)
-        state = tuple(start_states(self.potential, self.plane, self.energy, x, ordinate)[0].tolist())
-        arguments = (self.potential, state, self.t_max)
-        return Job(integrate_orbit, arguments, queue=Queue.LONG_CALL) if np.isfinite(state).all() else None
+        state = self.start_state(start)
+        if not np.isfinite(state).all():
+            return None
+        arguments = (self.plane.potential_at(self.potential, *start), state, self.t_max)
+        return Job(integrate_orbit, arguments, queue=Queue.LONG_CALL)
 
     def add_start(self, start: Start) -> bool:
         """Add a start and choose it; returns False if there are `MOST_ORBITS` others already."""
@@ -183,12 +206,16 @@ class ViewState(param.Parameterized):
     def show(self, reviewed: SystemReview, **values: Any) -> None:
         """Select a reviewed system together with other values."""
         self._reviewed = reviewed
-        self.param.update(**{**values, **asdict(reviewed.system)})
+        plane = plane_of_system(values.get("plane", self.plane), reviewed.system)
+        self.param.update(**{**values, **asdict(reviewed.system), "plane": plane})
+
+    def show_slice(self, plane: Slice) -> None:
+        """Select a slice, and remove window and starts."""
+        self.param.update(plane=plane, window=None, starts=(), chosen=0)
 
     def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
         """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
-        assert reviewed.energies is not None, "a refused system is not shown"
-        self.show(reviewed, energy=reviewed.energies.first if energy is None else energy, window=None, starts=(), chosen=0)
+        self.show(reviewed, energy=reviewed.shown_energies.first if energy is None else energy, window=None, starts=(), chosen=0)
 
     def remove_start(self, place: int) -> None:
         """Remove the start at an index."""

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from functools import partial
+from typing import Any, ClassVar
 
 import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import Fate
-from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import TIME
+from engine.results.arrays import read_only
 from engine.results.result import Result
-from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max
+from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max, checks_types
 
 ENERGY_TOLERANCE = 1e-9
 """Largest difference between the energy of a start and the given energy, in units of the well."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Outcomes(Result):
-    """Outcomes of n orbits, as returned by `classify_orbits`.
+    """Outcomes of n orbits, as returned by `classify_orbits`; arrays are read-only.
 
     Attributes
     ----------
@@ -40,6 +42,8 @@ class Outcomes(Result):
     escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy_error: np.ndarray
+    codes: ClassVar = {"fate": Fate}
+    row_dimension: ClassVar = "orbit"
 
 
 def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch) -> Outcomes:
@@ -51,9 +55,11 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
     difference = np.abs(potential.energy(batch.state[decided]) - reference)
     error[decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
     escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
-    return Outcomes(batch.fate.copy(), escape_time, crossings, error)
+    return Outcomes(*map(read_only, (batch.fate.copy(), escape_time, crossings, error)))
 
 
+@shows_progress("orbits")
+@checks_types(potential=Potential, execution=Execution)
 def classify_orbits(
     potential: Potential,
     energy: float,
@@ -77,6 +83,10 @@ def classify_orbits(
     execution
         How the computation runs. When it is cancelled, orbits without a result stay `Fate.NOT_COMPUTED`.
 
+    Returns
+    -------
+    `Outcomes`, whose `to_pandas` and `to_xarray` have a row for each orbit.
+
     Raises
     ------
     ValueError
@@ -85,22 +95,30 @@ def classify_orbits(
     Examples
     --------
     >>> import numpy as np
-    >>> from engine import CASES, Plane, classify_orbits, start_states
+    >>> from escape_explorer import CASES, Plane, classify_orbits, start_states
     >>> states = start_states(CASES["I"], Plane.X_PX, 0.3, np.array([-0.3, 0.0, 0.3]), np.zeros(3))
     >>> outcomes = classify_orbits(CASES["I"], 0.3, states, t_max=100.0)
     >>> outcomes.fate.tolist(), outcomes.escape_time.round(2).tolist()
     ([1, 1, 1], [45.7, 2.03, 1.82])
     """
     states = _checked_states(potential, energy, states)
-    t_max = checked_t_max(t_max)
+    t_max = checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
     units, well = potential.units, potential.in_well_units
     well_energy = energy / units.energy
     curves = exit_curves(well, well_energy)[None]
     batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
-    batch.mark_outside(well, every_orbit, curves)
-    propagate_batch(well, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution)
+    batch.mark_outside(well, every_orbit, curves, execution=execution)
+    propagate_batch(
+        well, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution,
+        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max / units.time)),
+    )  # fmt: skip
     return units.restore(collect_outcomes(well, np.full(len(states), well_energy), batch))
+
+
+def _share_done(batch: OrbitBatch, t_max: float) -> float:
+    """Share of the integration time that is done; an orbit that has ended is done."""
+    return float(np.where(batch.fate == Fate.NOT_COMPUTED, np.minimum(batch.t / t_max, 1.0), 1.0).mean())
 
 
 def _checked_states(potential: Potential, energy: float, states: Any) -> np.ndarray:

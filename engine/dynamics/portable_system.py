@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from engine.dynamics.fates import Fate
 from engine.exits.exit_tables import ExitTable, tabulate_exits
+from engine.potentials.expression_form import ExpressionForm
+from engine.potentials.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.taylor.jit.webassembly import constant_inputs, webassembly_module
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, ORDER, OVERSHOOT, TOLERANCE, generate_code
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT, TOLERANCE, generate_code
+from engine.taylor.source.series import ORDER
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +67,30 @@ class PortableSystem:
                 "fates": {fate.name.lower(): int(fate) for fate in Fate},
             },
             "table": self.table.tolist(),
-            "terms": [list(term) for term in well.terms],
+            "formula": _formula_data(well.form),
             "exits": exits,
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time},
         }
+
+
+@functools.singledispatch
+def _formula_data(form: Any) -> dict[str, object]:
+    """V as lists and numbers."""
+    raise TypeError(form)
+
+
+@_formula_data.register
+def _terms(form: PolynomialForm) -> dict[str, object]:
+    return {"terms": [list(term) for term in form.terms]}
+
+
+@_formula_data.register
+def _graph(form: ExpressionForm) -> dict[str, object]:
+    """The operations of V, V_x and V_y, with their numbers in place."""
+    graph, numbers = form.slopes_graph
+    nodes = [node._asdict() | {"numbers": [numbers[place] for place in node.numbers]} for node in graph.nodes]
+    return {"graph": {"nodes": nodes, "results": list(graph.results)}}
 
 
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
@@ -75,6 +99,7 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     Takes up to a second the first time for each structure of a potential, and for exits that are not cached.
     """
     well = potential.in_well_units
-    code = generate_code(well.terms, well.channels)
+    definition = well.form.definition
+    code = generate_code(definition, well.channels)
     exits = tabulate_exits(well, highest / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), constant_inputs(code, "step"), code.tabulate(well.terms), exits)
+    return PortableSystem(potential, webassembly_module(code), constant_inputs(code, "step"), code.tabulate(definition), exits)

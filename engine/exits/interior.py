@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from math import comb
+from typing import Any
 
 import numpy as np
 
 from engine.exits.lyapunov_orbits import exit_curves
+from engine.potentials.compiled import kernels_of
+from engine.potentials.expression_form import ExpressionForm
+from engine.potentials.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.taylor.kernels import interior
@@ -37,11 +42,28 @@ def find_outside_starts(
     curve_row
         (n,) the row of `curves` for each point.
     """
-    powers = np.array([term[:2] for term in potential.terms], np.int64).reshape(-1, 2)
-    coefficients = np.array([term[2] for term in potential.terms])
-    bernstein = _bernstein_matrix(max(int(powers.sum(axis=1).max(initial=0)), int(powers.max(initial=0))))
-    outside: np.ndarray = interior.find_outside(powers, coefficients, bernstein, x, y, energy, curves, curve_row)
+    outside: np.ndarray = _finder(potential.form, potential)(x, y, energy, curves, curve_row)
     return outside
+
+
+@functools.singledispatch
+def _finder(form: Any, potential: Potential) -> Callable[..., np.ndarray]:
+    """The kernel for a form of potentials, with its first arguments."""
+    raise TypeError(form)
+
+
+@_finder.register
+def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., np.ndarray]:
+    finder: Callable[..., np.ndarray] = kernels_of(potential).find_outside
+    return finder
+
+
+@_finder.register
+def _finder_of_polynomial(form: PolynomialForm, _potential: Potential) -> Callable[..., np.ndarray]:
+    powers = np.array([term[:2] for term in form.terms], np.int64).reshape(-1, 2)
+    coefficients = np.array([term[2] for term in form.terms])
+    bernstein = _bernstein_matrix(max(int(powers.sum(axis=1).max(initial=0)), int(powers.max(initial=0))))
+    return functools.partial(interior.find_outside_polynomial, powers, coefficients, bernstein)
 
 
 @functools.cache

@@ -5,18 +5,20 @@ from __future__ import annotations
 import functools
 import itertools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
+from engine.potentials.hill_region import check_closed_well
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import ENERGY, LENGTH, TIME, WellUnits, nearest_power_of_two
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels import events
-from engine.validation import checked_number
+from engine.validation import checked_number, checks_types
 
 # In units of the well.
 _LARGEST_FIT_ERROR = 1e-9
@@ -30,7 +32,7 @@ _CLOSED_HALF_WIDTH = 1e-3
 _FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LyapunovOrbit(Result):
     """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
 
@@ -60,12 +62,17 @@ class LyapunovOrbit(Result):
         for array in (self.x, self.y, self.curve):
             read_only(array)
 
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """The path and its times."""
+        return {"t": np.linspace(0.0, self.period, self.x.size), "x": self.x, "y": self.y}
+
     @property
     def half_path(self) -> np.ndarray:
         """(101, 2) the path over half a period, from one side of the channel to the other, for plots."""
         return np.column_stack([self.x, self.y])[: self.x.size // 2 + 1]
 
 
+@checks_types(potential=Potential)
 def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """The Lyapunov orbit over each saddle below `energy`.
 
@@ -88,7 +95,7 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
     Examples
     --------
-    >>> from engine import CASES, find_lyapunov_orbits
+    >>> from escape_explorer import CASES, find_lyapunov_orbits
     >>> [round(orbit.period, 6) for orbit in find_lyapunov_orbits(CASES["I"], 0.19)]
     [4.437671, 4.437671]
     >>> find_lyapunov_orbits(CASES["I"], 0.1)
@@ -268,7 +275,15 @@ def exit_curve_over_chord(potential: Potential, orbit: LyapunovOrbit) -> np.ndar
 
 
 def closed_channel_curves(potential: Potential) -> np.ndarray:
-    """(channels, columns) exit curves for closed channels: short lines across the saddles, where V is above any lower energy."""
+    """(channels, columns) exit curves for closed channels: short lines across the saddles, where V is above any lower energy.
+
+    Raises
+    ------
+    ValueError
+        If there are no exits, but the well is not closed either: it is not defined which orbits escape.
+    """
+    if not potential.channels:
+        check_closed_well(potential)
     rows = [_straight_curve(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)]
     return np.array(rows).reshape(potential.channels, events.CURVE_COLUMNS)
 

@@ -81,17 +81,41 @@ def compare_averages(
     return map_tiles(_agreeing_digits, potential, states, window, shape=(2,), execution=execution)
 
 
+def compare_halves(x: np.ndarray, y: np.ndarray) -> float:
+    """The digits to which weighted averages of x² and y² over both halves of one orbit, and one between them, agree.
+
+    Parameters
+    ----------
+    x, y
+        (n,) positions at n evenly spaced times, at least 2, several of them in each revolution.
+
+    Returns
+    -------
+    From 0 to 16, as `count_agreeing_digits`, with a window as long as half of the orbit; 0 for an orbit along an axis.
+    """
+    half = len(x) // 2
+    squares, weights = np.array([x * x, y * y]), window_weights(float(half), 1.0)
+    averages = np.array([squares[:, start : start + half] @ weights for start in (0, half, half // 2)])
+    return float(_digits(averages[:, :, None])[1, 0])
+
+
 def _agreeing_digits(potential: Potential, tile: np.ndarray, window: float) -> np.ndarray:
     """(lanes, 2) digits of the orbits in a tile (4, lanes)."""
     energy, step = potential.energy(tile.T), fixed_step_size(potential)
     averages = np.zeros((3, 2, tile.shape[1]))
     kernels_of(potential).birkhoff_averages(step, window_weights(window, step), tile, averages)
     with np.errstate(all="ignore"):
+        conserved = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE
+    return np.where(conserved, _digits(averages), 0.0).T
+
+
+def _digits(averages: np.ndarray) -> np.ndarray:
+    """(2, n) digits to which the first two, and all three, of the averages (3, 2, n) of two observables of n orbits agree."""
+    with np.errstate(all="ignore"):
         difference = np.array([np.ptp(averages[:count], axis=0) / np.abs(averages).max(axis=0) for count in (2, 3)])
         digits = -np.log10(np.maximum(difference.max(axis=1), 10.0**-_MOST_DIGITS))
-        conserved = np.abs(potential.energy(tile.T) - energy) <= _ENERGY_TOLERANCE
-    agreeing: np.ndarray = np.where(conserved & np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
-    return agreeing.T
+    agreeing: np.ndarray = np.where(np.isfinite(digits), np.maximum(digits, 0.0), 0.0)
+    return agreeing
 
 
 @functools.lru_cache(maxsize=16)

@@ -13,6 +13,7 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -21,12 +22,12 @@ from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import LENGTH, MOMENTUM
-from engine.results.arrays import read_only
+from engine.results.arrays import ReadOnlyArrays, read_only
 from engine.results.result import Result
 from engine.slices.default_window import default_window
 from engine.slices.section import SECTION
-from engine.slices.window import Window
-from engine.validation import checked_count, checked_number
+from engine.slices.window import GivenWindow, Window, checked_window
+from engine.validation import checked_count, checked_number, checks_types
 
 MOST_IMAGES = 6
 """Largest number of images; later ones are too fine and too many to plot."""
@@ -52,7 +53,7 @@ _MAX_PARTS = 8
 
 
 @dataclass(frozen=True, eq=False)
-class ManifoldArc:
+class ManifoldArc(ReadOnlyArrays):
     """A connected piece of one stable manifold on the section.
 
     Attributes
@@ -71,7 +72,7 @@ class ManifoldArc:
     px: np.ndarray = field(metadata=MOMENTUM)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StableManifolds(Result):
     """Intersections of the stable manifolds of all Lyapunov orbits of one energy with y = 0, py > 0.
 
@@ -92,6 +93,7 @@ class StableManifolds(Result):
     arcs: tuple[ManifoldArc, ...]
     images: int
     truncated: bool
+    row_dimension: ClassVar = "point"
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """All points, with the number of their arc from 1, its channel and its image."""
@@ -107,12 +109,13 @@ class StableManifolds(Result):
         return sum(arc.x.nbytes + arc.px.nbytes for arc in self.arcs)
 
 
+@checks_types(potential=Potential, execution=Execution)
 def find_stable_manifolds(
     potential: Potential,
     energy: float,
     *,
     images: int = 3,
-    window: Window | None = None,
+    window: GivenWindow | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> StableManifolds:
     """Find the curves on (x, px) that separate orbits leaving through a channel from orbits turning back before it.
@@ -131,8 +134,8 @@ def find_stable_manifolds(
     images
         Number of successive intersections of each tube with the section, 1 to `MOST_IMAGES`.
     window
-        Part of (x, px) to resolve in a zoom: the spacing of points follows from its size, as far as the number of orbits allows,
-        and curves beyond it are left out. None for the whole plane.
+        Part of (x, px) to resolve in a zoom, given as in `MapSpec`: the spacing of points follows from its size, as far as the
+        number of orbits allows, and curves beyond it are left out. None for the whole plane.
     execution
         How the computation runs.
 
@@ -155,7 +158,7 @@ def find_stable_manifolds(
 
     Examples
     --------
-    >>> from engine import CASES, find_stable_manifolds
+    >>> from escape_explorer import CASES, find_stable_manifolds
     >>> manifolds = find_stable_manifolds(CASES["I"], 0.19, images=1)
     >>> [(arc.channel, arc.image) for arc in manifolds.arcs]
     [(1, 1), (2, 1)]
@@ -163,9 +166,10 @@ def find_stable_manifolds(
     images = checked_count("images", images, 1, MOST_IMAGES)
     given, given_energy, units = potential, checked_number("energy", energy), potential.units
     whole = default_window(potential, SECTION.plane, given_energy)
+    part = None if window is None else checked_window(window)
     potential, energy = potential.in_well_units, given_energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum
-    spacing = _PointSpacing.for_window(whole.scaled(*factors), window.scaled(*factors) if window is not None else None)
+    spacing = _PointSpacing.for_window(whole.scaled(*factors), part.scaled(*factors) if part is not None else None)
     orbits = {orbit.channel: orbit for orbit in find_lyapunov_orbits(potential, energy)}
     mirror = potential.mirror_in_x and window is None
     firsts = [channel for channel in orbits if not mirror or channel <= potential.mirror_channels[channel]]

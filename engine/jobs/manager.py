@@ -59,7 +59,9 @@ class _Run:
 
     def priority(self) -> Priority:
         """Of the short calls."""
-        return Priority.BACKGROUND if self.map_priority is None else self.map_priority()
+        if self.map_priority is not None:
+            return self.map_priority()
+        return Priority.IDLE if self.job.queue is Queue.IDLE else Priority.BACKGROUND
 
 
 class Jobs:
@@ -228,11 +230,14 @@ class Jobs:
         return found
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
-        calls = self._scheduler.executor(run.client, run.priority)
+        calls = long_calls = self._scheduler.executor(run.client, run.priority)
+        if run.job.queue is not Queue.IDLE:
+            long_calls = self._scheduler.executor(run.client, lambda: Priority.LONG_CALL)
         return {
             Queue.FIRST_FRAME: calls,
             Queue.BACKGROUND: calls,
-            Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
+            Queue.IDLE: calls,
+            Queue.LONG_CALL: long_calls,
             Queue.COMPILATION: self._compilations.executor(run.client, lambda: Priority.LONG_CALL),
         }
 

@@ -17,17 +17,13 @@ from engine.maps.trust import TrustMap, compute_trust
 from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
-from engine.measures.escape_statistics import compute_statistics
+from engine.measures.escape_statistics import compute_statistics, pixels_inside
+from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.slices.window import Window
-from engine.sweeps.energy_curves import (
-    EnergyCurves,
-    EnergyCurvesSpec,
-    EnergyPoint,
-    EnergyPointSpec,
-    compute_energy_curves,
-    compute_energy_point,
-)
+from engine.sweeps.curve_points import CurvePoint, CurvePointSpec, compute_curve_point
+from engine.sweeps.curves import Curves, CurvesSpec, compute_curves
+from engine.trajectories.flux import EscapeFlux, compute_flux
 
 
 @dataclass(frozen=True)
@@ -73,9 +69,9 @@ def origin_fate_job(spec: MapSpec) -> Job[OriginFateMap]:
     return Job(join_origin_fates, tuple(map_job(replace(spec, backward=backward)) for backward in (False, True)))
 
 
-def basin_measures_job(spec: MapSpec) -> Job[BasinMeasures]:
-    """The job of the basin entropy and the Wada test of a map."""
-    return Job(_measure_basins, (map_job(spec),))
+def basin_measures_job(spec: MapSpec, box: Window | None = None) -> Job[BasinMeasures]:
+    """The job of the basin entropy and the Wada test of a map, or of the pixels in a box."""
+    return Job(_measure_basins, (map_job(spec), box))
 
 
 def decay_laws_job(spec: MapSpec, box: Window | None = None) -> Job[DecayLaws]:
@@ -83,12 +79,18 @@ def decay_laws_job(spec: MapSpec, box: Window | None = None) -> Job[DecayLaws]:
     return Job(_fit_laws, (map_job(spec), box), queue=Queue.LONG_CALL)
 
 
-def energy_point_job(point_spec: EnergyPointSpec) -> Job[EnergyPoint]:
+def flux_job(spec: MapSpec) -> Job[EscapeFlux] | None:
+    """The job of the flux through the exits at the energy of a map; None on a slice of several energies or potentials."""
+    several = spec.common_energy is None or spec.plane.parameter is not None
+    return None if several else Job(compute_flux, (spec.potential, spec.common_energy))
+
+
+def curve_point_job(point_spec: CurvePointSpec) -> Job[CurvePoint]:
     """The job of the measures at one energy."""
     return Job(_measure_point, (point_spec, map_job(point_spec.map_spec)))
 
 
-def energy_curves_job(spec: EnergyCurvesSpec) -> Job[EnergyCurves]:
+def curves_job(spec: CurvesSpec) -> Job[Curves]:
     """The job of measures against energy; the measures at each energy are cached separately."""
     return Job(_compute_curves, (spec,))
 
@@ -104,26 +106,28 @@ def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | No
     return found if found is not None and found.batch is not None else None
 
 
-def _measure_basins(escape_map: EscapeMap) -> BasinMeasures:
-    return BasinMeasures(compute_basin_entropy(escape_map), compute_wada_test(escape_map))
+def _measure_basins(escape_map: EscapeMap, box: Window | None) -> BasinMeasures:
+    fate = escape_map.fate[pixels_inside(escape_map, box)]
+    entropy = compute_basin_entropy(*exit_labels(fate, bounded=ENTROPY_COUNTS_BOUNDED))
+    return BasinMeasures(entropy, compute_wada_test(*exit_labels(fate, bounded=WADA_COUNTS_BOUNDED)))
 
 
 def _fit_laws(escape_map: EscapeMap, box: Window | None, *, execution: Execution) -> DecayLaws:
-    return fit_decay_laws(compute_statistics(escape_map, box), escape_map.spec.t_max, execution=execution)
+    return fit_decay_laws(compute_statistics(escape_map, box), execution=execution)
 
 
-def _measure_point(spec: EnergyPointSpec, frame: EscapeMap, *, execution: Execution) -> EnergyPoint:
-    return compute_energy_point(spec, execution=execution, frame=frame)
+def _measure_point(spec: CurvePointSpec, frame: EscapeMap, *, execution: Execution) -> CurvePoint:
+    return compute_curve_point(spec, execution=execution, frame=frame)
 
 
 def _compute_curves(
-    spec: EnergyCurvesSpec,
+    spec: CurvesSpec,
     *,
-    on_frame: Callable[[EnergyCurves], None],
+    on_frame: Callable[[Curves], None],
     execution: Execution,
-    find_result: Callable[[Job[EnergyPoint]], EnergyPoint],
-) -> EnergyCurves:
-    def measure(point_spec: EnergyPointSpec) -> EnergyPoint:
-        return find_result(energy_point_job(point_spec))
+    find_result: Callable[[Job[CurvePoint]], CurvePoint],
+) -> Curves:
+    def measure(point_spec: CurvePointSpec) -> CurvePoint:
+        return find_result(curve_point_job(point_spec))
 
-    return compute_energy_curves(spec, on_frame=on_frame, execution=execution, measure=measure)
+    return compute_curves(spec, on_frame=on_frame, execution=execution, measure=measure)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import OrderedDict, deque
+from collections import Counter, OrderedDict, deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from enum import IntEnum
@@ -31,6 +31,9 @@ class Priority(IntEnum):
 
     UNSETTLED = 3
     """The same for a result that is likely to be replaced before anyone looks at it."""
+
+    IDLE = 4
+    """A call of up to seconds that no page waits for; one runs at a time."""
 
 
 class _Call(NamedTuple):
@@ -74,7 +77,7 @@ class FairScheduler:
         self._cancelled: WeakSet[QueueExecutor] = WeakSet()
         # Threads of the pool that run calls.
         self._active_threads = 0
-        self._running_long_calls = 0
+        self._running: Counter[Priority] = Counter()
         self._background_paused = False
         self._first_frame_wait = 0.0
         # Earliest start of the next long call while background calls are paused, on the monotonic clock.
@@ -94,9 +97,14 @@ class FairScheduler:
 
     @property
     def pending_calls(self) -> int:
-        """Number of calls that no thread has started."""
+        """Number of calls that no thread has started, without `Priority.IDLE` ones, which delay nobody."""
         with self._lock:
-            return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
+            return sum(
+                len(calls)
+                for queues in self._pending.values()
+                for executor, calls in queues.items()
+                if executor.priority() is not Priority.IDLE
+            )
 
     def take_first_frame_wait(self) -> float:
         """Longest time in seconds that a `Priority.FIRST_FRAME` call has waited for a thread since the last call of this method.
@@ -115,7 +123,7 @@ class FairScheduler:
         return longest
 
     def pause_background(self, paused: bool) -> None:
-        """Pause or resume `Priority.BACKGROUND` and `Priority.UNSETTLED` calls, to relieve an overloaded process.
+        """Pause or resume `Priority.BACKGROUND` calls and those of lower priority, to relieve an overloaded process.
 
         While they are paused, long calls have a duty cycle of 10 % of one thread. To start the next of these, call this method
         about every 0.1 s during the pause.
@@ -159,13 +167,13 @@ class FairScheduler:
             call, priority = chosen
             begun = time.monotonic()
             call.run()
-            if priority is Priority.LONG_CALL:
-                self._end_long_call(time.monotonic() - begun)
+            self._end_call(priority, time.monotonic() - begun)
 
-    def _end_long_call(self, duration: float) -> None:
+    def _end_call(self, priority: Priority, duration: float) -> None:
         with self._lock:
-            self._running_long_calls -= 1
-            self._next_long_call = time.monotonic() + _PAUSE_PER_LONG_CALL * duration
+            self._running[priority] -= 1
+            if priority is Priority.LONG_CALL:
+                self._next_long_call = time.monotonic() + _PAUSE_PER_LONG_CALL * duration
 
     def _take_next(self) -> tuple[_Call, Priority] | None:
         """The next call that may start; without one, the thread is no longer active."""
@@ -175,7 +183,7 @@ class FairScheduler:
                 self._active_threads -= 1
                 return None
             executor, priority = chosen
-            self._running_long_calls += priority is Priority.LONG_CALL
+            self._running[priority] += 1
             queues = self._pending[executor.client]
             call = queues[executor].popleft()
             if priority is Priority.FIRST_FRAME:
@@ -198,11 +206,12 @@ class FairScheduler:
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
             return True
+        running = self._running[priority]
         if priority is not Priority.LONG_CALL:
-            return not self._background_paused
+            return not self._background_paused and not (priority is Priority.IDLE and running)
         if self._background_paused:
-            return self._running_long_calls == 0 and time.monotonic() >= self._next_long_call
-        return self._running_long_calls < max(self.threads - 1, 1)
+            return running == 0 and time.monotonic() >= self._next_long_call
+        return running < max(self.threads - 1, 1)
 
 
 class QueueExecutor(Executor):

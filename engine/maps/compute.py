@@ -14,21 +14,27 @@ import numpy as np
 
 from engine.dynamics.fates import Fate
 from engine.execution import Execution, shows_progress
+from engine.maps.parameter_map import LineStack
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks
 from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
-from engine.maps.trust import compute_trust
+from engine.maps.trust import compute_trust, estimate_rounded_share
 from engine.results.arrays import read_only
+from engine.validation import checks_types
 
 LARGEST_RUN = 2**20
 """Largest number of pixels whose orbits are in memory together; larger maps are computed in blocks of rows, without resume."""
+
+DEEP_PIXEL = 1e-7
+"""Distance of pixels in units of the well below which a map says how many of them double precision does not support."""
 
 _MIN_PAUSE, _MAX_PAUSE = 0.1, 1.0
 # Pause between frames as a share of the time elapsed.
 _PAUSE_SHARE = 0.3
 
 
+@checks_types(spec=MapSpec, resume=(EscapeMap, type(None)), on_frame=(Callable, type(None)))
 def compute_map(
     spec: MapSpec,
     on_frame: Callable[[EscapeMap], None] | None = None,
@@ -73,7 +79,7 @@ def compute_map(
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_map
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map
     >>> escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), t_max=1e3))
     >>> escapes.complete, round(sum(escapes.fractions().values()), 12)
     (True, 1.0)
@@ -94,15 +100,24 @@ def run_map(
     if resume is not None:
         _check_resumable(spec, resume)
     part = execution.part(0, 2) if with_trust else execution
-    well_spec, earlier = spec.in_well_units(), resume.in_well_units() if resume is not None else None
-    publish = None if on_frame is None else lambda frame: on_frame(frame.restored(spec))
-    if spec.resolution[0] * spec.resolution[1] > LARGEST_RUN:
-        result = _compute_in_blocks(well_spec, part, publish).restored(spec)
+    if spec.plane.parameter is not None:
+        result = _run_stages(LineStack(spec, resume, keeps_states=_fits_memory(spec)), part, on_frame)
     else:
-        result = _compute_at_once(well_spec, part, publish, earlier).restored(spec)
+        well_spec, earlier = spec.in_well_units(), resume.in_well_units() if resume is not None else None
+        publish = None if on_frame is None else lambda frame: on_frame(frame.restored(spec))
+        if _fits_memory(spec):
+            result = _run_stages(MapRun(well_spec, earlier, coarse_first=on_frame is not None), part, publish)
+        else:
+            result = _compute_in_blocks(well_spec, part, publish)
+        result = result.restored(spec)
     if not (with_trust and result.complete):
         return result
     return replace(result, trust=compute_trust(result, execution=execution.part(1, 2)).trust)
+
+
+def _fits_memory(spec: MapSpec) -> bool:
+    """Whether the states of all orbits are kept in memory."""
+    return spec.resolution[0] * spec.resolution[1] <= LARGEST_RUN
 
 
 def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
@@ -112,10 +127,7 @@ def _check_resumable(spec: MapSpec, resume: EscapeMap) -> None:
         raise ValueError(f"resume: a map of {resume.spec} cannot be continued to {spec}; must be equal but for a smaller t_max")
 
 
-def _compute_at_once(
-    spec: MapSpec, execution: Execution, on_frame: Callable[[EscapeMap], None] | None, resume: EscapeMap | None
-) -> EscapeMap:
-    run = MapRun(spec, resume, coarse_first=on_frame is not None)
+def _run_stages(run: MapRun | LineStack, execution: Execution, on_frame: Callable[[EscapeMap], None] | None) -> EscapeMap:
     throttle = _FrameThrottle(run, on_frame) if on_frame is not None else None
 
     def publish(stage_over: bool) -> None:
@@ -124,7 +136,7 @@ def _compute_at_once(
         execution.report(run.progress)
 
     run.run(execution, publish)
-    result = run.result()
+    result = _with_rounded_share(run.result(), execution)
     if on_frame is None:
         return result
     if result.complete:
@@ -132,10 +144,20 @@ def _compute_at_once(
     return result
 
 
-class _FrameThrottle:
-    """Progress callback of a `MapRun` that publishes incomplete frames, with growing pauses between them."""
+def _with_rounded_share(result: EscapeMap, execution: Execution) -> EscapeMap:
+    """A map in units of the well, in a deep zoom with the share of pixels that double precision does not support."""
+    pixels = (np.ptp(axis) / max(axis.size - 1, 1) for axis in (result.x, result.ordinate))
+    is_deep = result.spec.plane.parameter is None and 0.0 < min(pixels) < DEEP_PIXEL
+    if not (result.complete and is_deep):
+        return result
+    share = estimate_rounded_share(result, replace(execution, on_progress=None))
+    return result if execution.is_cancelled else replace(result, rounded_share=share)
 
-    def __init__(self, run: MapRun, on_frame: Callable[[EscapeMap], None]) -> None:
+
+class _FrameThrottle:
+    """Progress callback of a run that publishes incomplete frames, with growing pauses between them."""
+
+    def __init__(self, run: MapRun | LineStack, on_frame: Callable[[EscapeMap], None]) -> None:
         self._run, self._on_frame = run, on_frame
         self._started = time.monotonic()
         self._next_frame: float | None = None
@@ -174,7 +196,8 @@ def _compute_in_blocks(spec: MapSpec, execution: Execution, on_frame: Callable[[
         if on_frame is not None:
             on_frame(_read_only_views(whole))
         execution.report(partial(getattr, whole, "progress"))
-    return replace(_read_only_views(whole), complete=not np.any(whole.fate == Fate.NOT_COMPUTED))
+    result = replace(_read_only_views(whole), complete=not np.any(whole.fate == Fate.NOT_COMPUTED))
+    return _with_rounded_share(result, execution)
 
 
 def _empty_map(spec: MapSpec) -> EscapeMap:

@@ -12,14 +12,16 @@ from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.compute import run_map
 from engine.maps.pixels import PixelAnalysis
-from engine.maps.result import EscapeMap, describe_codes
+from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.results.codes import describe_codes
+from engine.validation import checks_types
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OriginFateMap(PixelAnalysis):
     """The past and the future of the orbit through each pixel.
 
@@ -41,7 +43,7 @@ class OriginFateMap(PixelAnalysis):
 
     def count_passages(self) -> np.ndarray:
         """(channels + 1, channels + 1) int64: number of starts by origin (row) and fate (column); 0 is bounded, k channel k."""
-        size = self.spec.potential.channels + 1
+        size = self.spec.channels + 1
         interior = (self.origin >= 0) & (self.fate >= 0)
         pairs = self.origin[interior].astype(np.int64) * size + self.fate[interior]
         return np.bincount(pairs, minlength=size * size).reshape(size, size)
@@ -68,9 +70,10 @@ class OriginFateMap(PixelAnalysis):
             for name, verb, codes in (("origin", "entered", self.origin), ("fate", "leaves", self.fate))
         }
         coordinates = {ordinate: self.ordinate, abscissa: self.x}
-        return xr.Dataset(variables, coordinates, self.spec.provenance())
+        return xr.Dataset(variables, coordinates, {"result": "OriginFateMap", **self.spec.provenance()})
 
 
+@checks_types(spec=MapSpec, execution=Execution)
 def compute_origin_fates(spec: MapSpec, *, execution: Execution = DEFAULT_EXECUTION) -> OriginFateMap:
     """Follow the orbit through each pixel in both time directions.
 
@@ -92,7 +95,7 @@ def compute_origin_fates(spec: MapSpec, *, execution: Execution = DEFAULT_EXECUT
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_origin_fates
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_origin_fates
     >>> origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.6, (40, 40), t_max=1e3))
     >>> origins.count_passages()[1:, 1:]
     array([[ 18,  34,   4,  10],

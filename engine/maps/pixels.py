@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from enum import IntEnum
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.dynamics.fates import Fate
-from engine.maps.result import EscapeMap, describe_codes
+from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.results.arrays import read_only
 from engine.results.result import MapResult
@@ -18,7 +16,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PixelAnalysis(MapResult):
     """Result of an analysis of every pixel of a map.
 
@@ -29,10 +27,9 @@ class PixelAnalysis(MapResult):
     """
 
     spec: MapSpec
-    codes: ClassVar[type[IntEnum]] = Fate
 
     def to_xarray(self) -> xr.Dataset:
-        """The codes of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
+        """The values of the pixels as a dataset with named axes and provenance, which can be written as NetCDF."""
         # Slow to import, and seldom used.
         import xarray as xr
 
@@ -40,8 +37,9 @@ class PixelAnalysis(MapResult):
         abscissa_name, ordinate_name = self.spec.plane.axis_names
         images = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray) and value.ndim == 2}
         dims = (ordinate_name, abscissa_name)
-        variables = {name: (dims, image, describe_codes(self.codes)) for name, image in images.items()}
-        return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, self.spec.provenance())
+        variables = {name: (dims, image, self._meaning(name, image)) for name, image in images.items()}
+        attributes = {"result": type(self).__name__, **self.spec.provenance(), "complete": int(getattr(self, "complete", True))}
+        return xr.Dataset(variables, {ordinate_name: ordinate, abscissa_name: x}, attributes)
 
     @property
     def nbytes(self) -> int:
@@ -124,8 +122,13 @@ class PixelCodes:
         """Set the code of the pixels (n,)."""
         self._codes.ravel()[pixels] = code
 
+    def mirrored(self, values: np.ndarray) -> np.ndarray:
+        """A read-only copy of values (rows, columns), in which the second pixel of each pair has that of the first."""
+        copied = values.copy()
+        self._mirror.copy_to_seconds(copied)
+        return read_only(copied)
+
     def snapshot(self) -> tuple[np.ndarray, bool]:
         """A read-only copy of the codes (rows, columns), and whether all pixels are decided."""
-        codes = self._codes.copy()
-        self._mirror.copy_to_seconds(codes)
-        return read_only(codes), not np.any(codes == self._pending)
+        codes = self.mirrored(self._codes)
+        return codes, not np.any(codes == self._pending)

@@ -14,8 +14,11 @@ from engine.dynamics.deviation_vectors import attach_deviations, propagate_devia
 from engine.dynamics.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
+from engine.maps.stored_maps import MapLike, as_map
+from engine.validation import checks_types
 
 # SALI is computed up to these times, with a test for tori after each: the SALI of strongly chaotic orbits falls early, most
 # regular orbits are found to be on a torus, and only the few remaining ones are integrated to t_max.
@@ -24,7 +27,7 @@ _SALI_TIMES = (1000.0, 5000.0, 20000.0)
 _INTERVAL = 5000.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RegularityMap(PixelAnalysis):
     """Which bounded orbits of a map are regular and which chaotic, complete or in progress.
 
@@ -34,13 +37,18 @@ class RegularityMap(PixelAnalysis):
         The map's request.
     character
         (rows, columns) int8 `Regularity` codes, read-only.
+    sali
+        (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, looked at every few units of time:
+        at most 1e-7 if the orbit is chaotic, larger if it is regular. NaN for other pixels, and for orbits certified as
+        quasi-periodic by the map. Read-only.
     complete
         Whether every bounded pixel is judged.
     """
 
     character: np.ndarray
+    sali: np.ndarray
     complete: bool
-    codes: ClassVar = Regularity
+    codes: ClassVar = {"character": Regularity}
 
     @property
     def is_too_short(self) -> bool:
@@ -55,8 +63,9 @@ class RegularityMap(PixelAnalysis):
 
 
 @shows_progress("regularity")
+@checks_types(execution=Execution)
 def compute_regularity(
-    escape_map: EscapeMap,
+    escape_map: MapLike,
     *,
     on_frame: Callable[[RegularityMap], None] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
@@ -70,7 +79,7 @@ def compute_regularity(
     Parameters
     ----------
     escape_map
-        A complete map.
+        A complete map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
     on_frame
         Called in this thread with the result so far.
     execution
@@ -83,12 +92,28 @@ def compute_regularity(
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_regularity
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_regularity
     >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.13, (20, 20), t_max=2e3))
     >>> round(compute_regularity(escapes).chaotic_share, 2)
     0.23
     """
+    escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
+    if escape_map.spec.plane.parameter is None:
+        return _judge_regularity(escape_map, on_frame, execution)
+
+    def judge_line(place: Place, line: EscapeMap, alone: Execution) -> RegularityMap:
+        return _judge_regularity(line, None, alone)
+
+    shape = escape_map.fate.shape
+    arrays = {"character": np.full(shape, Regularity.NOT_APPLICABLE, np.int8), "sali": np.full(shape, np.nan)}
+    return analyse_lines(escape_map, judge_line, RegularityMap, arrays, on_frame, execution)
+
+
+def _judge_regularity(
+    escape_map: EscapeMap, on_frame: Callable[[RegularityMap], None] | None, execution: Execution
+) -> RegularityMap:
+    """Judge the orbits of a map of one potential, or of a line of a map along a parameter."""
     given_spec = escape_map.spec
     classification = _RegularityClassification(escape_map.in_well_units(), execution)
     for step in classification.steps():
@@ -110,6 +135,7 @@ class _RegularityClassification:
         codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
         self._pixels = self._codes.pixels
+        self._sali = np.full(codes.size, np.nan)
         self._orbits = attach_deviations(self._spec.start_states(*escape_map.coordinates(self._pixels)))
         self._time = 0.0
 
@@ -145,6 +171,7 @@ class _RegularityClassification:
     def _judge(self, which: np.ndarray, character: Regularity) -> None:
         """Assign a code to the orbits in the mask `which`, and drop them."""
         self._codes.assign(self._pixels[which], character)
+        self._sali[self._pixels[which]] = self._orbits[which, -1]
         self._pixels, self._orbits = self._pixels[~which], self._orbits[~which]
 
     def progress(self) -> float:
@@ -153,4 +180,5 @@ class _RegularityClassification:
 
     def result(self) -> RegularityMap:
         """The result so far."""
-        return RegularityMap(self._spec, *self._codes.snapshot())
+        codes, complete = self._codes.snapshot()
+        return RegularityMap(self._spec, codes, self._codes.mirrored(self._sali.reshape(codes.shape)), complete)

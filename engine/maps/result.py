@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,8 +12,10 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate, Trust
 from engine.maps.spec import MapSpec
 from engine.potentials.well_units import TIME
+from engine.results.codes import describe_codes, name_code
 from engine.results.result import MapResult
 from engine.slices.window import Window
+from engine.validation import checked_flag
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +32,7 @@ PIXEL_ARRAYS: dict[str, tuple[type, float]] = {
 """Names of the (rows, columns) arrays of a map, with their data types and the values of pixels not computed yet."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EscapeMap(MapResult):
     """An escape map, complete or in progress; arrays are read-only and of shape (rows, columns), with row 0 at the bottom.
 
@@ -62,10 +63,13 @@ class EscapeMap(MapResult):
         State of the orbits `continued_pixels` for ``resume``, in units of the well; None in frames.
     trust
         (rows, columns) int8, the `Trust` of each pixel if it was requested, else None.
+    rounded_share
+        For a complete map in a deep zoom, the estimated share of the interior pixels that double precision does not support, see
+        `estimate_rounded_share`; else None.
 
     Examples
     --------
-    >>> from engine import CASES, Fate, MapSpec, Plane, compute_map
+    >>> from escape_explorer import CASES, Fate, MapSpec, Plane, compute_map
     >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (40, 40), t_max=1e3))
     >>> {code: round(share, 3) for code, share in escapes.fractions().items() if share}
     {1: 0.549, 2: 0.451}
@@ -89,14 +93,15 @@ class EscapeMap(MapResult):
     started: np.ndarray = field(repr=False)
     batch: OrbitBatch | None = field(default=None, repr=False)
     trust: np.ndarray | None = field(default=None, repr=False)
+    rounded_share: float | None = None
 
     def numbers(self) -> dict[str, Any]:
         """The request, and the share of each outcome among the interior starts."""
         spec = self.spec
         made_by = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
         shares = self.fractions().items()
-        names = (f"channel {code}" if code > 0 else Fate(code).name.lower().replace("_", " ") for code, _ in shares)
-        return made_by | dict(zip(names, (share for _, share in shares), strict=True)) | {"complete": self.complete}
+        rounded = {} if self.rounded_share is None else {"lost to rounding, about": self.rounded_share}
+        return made_by | {name_code(Fate, code): share for code, share in shares} | {"complete": self.complete} | rounded
 
     @property
     def interior(self) -> np.ndarray:
@@ -135,7 +140,7 @@ class EscapeMap(MapResult):
     def in_well_units(self) -> EscapeMap:
         """The same map with coordinates, energies and times in units of the well, in which its `batch` always is."""
         units, spec = self.spec.potential.units, self.spec.in_well_units()
-        x_unit, ordinate_unit = spec.plane.axis_units(units)
+        x_unit, ordinate_unit = self.spec.plane.axis_units(units)
         return replace(
             self, spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit,
             escape_time=self.escape_time / units.time, horizon=self.horizon / units.time,
@@ -160,10 +165,10 @@ class EscapeMap(MapResult):
             (2014); the shares then depend on the window. By default they are shares of the interior starts.
         """
         fate = self.fate
-        if count_outside:
+        if checked_flag("count_outside", count_outside):
             fate = np.where(fate == Fate.OUTSIDE, self.outside, fate)
         fate = fate[find_interior(fate)]
-        codes = (*range(1, self.spec.potential.channels + 1), Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
+        codes = (*range(1, self.spec.channels + 1), Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
         return {int(code): float(np.mean(fate == code)) if fate.size else 0.0 for code in codes}
 
     def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
@@ -205,7 +210,7 @@ class EscapeMap(MapResult):
             ordinate: (ordinate, self.ordinate, {"units": "1"}),
             abscissa: (abscissa, self.x, {"units": "1"}),
         }
-        return xr.Dataset(variables, coordinates, self.provenance())
+        return xr.Dataset(variables, coordinates, {"result": "EscapeMap", **self.provenance()})
 
     def provenance(self) -> dict[str, Any]:
         """How the map was made, in plain values: request, integrator, version, worst energy error, pixels per fate code."""
@@ -216,11 +221,6 @@ class EscapeMap(MapResult):
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
         }
-
-
-def describe_codes(codes: type[IntEnum]) -> dict[str, str]:
-    """The dataset attribute that explains integer codes: ``{"codes": "value: name; …"}``."""
-    return {"codes": "; ".join(f"{code.value}: {code.name.lower()}" for code in codes)}
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:

@@ -155,6 +155,14 @@ class MapRun:
         fresh = pixels[~self._started[pixels]]
         tested = self._batch.mark_outside(self.spec.potential, fresh, self._curves, execution=execution)
         self._started[tested] = True
+        if self.spec.certify:
+            self._close(pixels[self._started[pixels]])
+
+    def _close(self, pixels: np.ndarray) -> None:
+        """Mark orbits as bounded whose energy is below every saddle; they need no integration."""
+        closed = self._energy[pixels] <= self.spec.potential.escape_energy
+        undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
+        self._batch.mark_bounded(pixels[closed & undecided], Certificate.CLOSED)
 
     def _find_exits(self, pixels: np.ndarray) -> None:
         """Find the exits at those energies of the pixels at which they are not known yet."""
@@ -170,9 +178,6 @@ class MapRun:
         """Mark undecided orbits as bounded that have a certificate."""
         spec, batch = self.spec, self._batch
         undecided = self._mirror.firsts_among(np.flatnonzero(batch.fate == Fate.NOT_COMPUTED))
-        closed = self._energy[undecided] <= spec.potential.escape_energy
-        batch.mark_bounded(undecided[closed], Certificate.CLOSED)
-        undecided = undecided[~closed]
         grid_indices = np.column_stack(np.divmod(undecided, self.shape[1]))
         certifier = BoundednessCertifier(
             spec.potential, spec.common_energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, execution

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import copy
+import json
 import operator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from importlib import metadata
 from typing import Any
 
@@ -12,11 +13,16 @@ import numpy as np
 
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import WellUnits
-from engine.slices.default_window import default_window
-from engine.slices.slice import Energy, Slice, checked_slice, common_energy, scaled_energy
-from engine.slices.window import Window, checked_window
-from engine.taylor.source.recurrence import ORDER, TOLERANCE
-from engine.validation import checked_t_max, short_repr
+from engine.slices.default_window import map_window
+from engine.slices.energies import Energy, common_energy, scaled_energy
+from engine.slices.parameter_family import parameter_family
+from engine.slices.planes import checked_slice
+from engine.slices.slice import Slice
+from engine.slices.slice_text import write_slice
+from engine.slices.window import GivenWindow, Window, checked_window
+from engine.taylor.source.recurrence import TOLERANCE
+from engine.taylor.source.series import ORDER
+from engine.validation import check_type, checked_flag, checked_t_max, short_repr
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -39,17 +45,17 @@ class MapSpec:
     potential
         The `Potential`.
     plane
-        The slice of starts: a `Plane` or another `Slice`.
+        The slice of starts: a `Plane` or another `Slice`; named ones also by name, "x_px", as on the command line, or "(x, px)".
     energy
         h, finite, dimensionless; on a slice with an axis h a pair (low, high). At or below the escape energy no orbit escapes.
     resolution
-        (columns, rows), each 1 to 4096. In the default window an odd number of columns puts one on x = 0, where an orbit of a
-        potential even in x can stay for ever by symmetry alone; such a line has measure zero, but its pixels count in shares.
+        (columns, rows), each 1 to 4096.
     window
         `Window`, or (x_low, x_high, ordinate_low, ordinate_high); None for the whole interior, also after
-        ``dataclasses.replace(spec, energy=…)``.
+        ``dataclasses.replace(spec, energy=…)``. With an odd number of columns or rows the default window is moved by half a
+        pixel where its middle line would be one of symmetry, on which orbits stay for ever.
     t_max
-        Integration time, 0 < t_max ≤ 1e8, dimensionless.
+        Integration time, 0 < t_max ≤ 1e8, dimensionless; where the unit 1/ω of time of the well is above 1, in this unit.
     certify
         Whether an orbit is called bounded before t_max if it has a certificate that it never escapes.
     backward
@@ -64,7 +70,7 @@ class MapSpec:
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane
+    >>> from escape_explorer import CASES, MapSpec, Plane
     >>> spec = MapSpec(CASES["III"], Plane.X_PX, 0.45)
     >>> spec.resolution, spec.t_max, round(spec.find_window().x_high, 4)
     ((224, 224), 100000.0, 1.0056)
@@ -78,31 +84,38 @@ class MapSpec:
     plane: Slice
     energy: Energy
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
-    window: Window | tuple[float, float, float, float] | None = None
+    window: GivenWindow | None = None
     t_max: float = 1e5
     certify: bool = True
     backward: bool = False
 
     def __post_init__(self) -> None:
-        if not isinstance(self.potential, Potential):
-            raise ValueError(f"potential={short_repr(self.potential)}: must be a Potential")
+        check_type("potential", self.potential, Potential)
         plane = checked_slice(self.plane)
         checked = {
             "plane": plane,
             "energy": plane.checked_energy(self.energy),
             "resolution": _checked_resolution(self.resolution),
             "window": None if self.window is None else checked_window(self.window),
-            "t_max": checked_t_max(self.t_max),
-            "certify": bool(self.certify),
-            "backward": bool(self.backward),
+            "t_max": checked_t_max(self.t_max, unit=lambda: self.potential.exact_time_unit),
+            "certify": checked_flag("certify", self.certify),
+            "backward": checked_flag("backward", self.backward),
         }
         for name, value in checked.items():
             object.__setattr__(self, name, value)
+        if plane.parameter is not None and plane.parameter.system.potential != self.potential:
+            raise ValueError(f"plane={plane.title}: its parameter is one of another system; must be one of {self.potential.name}")
 
     @property
     def common_energy(self) -> float | None:
         """h of all starts; None on a slice with an axis h."""
         return common_energy(self.energy)
+
+    @property
+    def channels(self) -> int:
+        """The number of exit channels; along a parameter, of all its potentials."""
+        axis = self.plane.parameter
+        return self.potential.channels if axis is None else parameter_family(axis).channels
 
     @property
     def given_window(self) -> Window | None:
@@ -117,7 +130,7 @@ class MapSpec:
         ValueError
             If no default window or no exit is defined at an energy, or the pixels are too close for double precision.
         """
-        window = self.given_window or default_window(self.potential, self.plane, self.energy)
+        window = self.given_window or map_window(self.potential, self.plane, self.energy, self.resolution)
         _check_pixels(self, window)
         return window
 
@@ -156,13 +169,17 @@ class MapSpec:
 
     def provenance(self) -> dict[str, Any]:
         """The request in plain values, with the integrator and the package version."""
-        window = self.find_window()
+        window, (axes, held), axis = self.find_window(), write_slice(self.plane), self.plane.parameter
         return {
             "potential": self.potential.name,
-            "terms": "; ".join(f"{c!r} x^{i} y^{j}" for i, j, c in self.potential.terms),
+            "terms": self.potential.form.text,
             "energy": self.energy,
             "plane": self.plane.title,
+            "axes": axes,
+            "fix": held,
+            "system": json.dumps(None if axis is None else asdict(axis.system)),
             "window": (window.x_low, window.x_high, window.ordinate_low, window.ordinate_high),
+            "default_window": int(self.window is None),
             "resolution": self.resolution,
             "t_max": self.t_max,
             "certify": int(self.certify),
@@ -179,11 +196,16 @@ class MapSpec:
         return (row, column) if 0 <= row < rows and 0 <= column < columns else None
 
 
+def finest_pixel(spec: MapSpec, window: Window) -> tuple[float, float]:
+    """Least distances of neighbouring pixels, in x and in the ordinate, that double precision allows in a window."""
+    x_unit, unit = spec.plane.axis_units(spec.potential.units)
+    x, ordinate = max(map(abs, (window.x_low, window.x_high))), max(map(abs, (window.ordinate_low, window.ordinate_high)))
+    return FINEST_PIXEL * max(x_unit, x), FINEST_PIXEL * max(unit, ordinate)
+
+
 def _check_pixels(spec: MapSpec, window: Window) -> None:
     """Raise ValueError if neighbouring pixels are too close for double precision."""
-    units = spec.plane.axis_units(spec.potential.units)
-    for centres, unit in zip(window.pixel_centres(*spec.resolution), units, strict=True):
-        finest = FINEST_PIXEL * max(unit, float(np.max(np.abs(centres))))
+    for centres, finest in zip(window.pixel_centres(*spec.resolution), finest_pixel(spec, window), strict=True):
         if centres.size > 1 and np.min(np.diff(centres)) < finest:
             raise ValueError(f"window={window}: double precision ends here; pixels must be at least {finest:.2g} apart")
 

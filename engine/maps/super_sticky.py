@@ -25,7 +25,7 @@ from engine.results.result import Result
 from engine.validation import checked_t_max
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SuperStickySearch(Result):
     """The chaotic bounded starts of a map, integrated beyond its t_max; arrays are read-only and share one length n.
 
@@ -187,9 +187,10 @@ def _propagate(
 
 def _check(escape_map: EscapeMap, regularity: RegularityMap, t_max: float) -> None:
     escape_map.check_complete("escape_map")
+    escape_map.spec.plane.check_one_potential("escape_map")
     if escape_map.spec.common_energy is None:
         raise ValueError(f"escape_map: is on {escape_map.spec.plane.title}; must be on a slice without an axis h")
     if regularity.spec != escape_map.spec or not regularity.complete:
         raise ValueError("regularity: must be complete and of the same map")
-    if checked_t_max(t_max) < escape_map.spec.t_max:
+    if checked_t_max(t_max, unit=lambda: escape_map.spec.potential.exact_time_unit) < escape_map.spec.t_max:
         raise ValueError(f"t_max={t_max}: must be at least the t_max of the map, {escape_map.spec.t_max:g}")

@@ -16,19 +16,25 @@ from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
+from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
-from engine.maps.result import EscapeMap
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
+from engine.maps.stored_maps import MapLike, as_map
 from engine.potentials.compiled import kernels_of
 from engine.taylor.kernels.dense_output import advance_states
 from engine.taylor.source.recurrence import TOLERANCE
+from engine.validation import checks_types
 
 SHIFT = 1e-11
 """Shift of a start along x and along the ordinate in units of the well: far above rounding errors, far below a pixel."""
 
 LARGEST_SHARE_OF_PIXEL = 0.01
 """Largest shift as a share of the pixel, which limits it in deep zooms."""
+
+SAMPLED_SIDE = 16
+"""About this number of pixels per side are sampled for `estimate_rounded_share`."""
 
 SECOND_TOLERANCE = 10.0 * TOLERANCE
 """Tolerance of the second rerun: steps are a sixth longer, so that their errors are independent of the map's."""
@@ -55,7 +61,7 @@ _HORIZON_FACTOR = 2.0
 _COARSEST_LATTICE_INDEX = 8
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class TrustMap(PixelAnalysis):
     """Reliability of the pixels of a map, complete or in progress.
 
@@ -71,7 +77,7 @@ class TrustMap(PixelAnalysis):
 
     trust: np.ndarray
     complete: bool
-    codes: ClassVar = Trust
+    codes: ClassVar = {"trust": Trust}
 
     @property
     def doubtful_share(self) -> float:
@@ -98,8 +104,9 @@ class TrustMap(PixelAnalysis):
 
 
 @shows_progress("trust")
+@checks_types(execution=Execution)
 def compute_trust(
-    escape_map: EscapeMap,
+    escape_map: MapLike,
     *,
     on_frame: Callable[[TrustMap], None] | None = None,
     execution: Execution = DEFAULT_EXECUTION,
@@ -118,7 +125,7 @@ def compute_trust(
     Parameters
     ----------
     escape_map
-        A complete map.
+        A complete map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
     on_frame
         Called in this thread with the result so far.
     execution
@@ -131,15 +138,66 @@ def compute_trust(
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_trust
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_trust
     >>> trust = compute_trust(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), t_max=1e3)))
     >>> round(trust.tested_share, 2), round(trust.doubtful_share, 2)
     (0.54, 0.03)
     """
+    escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
+    unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
+    if escape_map.spec.plane.parameter is None:
+        return _test_trust(escape_map, unlike, on_frame, execution)
+
+    def test_line(place: Place, line: EscapeMap, alone: Execution) -> TrustMap:
+        return _test_trust(line, unlike[place], None, alone)
+
+    codes = np.full(unlike.shape, Trust.NOT_APPLICABLE, np.int8)
+    return analyse_lines(escape_map, test_line, TrustMap, {"trust": codes}, on_frame, execution)
+
+
+def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
+    """Estimate which share of the pixels of a complete map double precision does not support.
+
+    Some `SAMPLED_SIDE`² pixels, evenly spread, are tested as by `compute_trust`, but with a shift of `FINEST_PIXEL`, a few units
+    in the last place of the start, however large a pixel is. So what decides is how much rounding errors grow along these orbits,
+    and how near they start to the boundaries of the basins.
+
+    Parameters
+    ----------
+    escape_map
+        A complete map of one potential.
+    execution
+        How the computation runs.
+
+    Returns
+    -------
+    The share of the sampled interior pixels whose outcome changes, 0 to 1; NaN if none is interior.
+    """
+    thinned = _thinned(escape_map)
+    unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
+    return _test_trust(thinned, unlike, None, execution, shift=FINEST_PIXEL).doubtful_share
+
+
+def _thinned(escape_map: EscapeMap) -> EscapeMap:
+    """Evenly spread pixels of a map, with the request of the whole map."""
+    down, right = (max(1, side // SAMPLED_SIDE) for side in escape_map.fate.shape)
+    arrays = {name: getattr(escape_map, name)[down // 2 :: down, right // 2 :: right] for name in PIXEL_ARRAYS}
+    x, ordinate = escape_map.x[right // 2 :: right], escape_map.ordinate[down // 2 :: down]
+    return replace(escape_map, x=x, ordinate=ordinate, batch=None, trust=None, **arrays)
+
+
+def _test_trust(
+    escape_map: EscapeMap,
+    unlike: np.ndarray,
+    on_frame: Callable[[TrustMap], None] | None,
+    execution: Execution,
+    shift: float = SHIFT,
+) -> TrustMap:
+    """Test a map of one potential, or a line of a map along a parameter; unlike: as `find_unlike_neighbours` says."""
     given_spec, reached = escape_map.spec, 0.0
     publish = None if on_frame is None else lambda found: on_frame(replace(found, spec=given_spec))
-    test = _TrustTest(escape_map.in_well_units(), publish, execution)
+    test = _TrustTest(escape_map.in_well_units(), unlike, publish, execution, shift)
     spec = test.spec
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
@@ -177,10 +235,12 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     return unlike & interior
 
 
-def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+def shifted_starts(
+    spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, shift: float = SHIFT
+) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
     """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
-    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
+    The shift is `shift`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
     first direction is towards 0 in both coordinates, so that the points stay inside, and the second in the abscissa alone. An
     axis h is not shifted, so that the energy and its exits do not change: the other one is shifted towards 0, then away from it.
 
@@ -190,6 +250,8 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
         The map in units of its well.
     x, ordinate
         (n,) coordinates of the points.
+    shift
+        In units of the well.
 
     Returns
     -------
@@ -199,19 +261,18 @@ def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[
     sides = (window.x_high - window.x_low) / columns, (window.ordinate_high - window.ordinate_low) / rows
     is_free = spec.plane.free_axes
     points = x, ordinate
-    nearer = tuple(
-        _shifted_towards_zero(along, side) if free else along for along, side, free in zip(points, sides, is_free, strict=True)
-    )
+    axes = zip(points, sides, is_free, strict=True)
+    nearer = tuple(_shifted_towards_zero(along, side, shift) if free else along for along, side, free in axes)
     if all(is_free):
         return (nearer[0], nearer[1]), (nearer[0], ordinate)
     away = tuple(along + (along - shifted) for along, shifted in zip(points, nearer, strict=True))
     return (nearer[0], nearer[1]), (away[0], away[1])
 
 
-def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
-    shift = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
+def _shifted_towards_zero(coordinate: np.ndarray, pixel: float, shift: float) -> np.ndarray:
+    distance = np.maximum(min(shift, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
     # A start on y = 0 is shifted up: from below it would cross y = 0 once more.
-    shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - shift, coordinate + shift)
+    shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
     return shifted
 
 
@@ -254,13 +315,15 @@ class _TrustTest:
     def __init__(
         self,
         escape_map: EscapeMap,
+        unlike: np.ndarray,
         on_frame: Callable[[TrustMap], None] | None,
         execution: Execution,
+        shift: float,
     ) -> None:
         self.spec, self._on_frame, self._execution = escape_map.spec, on_frame, execution
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
         uncertified = _find_uncertified(escape_map)
-        codes[uncertified | find_unlike_neighbours(escape_map.fate, escape_map.crossings)] = Trust.NOT_TESTED
+        codes[uncertified | unlike] = Trust.NOT_TESTED
         self._codes = PixelCodes(escape_map, codes, Trust.NOT_TESTED)
         # Of the tested pixels: those whose reruns must stay together, and those whose reruns did not; the time up to which both
         # reruns have been compared.
@@ -269,9 +332,9 @@ class _TrustTest:
         self._compared = 0.0
         # Positions in the arrays of the reruns whose pixels are undecided.
         self._undecided = np.arange(self._codes.pixels.size)
-        self._curves, self._reruns = self._prepare_reruns(escape_map)
+        self._curves, self._reruns = self._prepare_reruns(escape_map, shift)
 
-    def _prepare_reruns(self, escape_map: EscapeMap) -> tuple[np.ndarray, list[_Rerun]]:
+    def _prepare_reruns(self, escape_map: EscapeMap, shift: float) -> tuple[np.ndarray, list[_Rerun]]:
         """The exit curves of each energy, and the reruns at t = 0."""
         spec, potential, pixels = self.spec, self.spec.potential, self._codes.pixels
         x, ordinate = escape_map.coordinates(pixels)
@@ -284,7 +347,7 @@ class _TrustTest:
             curves[k] = exit_curves(potential, float(energy))
         closed = np.flatnonzero(energies[curve_row] <= potential.escape_energy)
         reruns = []
-        for start, tolerance in zip(shifted_starts(spec, x, ordinate), (TOLERANCE, SECOND_TOLERANCE), strict=True):
+        for start, tolerance in zip(shifted_starts(spec, x, ordinate, shift), (TOLERANCE, SECOND_TOLERANCE), strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
             batch.mark_outside(potential, self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)

@@ -95,9 +95,10 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     Parameters
     ----------
     labels
-        A map, whose bounded orbits are a basin of their own, or (rows, columns) integers; equal ones are one basin.
+        A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits are a basin of their own, or
+        (rows, columns) integers; equal ones are one basin.
     valid
-        (rows, columns) bool, the pixels that count; None for all, of a map those inside.
+        (rows, columns) bool, the pixels that count; of a map those inside. None for all, if no label is negative.
     box
         Side of a box in pixels, 2 to the shorter side of the image.
 
@@ -109,11 +110,11 @@ def compute_basin_entropy(labels: Any, valid: Any = None, *, box: int = BOX) -> 
     Raises
     ------
     ValueError
-        If a parameter is out of range.
+        If a parameter is out of range, or labels are negative without `valid`.
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_basin_entropy, compute_map
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_basin_entropy, compute_map
     >>> entropy = compute_basin_entropy(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (80, 80), t_max=1e3)))
     >>> round(entropy.s_b, 2), round(entropy.s_bb, 2), entropy.beyond_ln2
     (0.5, 1.06, True)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.maps.stored_maps import MapLike, as_map
 from engine.measures.decay_laws import MIN_ESCAPES, MIN_P_VALUE, DecayLaw, DecayLaws, LawFit, to_unit_time, window_length
-from engine.measures.escape_statistics import EscapeStatistics, compute_survival
+from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
 from engine.measures.truncated_exponential import (
     fit_steepness_and_distance,
     kolmogorov_smirnov_distance,
@@ -17,7 +18,7 @@ from engine.measures.truncated_exponential import (
     scaled_distance,
     solve_steepness,
 )
-from engine.validation import checked_array, checked_count, checked_t_max, short_repr
+from engine.validation import checked_array, checked_count, checked_t_max, checks_types, short_repr
 
 MIN_RESAMPLES = 500
 """Fewest bootstrap resamples, which leave 12 beyond each end of a 95 % interval."""
@@ -39,9 +40,10 @@ _MAX_SAMPLE_SIZE = 250
 _SINGLES, _GROUP_SHARE = 128, 0.02
 
 
+@checks_types(execution=Execution)
 def fit_decay_laws(
-    statistics: EscapeStatistics,
-    t_max: float,
+    statistics: EscapeStatistics | MapLike,
+    t_max: float | None = None,
     *,
     window: tuple[float, float] | None = None,
     resamples: int = 1000,
@@ -65,9 +67,10 @@ def fit_decay_laws(
     Parameters
     ----------
     statistics
-        The escapes.
+        The escapes, or the map in which they are counted.
     t_max
-        Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; later escapes are left out.
+        Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; None for that of the statistics, the
+        largest one that is legal. Later escapes are left out.
     window
         (t_low, t_high), 0 < t_low < t_high ≤ t_max; None to choose it automatically.
     resamples
@@ -86,13 +89,15 @@ def fit_decay_laws(
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_statistics, fit_decay_laws
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_statistics, fit_decay_laws
     >>> escapes = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (80, 80), t_max=1e3))
-    >>> laws = fit_decay_laws(compute_statistics(escapes), t_max=1e3, resamples=500)
+    >>> laws = fit_decay_laws(compute_statistics(escapes), resamples=500)
     >>> laws.preferred, round(laws.exponential.rate, 3)
     (<DecayLaw.EXPONENTIAL: 'exponential'>, 0.024)
     """
-    t_max = checked_t_max(t_max)
+    if not isinstance(statistics, EscapeStatistics):
+        statistics = compute_statistics(as_map("statistics", statistics))
+    t_max = _checked_horizon(statistics, t_max)
     resamples = checked_count("resamples", resamples, MIN_RESAMPLES, MAX_RESAMPLES)
     seed = checked_count("seed", seed, 0, 2**63 - 1)
     if window is not None:
@@ -103,6 +108,14 @@ def fit_decay_laws(
     fitter = _Fitter(statistics, t_high, resamples, seed, execution)
     t_low, settled = fitter.choose_t_low() if window is None else (float(window[0]), True)
     return fitter.fit(t_low, settled)
+
+
+def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float:
+    """Time up to which the escapes are known."""
+    checked = checked_t_max(statistics.t_max if t_max is None else t_max)
+    if checked > statistics.t_max:
+        raise ValueError(f"t_max={t_max:g}: must be at most {statistics.t_max:g}, the integration time of the statistics")
+    return checked
 
 
 @dataclass(frozen=True, eq=False)

@@ -79,7 +79,7 @@ class LawFit:
         return np.where(inside, fitted, np.nan)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DecayLaws(Result):
     """Decay laws fitted to the escapes of a map or of a part of it; arrays are read-only.
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
+from engine.maps.stored_maps import MapLike, as_map
 from engine.results.arrays import read_only
 from engine.results.proportions import wilson_interval
 from engine.results.result import Result
-from engine.slices.window import Window
+from engine.slices.window import GivenWindow, Window, checked_window
 
 MAX_SURVIVAL_POINTS = 500
 """Largest number of points of a survival curve."""
@@ -24,7 +25,7 @@ _EQUAL_TIMES = 1e-9
 _LOWER_EDGE = 0.5
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class EscapeStatistics(Result):
     """Counts of the interior starts of a map or of a part of it, as in Zotos (2014), section 5; arrays are read-only.
 
@@ -40,6 +41,8 @@ class EscapeStatistics(Result):
         (most crossings + 1,) int64, dN_n: escapes after exactly n upward crossings of y = 0; empty without escapes.
     escape_times
         (escaped,) float64, all escape times, row by row, dimensionless.
+    t_max
+        Integration time of the orbits, dimensionless; infinite if it is not known.
     """
 
     channel_counts: tuple[int, ...]
@@ -50,6 +53,7 @@ class EscapeStatistics(Result):
     median_escape_time: float
     crossing_counts: np.ndarray = field(repr=False)
     escape_times: np.ndarray = field(repr=False)
+    t_max: float = float("inf")
 
     @property
     def starts(self) -> int:
@@ -135,29 +139,30 @@ class EscapeStatistics(Result):
         return read_only(edges), read_only(np.histogram(np.maximum(self.escape_times, low), edges)[0])
 
 
-def compute_statistics(frame: EscapeMap, window: Window | None = None) -> EscapeStatistics:
+def compute_statistics(frame: MapLike, window: GivenWindow | None = None) -> EscapeStatistics:
     """Count the fates, crossings and escape times of a map, finished or not; forbidden and outside starts are left out.
 
     Parameters
     ----------
     frame
-        The map.
+        The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
     window
-        Only pixels whose centre lies in this rectangle, edges included, count; it can extend beyond the map or miss it. None for
-        all pixels.
+        Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`, it can extend beyond the
+        map or miss it. None for all pixels.
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_statistics
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_statistics
     >>> statistics = compute_statistics(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.6, (40, 40), t_max=1e3)))
     >>> statistics.starts, statistics.channel_counts, round(statistics.median_escape_time, 2)
     (1124, (496, 496, 66, 66), 1.51)
     """
-    part = _pixels_inside(frame, window)
+    frame = as_map("frame", frame)
+    part = pixels_inside(frame, None if window is None else checked_window(window))
     fate = frame.fate[part]
     escaped = fate >= 1
     times = frame.escape_time[part][escaped]
-    channels = frame.spec.potential.channels
+    channels = frame.spec.channels
     counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=channels + 1 - _LOWEST_CODE).tolist()
     return EscapeStatistics(
         channel_counts=tuple(counts[1 - _LOWEST_CODE :]),
@@ -168,6 +173,7 @@ def compute_statistics(frame: EscapeMap, window: Window | None = None) -> Escape
         median_escape_time=float(np.median(times)) if times.size else float("nan"),
         crossing_counts=read_only(np.bincount(frame.crossings[part][escaped])),
         escape_times=read_only(times),
+        t_max=frame.spec.t_max,
     )
 
 
@@ -198,7 +204,7 @@ def compute_survival(statistics: EscapeStatistics) -> tuple[np.ndarray, np.ndarr
     return read_only(times), read_only(survival)
 
 
-def _pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slice]:
+def pixels_inside(frame: EscapeMap, window: Window | None) -> tuple[slice, slice]:
     """Rows and columns of the pixels whose centres lie in the window."""
     if window is None:
         return slice(None), slice(None)

@@ -8,6 +8,7 @@ import numpy as np
 
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
+from engine.maps.stored_maps import as_map
 from engine.results.arrays import read_only
 from engine.validation import checked_array
 
@@ -53,14 +54,19 @@ def checked_labels(labels: Any, valid: Any, *, bounded: bool) -> tuple[np.ndarra
     Raises
     ------
     ValueError
-        For any other shape or type.
+        For any other shape or type, and for negative labels without `valid`: they are codes of starts without an outcome.
     """
-    if isinstance(labels, EscapeMap):
-        labels, valid = exit_labels(labels.fate, bounded=bounded)
+    if isinstance(labels, EscapeMap) or hasattr(labels, "data_vars"):
+        labels, valid = exit_labels(as_map("labels", labels).fate, bounded=bounded)
     labels = checked_array("labels", labels, keep_type=True)
     if labels.ndim != 2 or not np.issubdtype(labels.dtype, np.integer):
         raise ValueError(f"labels of shape {labels.shape} and type {labels.dtype}: must be integers, (rows, columns)")
     if valid is None:
+        if labels.size and labels.min() < 0:
+            raise ValueError(
+                f"labels: {np.count_nonzero(labels < 0)} are negative, the codes of starts without an outcome; "
+                "give the map itself, or valid=(labels >= 0)"
+            )
         return labels, np.ones(labels.shape, np.bool_)
     valid = checked_array("valid", valid, keep_type=True)
     if valid.shape != labels.shape or valid.dtype != np.bool_:

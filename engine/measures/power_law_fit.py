@@ -46,7 +46,7 @@ def _empty_counts() -> np.ndarray:
     return np.zeros(0, np.int64)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class UncertaintyExponent(Result):
     """Share of uncertain pairs against their separation, and the fitted power law; dimensionless, arrays are read-only.
 

@@ -13,7 +13,7 @@ from engine.measures.published_fits import HyperbolicTangent, Polynomial, ShareC
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.results.wording import format_number
-from engine.validation import checked_array, checked_count, checked_integers, short_repr
+from engine.validation import checked_array, checked_count, checked_integers, checks_types, short_repr
 
 MAX_DEGREE = 6
 """Highest degree of a polynomial fit; higher degrees fit the scatter."""
@@ -60,7 +60,7 @@ class Deviation:
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ShareFit(Result):
     """A curve fitted to shares against energy; arrays are read-only.
 
@@ -132,7 +132,7 @@ def fit_escape_shares(h: Any, escaped: Any, starts: Any) -> ShareFit:
 
     Examples
     --------
-    >>> from engine import fit_escape_shares
+    >>> from escape_explorer import fit_escape_shares
     >>> fit = fit_escape_shares((0.30, 0.35, 0.40, 0.45), (26, 73, 95, 99), (100, 100, 100, 100))
     >>> fit.curve.formula
     '½[1 + tanh(20.27 h − 6.601)]'
@@ -174,7 +174,7 @@ def fit_direct_shares(h: Any, direct: Any, starts: Any, *, degree: int = 3) -> S
 
     Examples
     --------
-    >>> from engine import fit_direct_shares
+    >>> from escape_explorer import fit_direct_shares
     >>> fit = fit_direct_shares((0.3, 0.4, 0.5, 0.6), (20, 41, 58, 81), (100, 100, 100, 100), degree=1)
     >>> fit.curve.formula
     '−0.4 + 2 h'
@@ -187,6 +187,7 @@ def fit_direct_shares(h: Any, direct: Any, starts: Any, *, degree: int = 3) -> S
     return _build_fit(Polynomial(tuple(coefficients)), half_widths, energies, shares)
 
 
+@checks_types(curve=Callable)
 def measure_deviation(curve: Callable[[Any], Any], h: Any, counts: Any, starts: Any) -> Deviation:
     """Measure the deviation of a curve, such as one of `PAPER_FITS`, from observed shares.
 
@@ -208,7 +209,7 @@ def measure_deviation(curve: Callable[[Any], Any], h: Any, counts: Any, starts: 
 
     Examples
     --------
-    >>> from engine import PAPER_FITS, measure_deviation
+    >>> from escape_explorer import PAPER_FITS, measure_deviation
     >>> deviation = measure_deviation(PAPER_FITS["III"].escaped, (0.3, 0.4, 0.5), (460, 850, 990), (1000, 1000, 1000))
     >>> print(deviation.describe())
     at most 9.4 percentage points above the data, at h = 0.4, with a root mean square of 6.1

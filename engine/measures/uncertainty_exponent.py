@@ -15,7 +15,7 @@ from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.results.arrays import read_only
-from engine.validation import checked_count, short_repr
+from engine.validation import checked_count, checks_types, short_repr
 
 __all__ = ["HORIZON", "UncertaintyExponent", "compute_uncertainty_exponent", "fit_uncertainty"]
 
@@ -49,6 +49,7 @@ _MIN_YIELD = 1e-3
 
 
 @shows_progress("uncertainty exponent")
+@checks_types(spec=MapSpec, execution=Execution)
 def compute_uncertainty_exponent(
     spec: MapSpec,
     *,
@@ -104,11 +105,12 @@ def compute_uncertainty_exponent(
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_uncertainty_exponent
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_uncertainty_exponent
     >>> result = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, 0.25), work=1e6)
     >>> round(result.low, 2), round(result.exponent, 2), round(result.high, 2)
     (0.21, 0.23, 0.25)
     """
+    spec.plane.check_one_potential("spec")
     pairs = checked_count("pairs", pairs, 10, _MAX_PAIRS)
     separations = checked_count("separations", separations, 5, _MAX_SEPARATIONS)
     seed = checked_count("seed", seed, 0, 2**63 - 1)

@@ -22,7 +22,7 @@ _PERCENTAGE = 99
 _NUMBER_WORDS = ("none", "one", "two")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WadaTest(Result):
     """Distances between the boundaries of the basins of an image, in pixels; arrays are read-only.
 
@@ -82,10 +82,11 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     Parameters
     ----------
     labels
-        A map, whose bounded orbits do not count, or (rows, columns) integers; equal ones are one basin.
+        A map or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep, whose bounded orbits do not count, or (rows, columns)
+        integers; equal ones are one basin.
     valid
-        (rows, columns) bool, the pixels that count; None for all. Other pixels and the edge of the image form no boundary;
-        distances are measured straight across them.
+        (rows, columns) bool, the pixels that count; None for all, if no label is negative. Other pixels and the edge of the image
+        form no boundary; distances are measured straight across them.
 
     Returns
     -------
@@ -95,11 +96,11 @@ def compute_wada_test(labels: Any, valid: Any = None) -> WadaTest:
     Raises
     ------
     ValueError
-        If `labels` or `valid` has a wrong shape or type.
+        If `labels` or `valid` has a wrong shape or type, or labels are negative without `valid`.
 
     Examples
     --------
-    >>> from engine import CASES, MapSpec, Plane, compute_map, compute_wada_test
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_wada_test
     >>> print(compute_wada_test(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (80, 80), t_max=1e3))).describe())
     The boundaries of the 4 basins coincide within 9 pixels, 99 % of the 1756 boundary pixels within 6.
     """

@@ -10,7 +10,9 @@ from types import MappingProxyType
 
 from engine.polynomials import HIGHEST_DEGREE
 from engine.potentials.formula_parser import parse_formula
+from engine.potentials.names import ByName
 from engine.potentials.potential import Potential
+from engine.validation import checked_count
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,7 @@ class PotentialEntry:
     Attributes
     ----------
     name
-        Its key in `POTENTIALS`, and the name of the potential.
+        Its key in `POTENTIALS` and `CATALOGUE`, and the name of the potential.
     title
         Display name.
     formula
@@ -59,13 +61,12 @@ def channel_family(n: int) -> Potential:
 
     Examples
     --------
-    >>> from engine import channel_family
+    >>> from escape_explorer import channel_family
     >>> potential = channel_family(5)
     >>> potential.channels, round(potential.escape_energy, 6)
     (5, 0.3)
     """
-    if not 3 <= n <= HIGHEST_DEGREE:
-        raise ValueError(f"n={n}: must be from 3 to {HIGHEST_DEGREE}")
+    n = checked_count("n", n, 3, HIGHEST_DEGREE)
     # rⁿ cos nθ is the real part of (x + iy)ⁿ.
     perturbation = ((n - j, j, float(Fraction((-1) ** (j // 2 + 1) * comb(n, j), n))) for j in range(0, n + 1, 2))
     return Potential(f"C{n}", ((2, 0, 0.5), (0, 2, 0.5), *perturbation))
@@ -136,5 +137,12 @@ _ENTRIES = (
     ),
 )
 
-POTENTIALS: Mapping[str, PotentialEntry] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
-"""All potentials included in the engine, by name; the three cases of Zotos (2014) come first."""
+CATALOGUE: Mapping[str, PotentialEntry] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
+"""The potentials included in the engine with their descriptions, by name; the three cases of Zotos (2014) come first."""
+
+POTENTIALS: Mapping[str, Potential] = ByName(
+    "potential",
+    {name: entry.potential for name, entry in CATALOGUE.items()},
+    {name: entry.title for name, entry in CATALOGUE.items()},
+)
+"""All potentials included in the engine, by name: ``POTENTIALS["HH"]``; the three cases of Zotos (2014) come first."""

@@ -13,7 +13,7 @@ _FIXED_STEP = 1.0 / 3.0
 
 def kernels_of(potential: Potential) -> ModuleType:
     """The compiled kernels of a potential in units of its well, from `load_kernels`."""
-    return load_kernels(potential.terms, potential.channels)
+    return load_kernels(potential.form.definition, potential.channels)
 
 
 def fixed_step_size(potential: Potential) -> float:

@@ -7,7 +7,9 @@ method refines them, and starts on a grid find roots whose eigenvalues are too i
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal, localcontext
+from typing import Any
 
 import numpy as np
 
@@ -97,8 +99,8 @@ def characteristic_length(*polynomials: Terms) -> float:
     return float(2.0 ** np.round((np.log2(largest[low]) - np.log2(largest[high])) / (high - low)))
 
 
-def winding_number(first: Terms, second: Terms, radius: float) -> int:
-    """Number of counterclockwise turns of the vector (first, second) along a circle about the origin.
+def winding_number(vector: Callable[[np.ndarray, np.ndarray], tuple[Any, Any]], radius: float) -> int:
+    """Number of counterclockwise turns of a vector, as a function of x and y, along a circle about the origin.
 
     By the Poincaré–Hopf theorem it is the sum of the indices of the vector's zeros inside the circle. For the gradient of a
     potential the index is +1 at a minimum or maximum and −1 at a saddle. If the indices of a list of critical points have
@@ -107,7 +109,8 @@ def winding_number(first: Terms, second: Terms, radius: float) -> int:
     angle = np.linspace(0.0, 2.0 * np.pi, 721)
     for _ in range(_MOST_REFINEMENTS):
         x, y = radius * np.cos(angle), radius * np.sin(angle)
-        rotation = np.diff(np.arctan2(evaluate(second, x, y), evaluate(first, x, y)))
+        first, second = vector(x, y)
+        rotation = np.diff(np.arctan2(*np.broadcast_arrays(second, first, x)[:2]))
         rotation = (rotation + np.pi) % (2.0 * np.pi) - np.pi
         too_large = np.flatnonzero(np.abs(rotation) > _LARGEST_ROTATION)
         if not too_large.size:

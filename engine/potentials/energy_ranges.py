@@ -53,11 +53,11 @@ PAPER_ENERGIES = {
 
 @lru_cache(maxsize=64)
 def energy_range(potential: Potential) -> EnergyRange:
-    """The range in multiples of the escape energy, which is above 0."""
-    escape = potential.escape_energy
-    span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * escape)
-    first, high = min(_FIRST * escape, escape + 0.5 * span), min(HIGHEST_SHOWN * escape, escape + span)
+    """The range in multiples of the depth of the well, which is above 0."""
+    escape, depth = potential.escape_energy, potential.escape_energy - potential.bottom
+    span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * depth)
+    first, high = min(potential.energy_at(_FIRST), escape + 0.5 * span), min(potential.energy_at(HIGHEST_SHOWN), escape + span)
     # Enough decimals to keep all of these distinct.
-    decimals = max(2 - math.floor(math.log10(escape)), 1 - math.floor(math.log10(high - escape)))
-    low, first, high = (round(energy, decimals) for energy in (_LOW * escape, first, high))
+    decimals = max(2 - math.floor(math.log10(depth)), 1 - math.floor(math.log10(high - escape)))
+    low, first, high = (round(energy, decimals) for energy in (potential.energy_at(_LOW), first, high))
     return EnergyRange(low, high, (), first, decimals)

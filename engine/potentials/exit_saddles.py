@@ -11,9 +11,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from engine.polynomials import Terms, degree
+from engine.potentials.form import Velocity
 
-Slopes = tuple[Terms, Terms]
+Downhill = Callable[[float, float], Velocity]
 Hessian = Callable[..., tuple[np.ndarray, ...]]
 
 # Distance from the saddle at which a descent starts, in units of the distance of the nearest other critical point.
@@ -22,6 +22,9 @@ _START_DISTANCE = 1e-3
 _END_DISTANCE = 1e-4
 # A descent has gone to infinity at this distance from the origin, in units of the distance of the outermost critical point.
 _FAR = 10.0
+
+# A descent is at rest if it moves by less in a step, in units of the distance of the point nearest to the origin.
+_AT_REST = 1e-13
 
 _RELATIVE_ERROR = 1e-9
 # Length of the first step, in units of the start's distance from the saddle.
@@ -34,13 +37,13 @@ class DescentError(ValueError):
     """A line of steepest descent whose end is not found."""
 
 
-def leads_out_of_well(slopes: Slopes, hessian: Hessian, points: np.ndarray) -> np.ndarray:
+def leads_out_of_well(downhill: Downhill, hessian: Hessian, points: np.ndarray) -> np.ndarray:
     """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well at the origin.
 
     Parameters
     ----------
-    slopes
-        The terms of V_x and V_y.
+    downhill
+        The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`.
     hessian
         (V_xx, V_xy, V_yy) as a function of x and y.
     points
@@ -54,20 +57,20 @@ def leads_out_of_well(slopes: Slopes, hessian: Hessian, points: np.ndarray) -> n
     flags = np.zeros(len(points), bool)
     if not origin.size or determinant[origin[0]] <= 0.0 or vxx[origin[0]] <= 0.0 or len(points) < 2:
         return flags
-    descent = _Descent(slopes, hessian, points, determinant < 0.0)
+    descent = _Descent(downhill, 1.0, hessian, points, determinant < 0.0)
     for k in np.flatnonzero(determinant < 0.0):
         one, other = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
         flags[k] = (int(origin[0]) in one) != (int(origin[0]) in other)
     return flags
 
 
-def find_maxima_beside(slopes: Slopes, hessian: Hessian, points: np.ndarray, saddles: np.ndarray) -> np.ndarray:
+def find_maxima_beside(downhill: Downhill, hessian: Hessian, points: np.ndarray, saddles: np.ndarray) -> np.ndarray:
     """(m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
 
     Parameters
     ----------
-    slopes
-        The terms of V_x and V_y.
+    downhill
+        The flow along −sign ∇V as a function of a length and of the sign, see `Form.downhill`.
     hessian
         (V_xx, V_xy, V_yy) as a function of x and y.
     points
@@ -79,45 +82,21 @@ def find_maxima_beside(slopes: Slopes, hessian: Hessian, points: np.ndarray, sad
     flags = np.zeros((len(saddles), len(points)), bool)
     if not len(saddles) or not np.any((vxx < 0.0) & (vxx * vyy > vxy**2)):
         return flags
-    ascent = _Descent(_negative(slopes), lambda x, y: tuple(-entry for entry in hessian(x, y)), points, vxx * vyy < vxy**2)
+    ascent = _Descent(downhill, -1.0, lambda x, y: tuple(-entry for entry in hessian(x, y)), points, vxx * vyy < vxy**2)
     for row, saddle in zip(flags, saddles, strict=True):
         ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
         row[[end for end in ends if end >= 0]] = True
     return flags
 
 
-def _negative(slopes: Slopes) -> Slopes:
-    along_x, along_y = ({powers: -c for powers, c in terms.items()} for terms in slopes)
-    return along_x, along_y
-
-
-def _flow(slopes: Slopes, length: float) -> Callable[[float, np.ndarray], np.ndarray]:
-    """The velocity (2,) of a descent at a time and place: −∇V, slower far away, where a descent takes a finite time to −∞."""
-    highest = max(map(degree, slopes))
-    table = np.zeros((2, highest + 1, highest + 1))
-    for axis, terms in enumerate(slopes):
-        for (i, j), c in terms.items():
-            table[axis, i, j] = -c
-    factors = np.ones((2, highest + 1))
-
-    def velocity(_time: float, place: np.ndarray) -> np.ndarray:
-        factors[:, 1:] = place[:, None]
-        powers_of_x, powers_of_y = np.multiply.accumulate(factors, axis=1)
-        downhill = table @ powers_of_y @ powers_of_x
-        slower: np.ndarray = downhill / (1.0 + (np.hypot(*place) / length) ** (highest - 1))
-        return slower
-
-    return velocity
-
-
 class _Descent:
     """Lines of steepest descent of one potential from its saddles."""
 
-    def __init__(self, slopes: Slopes, hessian: Hessian, points: np.ndarray, is_saddle: np.ndarray) -> None:
+    def __init__(self, downhill: Downhill, sign: float, hessian: Hessian, points: np.ndarray, is_saddle: np.ndarray) -> None:
         self.points, self.is_saddle = points, is_saddle
         distance = np.hypot(*points.T)
         self.length = float(distance[distance > 0.0].min())
-        self.flow = _flow(slopes, self.length)
+        self.flow = downhill(self.length, sign)
         self.far = _FAR * float(distance.max())
         hessians = np.moveaxis(np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)]), 0, -1)
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
@@ -152,11 +131,14 @@ class _Descent:
         line = LSODA(self.flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
         while self.steps_left and line.status == "running":
             self.steps_left -= 1
+            before = line.y
             line.step()
             distances = self._distances(line.y)[others]
             if distances.min() < _END_DISTANCE * self.length:
                 return int(others[np.argmin(distances)])
-            if np.hypot(*line.y) > self.far:
+            moved = float(np.hypot(*(line.y - before)))
+            # At rest, it is at a critical point that is not in the list, beyond the region where they were searched.
+            if np.hypot(*line.y) > self.far or moved < _AT_REST * self.length:
                 return -1
         x, y = self.points[saddle]
         raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")

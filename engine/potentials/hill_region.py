@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
 from engine.potentials.potential import Potential
@@ -11,6 +13,32 @@ _ENERGY_SHARE = 0.9
 _ANGLES, _RADII_PER_E_FOLD = 720, 35
 # Smallest and largest radius of the grid, in units of the distances of the nearest and of the outermost critical point.
 _SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
+# Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
+_OPEN_ENERGY_FACTOR = 100.0
+_CACHE_SIZE = 256
+
+SINGULAR_RATIO = 1e-10
+"""A Hessian is singular if the ratio of its eigenvalues is at most this."""
+
+
+def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
+    """Whether a well at the origin without exits is open far above the energies of all critical points (n, 2)."""
+    bottom = float(potential.value(0.0, 0.0))
+    energy_range = float(np.abs(potential.value(*points.T) - bottom).max(initial=0.0)) or potential.units.energy
+    return is_open_below(potential, bottom + _OPEN_ENERGY_FACTOR * energy_range, points)
+
+
+@functools.lru_cache(maxsize=_CACHE_SIZE)
+def check_closed_well(potential: Potential) -> None:
+    """Raise ValueError unless a potential without exits has a well at the origin that no orbit leaves."""
+    points = potential.critical_points
+    lowest, highest = np.linalg.eigvalsh(potential.hessian_matrix(0.0, 0.0))
+    is_well = bool((points == 0.0).all(axis=1).any()) and lowest > SINGULAR_RATIO * highest
+    if not is_well or is_open_without_saddle(potential, points):
+        raise ValueError(
+            f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
+            "escape; review_potential says more"
+        )
 
 
 def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:

@@ -1,11 +1,11 @@
-"""Polynomial potentials with a well at the origin, and their derived quantities: saddles, escape energy, channels.
+"""Potentials with a well at the origin, and their derived quantities: saddles, escape energy, channels.
 
-A potential is defined by its terms alone. Everything else, including the compiled integrator, is derived from them.
+A potential is defined by its formula alone. Everything else, including the compiled integrator, is derived from it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -13,29 +13,31 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, derivative, evaluate
-from engine.potentials.critical_points import characteristic_length, find_critical_points
+from engine.expressions.nodes import Expression
 from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.potentials.expression_form import ExpressionForm
+from engine.potentials.form import Form
+from engine.potentials.names import ByName
+from engine.potentials.polynomial_form import PolynomialForm, checked_form
 from engine.potentials.stored_points import stored_points
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.results.arrays import read_only
 from engine.results.result import Result
-from engine.validation import checked_count, checked_number, short_repr
+from engine.validation import check_type, checked_number
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
 """Saddles whose energies differ by less count as equally high; in units of the well's energy."""
 
-# Coordinates below this, in units of the characteristic length, are rounding errors of zero: on the +x axis the sign of such an
-# error would change the channel numbers.
+# Coordinates below this share of the distance are rounding errors of zero: on the +x axis the sign of such an error would change
+# the channel numbers.
 _ROUNDING = 1e-13
-# A critical point this close to the origin, in units of the characteristic length, is the origin.
-_SAME_POINT = 1e-8
 
-FREQUENCIES = (0.1, 10.0)
-"""Legal range of ω1 and ω2."""
+Terms = tuple[tuple[int, int, float], ...]
 
-STRENGTHS = (0.01, 100.0)
-"""Legal range of ε."""
+PARAMETER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
+    {"omega_1": (0.1, 10.0), "omega_2": (0.1, 10.0), "epsilon": (0.01, 100.0)}
+)
+"""Legal ranges of the parameters ω1, ω2 and ε of Zotos (2014)."""
 
 
 class ChannelMerger(NamedTuple):
@@ -52,16 +54,20 @@ class ChannelMerger(NamedTuple):
         return f"channels {', '.join(map(str, first))} and {last}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Potential(Result):
-    """V(x, y) = Σ c x^i y^j, dimensionless, for a unit mass: H = (px² + py²)/2 + V.
+    """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
 
     Parameters
     ----------
     name
         Display name; it has no influence on any result, and potentials of different name can be equal.
-    terms
-        ((i, j, c), …): exponents i, j from 0 to 12 and finite coefficient c of each term, each (i, j) only once.
+    form
+        What V is. For a polynomial Σ c x^i y^j its terms ((i, j, c), …): exponents i, j from 0 to 12 and coefficient c, at most
+        1e90 in magnitude, of each term, each (i, j) only once. `parse_formula` makes the forms of other formulas.
+    lineage
+        Empty, or from which family the saddles of this potential were continued (`ParameterFamily`). They may differ in the last
+        bit from those of an equal potential, and so may results, which are therefore kept apart.
 
     Raises
     ------
@@ -70,7 +76,7 @@ class Potential(Result):
 
     Examples
     --------
-    >>> from engine import CASES
+    >>> from escape_explorer import CASES
     >>> potential = CASES["III"].with_parameters(epsilon=0.5)
     >>> potential.channels, potential.escape_energy
     (4, 0.5)
@@ -79,16 +85,17 @@ class Potential(Result):
     """
 
     name: str = field(compare=False)
-    terms: tuple[tuple[int, int, float], ...]
+    form: Form
+    lineage: str = field(default="", repr=False)
 
-    def __post_init__(self) -> None:
-        try:
-            terms = tuple(_checked_term(*term) for term in self.terms)
-        except TypeError:
-            raise ValueError(f"terms={short_repr(self.terms)}: must be ((i, j, c), …)") from None
-        if len({term[:2] for term in terms}) != len(terms):
-            raise ValueError(f"terms={short_repr(terms)}: each pair of exponents must occur only once")
-        object.__setattr__(self, "terms", terms)
+    def __init__(self, name: str, form: Form | Terms | Expression, lineage: str = "") -> None:
+        check_type("name", name, str)
+        if isinstance(form, Expression):
+            form = ExpressionForm(form)
+        elif not isinstance(form, PolynomialForm | ExpressionForm):
+            form = checked_form(form)
+        for attribute, value in (("name", name), ("form", form), ("lineage", lineage)):
+            object.__setattr__(self, attribute, value)
 
     def numbers(self) -> dict[str, Any]:
         """The name, the escape energy and the number of channels."""
@@ -100,22 +107,23 @@ class Potential(Result):
         return {"channel": np.arange(1, self.channels + 1), "x": x, "y": y, "energy": self.saddle_energies}
 
     @property
-    def coefficients(self) -> dict[Powers, float]:
-        """The terms as {(i, j): c}."""
-        return {(i, j): c for i, j, c in self.terms}
+    def terms(self) -> Terms:
+        """((i, j, c), …) of a polynomial; ValueError for other formulas."""
+        if not isinstance(self.form, PolynomialForm):
+            raise ValueError(f"{self.name} is no polynomial")
+        return self.form.terms
 
     def value(self, x: Any, y: Any) -> Any:
         """V at (x, y); arrays broadcast."""
-        return evaluate(self.coefficients, x, y)
+        return self.form.value(x, y)
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """(V_x, V_y) at (x, y); arrays broadcast."""
-        along_x, along_y = self.slopes
-        return evaluate(along_x, x, y), evaluate(along_y, x, y)
+        return self.form.gradient(x, y)
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
         """(V_xx, V_xy, V_yy) at (x, y); arrays broadcast."""
-        return tuple(evaluate(self.derivative(*order), x, y) for order in ((2, 0), (1, 1), (0, 2)))
+        return self.form.hessian(x, y)
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
         """(2, 2) the Hessian matrix of V at one point."""
@@ -127,38 +135,23 @@ class Potential(Result):
         x, y, px, py = np.moveaxis(np.asarray(states, dtype=float), -1, 0)
         return 0.5 * (px * px + py * py) + self.value(x, y)
 
-    def derivative(self, nx: int, ny: int) -> dict[Powers, float]:
-        """The nonzero terms of ∂^(nx+ny) V / ∂x^nx ∂y^ny, as {(i, j): c}."""
-        terms = self.coefficients
-        for axis in (0,) * nx + (1,) * ny:
-            terms = derivative(terms, axis)
-        return terms
-
-    @cached_property
-    def slopes(self) -> tuple[Terms, Terms]:
-        """The terms of V_x and V_y."""
-        return self.derivative(1, 0), self.derivative(0, 1)
-
     @property
     def mirror_in_x(self) -> bool:
         """Whether V(−x, y) = V(x, y): then (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point."""
-        return all(i % 2 == 0 for i, _, _ in self.terms)
+        return self.form.mirror_in_x
 
     @property
     def mirror_in_y(self) -> bool:
         """Whether V(x, −y) = V(x, y): then (y, py) → (−y, −py) maps orbits to orbits."""
-        return all(j % 2 == 0 for _, j, _ in self.terms)
+        return self.form.mirror_in_y
 
     @cached_property
     def critical_points(self) -> np.ndarray:
-        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve."""
-        slopes = self.slopes
-        points = stored_points("critical_points", self.coefficients, lambda: find_critical_points(*slopes))
-        tiny = _ROUNDING * characteristic_length(*slopes)
-        points = np.where(np.abs(points) < tiny, 0.0, points)
-        if not any(slope.get((0, 0), 0.0) for slope in slopes):
-            points[np.hypot(*points.T) < _SAME_POINT * characteristic_length(*slopes)] = 0.0
-        return read_only(points)
+        """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
+
+        Those of a formula that is no polynomial are all of a region, see `engine.potentials.stationary_points`.
+        """
+        return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
 
     @cached_property
     def saddles(self) -> np.ndarray:
@@ -169,8 +162,28 @@ class Potential(Result):
         square of V_xy, which is a misprint.
         """
         points = self.critical_points
-        leads_out = stored_points("exit_saddles", self.coefficients, lambda: leads_out_of_well(self.slopes, self.hessian, points))
-        points = points[leads_out]
+        leads_out = stored_points("exit_saddles", self.form, lambda: leads_out_of_well(self.form.downhill, self.hessian, points))
+        return self._in_channel_order(points[leads_out])
+
+    def continued(self, lineage: str, saddles: np.ndarray, mergers: Sequence[tuple[np.ndarray, tuple[int, ...]]]) -> Potential:
+        """The same potential with saddles (n, 2), in any order, and maxima between exits that were found before.
+
+        mergers: the place (2,) of each maximum, and the indices of the saddles around it.
+        """
+        found = Potential(self.name, self.form, lineage)
+        ordered = found._in_channel_order(saddles)
+        channel = [1 + int(np.argmin(np.hypot(*(ordered - saddle).T))) for saddle in saddles]
+        found.__dict__["saddles"] = ordered
+        found.__dict__["channel_mergers"] = tuple(
+            sorted(
+                ChannelMerger(float(self.value(x, y)), float(x), float(y), tuple(sorted(channel[k] for k in around)))
+                for (x, y), around in mergers
+            )
+        )
+        return found
+
+    def _in_channel_order(self, points: np.ndarray) -> np.ndarray:
+        """Exit saddles (n, 2), counterclockwise from the +x axis, without rounding errors of zero and exactly symmetric."""
         points = np.where(np.abs(points) < _ROUNDING * np.hypot(*points.T)[:, None], 0.0, points)
         angle = np.arctan2(points[:, 1], points[:, 0]) % (2 * np.pi)
         points = points[np.argsort(angle, kind="stable")]
@@ -183,19 +196,24 @@ class Potential(Result):
         """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
 
         The unit of length is the distance of the nearest exit saddle, the unit of time 1/ω of the fastest small oscillation in
-        the well. Without an exit, the unit of length is the one in which the largest coefficients of the lowest and the
-        highest degree are about equal.
+        the well. Without an exit, the unit of length is that of the form.
         """
         frequency = self.fastest_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
         if not self.channels:
-            return WellUnits(characteristic_length(self.coefficients), time)
+            return WellUnits(self.form.length, time)
         return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
 
     @cached_property
     def stated_units(self) -> WellUnits:
         """Units in which errors state energies and positions: those of the potential from which `in_well_units` made this one."""
         return WellUnits()
+
+    @property
+    def exact_time_unit(self) -> float:
+        """The unit of time of the well before it is rounded: 1/ω of the fastest small oscillation; 1 without a well."""
+        frequency = self.fastest_frequency
+        return 1.0 / frequency if np.isfinite(frequency) and frequency > 0.0 else 1.0
 
     @cached_property
     def fastest_frequency(self) -> float:
@@ -212,9 +230,7 @@ class Potential(Result):
         units = self.units
         if units == WellUnits():
             return self
-        # Not through __init__: the legal range of the coefficients is for the potential's own units.
-        scaled = object.__new__(Potential)
-        terms = tuple((i, j, c * units.length ** (i + j) / units.energy) for i, j, c in self.terms)
+        scaled = Potential(self.name, self.form.scaled(units.length, units.energy), self.lineage)
         derived = {
             "units": WellUnits(),
             "stated_units": units,
@@ -225,15 +241,16 @@ class Potential(Result):
                 for m in self.channel_mergers
             ),
         }
-        scaled.__dict__.update(derived, name=self.name, terms=terms, in_well_units=scaled)
+        scaled.__dict__.update(derived, in_well_units=scaled)
         return scaled
 
     def with_parameters(self, omega_1: float = 1.0, omega_2: float = 1.0, epsilon: float = 1.0) -> Potential:
         """This potential with other frequencies of its well and another strength of its perturbation.
 
         V = ½ (ω1² x² + ω2² y²) + ε V1 of Zotos (2014), who uses ω1 = ω2 = ε = 1; V1 is the terms of degree 3 and higher.
-        In general x² is multiplied by ω1², y² by ω2² and x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so
-        that the default values give the potential itself. Constant and linear terms are unchanged.
+        In general V1 is all but the constant, linear and quadratic terms of the expansion about the origin, x² is multiplied by
+        ω1², y² by ω2² and x y by ω1 ω2, also if the quadratic terms are not ½ (x² + y²), so that the default values give the
+        potential itself. Constant and linear terms are unchanged.
 
         Parameters
         ----------
@@ -247,21 +264,19 @@ class Potential(Result):
         ValueError
             If a parameter is out of range.
         """
-        for name, value, (low, high) in (
-            ("omega_1", omega_1, FREQUENCIES),
-            ("omega_2", omega_2, FREQUENCIES),
-            ("epsilon", epsilon, STRENGTHS),
-        ):
+        for (name, (low, high)), value in zip(PARAMETER_RANGES.items(), (omega_1, omega_2, epsilon), strict=True):
             if not low <= checked_number(name, value) <= high:
                 raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
         symbols = (("ω1", omega_1), ("ω2", omega_2), ("ε", epsilon))
         changed = ", ".join(f"{symbol}={value:g}" for symbol, value in symbols if value != 1.0)
-        terms = tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms)
-        return Potential(f"{self.name} ({changed})" if changed else self.name, terms)
+        form = self.form.with_parameters(omega_1, omega_2, epsilon)
+        return Potential(f"{self.name} ({changed})" if changed else self.name, form)
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
         """(channels + 1,) the image of each channel number under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
+        if not self.channels:
+            return read_only(np.zeros(1, np.int8))
         distance = np.hypot(*(self.saddles[:, None] - self.saddles * [-1.0, 1.0]).T)
         return read_only(np.concatenate([[0], 1 + np.argmin(distance, axis=0)]).astype(np.int8))
 
@@ -283,14 +298,21 @@ class Potential(Result):
         """
         points = self.critical_points
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
-        beside = stored_points(
-            "maxima", self.coefficients, lambda: find_maxima_beside(self.slopes, self.hessian, points, saddles)
-        )
+        beside = stored_points("maxima", self.form, lambda: find_maxima_beside(self.form.downhill, self.hessian, points, saddles))
         mergers = []
         for k in np.flatnonzero(beside.sum(axis=0) > 1):
             (x, y), channels = points[k].tolist(), (np.flatnonzero(beside[:, k]) + 1).tolist()
             mergers.append(ChannelMerger(float(self.value(x, y)), x, y, tuple(channels)))
         return tuple(sorted(mergers))
+
+    @cached_property
+    def bottom(self) -> float:
+        """V at the origin, from which multiples of the escape energy count."""
+        return float(self.value(0.0, 0.0))
+
+    def energy_at(self, multiple: float) -> float:
+        """The energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""
+        return self.bottom + multiple * (self.escape_energy - self.bottom)
 
     @property
     def channels(self) -> int:
@@ -318,18 +340,6 @@ class Potential(Result):
         )
 
 
-def _parameter_factor(i: int, j: int, omega_1: float, omega_2: float, epsilon: float) -> float:
-    """The factor of the coefficient of x^i y^j in `Potential.with_parameters`."""
-    if i + j < 2:
-        return 1.0
-    return epsilon if i + j > 2 else omega_1**i * omega_2**j
-
-
-def _checked_term(i: Any, j: Any, c: Any) -> tuple[int, int, float]:
-    power_x, power_y = (checked_count(f"terms: exponent of {axis}", n, 0, HIGHEST_DEGREE) for axis, n in (("x", i), ("y", j)))
-    return power_x, power_y, checked_number("terms: coefficient", c)
-
-
 def _make_symmetric(points: np.ndarray) -> None:
     """Replace each point at x < 0 by the exact mirror image of its partner at x > 0, in place."""
     right = points[points[:, 0] > 0.0]
@@ -339,11 +349,12 @@ def _make_symmetric(points: np.ndarray) -> None:
 
 _HARMONIC = ((2, 0, 0.5), (0, 2, 0.5))
 
-CASES: Mapping[str, Potential] = MappingProxyType(
+CASES: Mapping[str, Potential] = ByName(
+    "case",
     {
         "I": Potential("I", (*_HARMONIC, (1, 2, -1.0))),
         "II": Potential("II", (*_HARMONIC, (3, 0, -1.0 / 3.0), (1, 2, 1.0))),
         "III": Potential("III", (*_HARMONIC, (2, 2, -1.0))),
-    }
+    },
 )
 """The three cases of Zotos (2014): V = (x² + y²)/2 + V1 with V1 = −x y², −x (x²/3 − y²) and −x² y²."""

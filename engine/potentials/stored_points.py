@@ -12,25 +12,24 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.polynomials import Terms
 from engine.storage.cache_files import SUFFIX, cache_folder, read_cached, write_cached
 
 log = logging.getLogger(__name__)
 
 
-def stored_points(kind: str, terms: Terms, find: Callable[[], np.ndarray]) -> np.ndarray:
+def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np.ndarray:
     """The result of `find`, read from a file if the same package has found it before on this machine.
 
     Parameters
     ----------
     kind
         What is found, for the name of the file.
-    terms
-        The polynomial on which the result depends.
+    form
+        That on which the result depends; its `repr` tells it from others.
     find
         Finds the array, of numbers or flags. Its errors are raised and not stored.
     """
-    key = repr((tuple(terms.items()), _versions()))
+    key = repr((form, _versions()))
     path = cache_folder() / f"{kind}.{hashlib.sha256(key.encode()).hexdigest()[:24]}{SUFFIX}"
     try:
         content = read_cached(path)
@@ -50,6 +49,8 @@ def stored_points(kind: str, terms: Terms, find: Callable[[], np.ndarray]) -> np
 def _versions() -> tuple[str, ...]:
     """Whatever else the results depend on: the modules that find them and the libraries below."""
     engine = Path(__file__).parents[1]
-    names = ("polynomials", *(f"potentials/{name}" for name in ("critical_points", "common_factor", "exit_saddles")))
-    sources = (hashlib.sha256((engine / f"{name}.py").read_bytes()).hexdigest() for name in names)
+    files = [engine / "polynomials.py", *sorted((engine / "expressions").glob("*.py"))]
+    names = ("critical_points", "common_factor", "exit_saddles", "expression_form", "polynomial_form", "stationary_points")
+    files += [engine / f"potentials/{name}.py" for name in names]
+    sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
     return (*sources, *(metadata.version(package) for package in ("numpy", "scipy")))

@@ -1,14 +1,18 @@
-"""A potential as users choose it: a name of the catalogue or a formula, with the parameters of Zotos (2014)."""
+"""A potential as users choose it: a name of the catalogue or a formula, with parameters by name."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import reprlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.catalogue import CATALOGUE, POTENTIALS
 from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange, energy_range
-from engine.potentials.formula_parser import parse_formula, write_formula
+from engine.potentials.formula_parser import formula_letters, parse_formula
+from engine.potentials.formula_writer import write_formula
 from engine.potentials.potential import CASES, Potential
+from engine.validation import check_type
 
 TYPED = "typed"
 """Case of a potential that is given by a formula."""
@@ -22,7 +26,7 @@ SHOWN_DIGITS = 12
 
 @dataclass(frozen=True)
 class System:
-    """A potential with the parameters ω1, ω2 and ε of Zotos (2014), V = ½(ω1² x² + ω2² y²) + ε V1.
+    """A potential with its parameters: those of Zotos (2014), V = ½(ω1² x² + ω2² y²) + ε V1, and the letters of a formula.
 
     Attributes
     ----------
@@ -30,15 +34,34 @@ class System:
         A key of `engine.POTENTIALS`, or `TYPED`.
     formula
         V(x, y) as text for `TYPED`, else empty.
-    omega_1, omega_2, epsilon
-        As in `Potential.with_parameters`.
+    parameters
+        Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, and the letters of the formula as in
+        `parse_formula`. One that is not given is 1; those that are 1 are left out.
+
+    Raises
+    ------
+    ValueError
+        If the catalogue has no such name, or an argument is of another type.
     """
 
     case: str
     formula: str = ""
-    omega_1: float = 1.0
-    omega_2: float = 1.0
-    epsilon: float = 1.0
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_type("case", self.case, str)
+        check_type("formula", self.formula, str)
+        check_type("parameters", self.parameters, Mapping)
+        if self.case != TYPED:
+            _ = POTENTIALS[self.case]
+        # Sorted, so that the order in which they were chosen changes neither titles nor links.
+        places = {name: place for place, name in enumerate(PARAMETERS)}
+        ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
+        changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != 1.0}
+        object.__setattr__(self, "parameters", changed)
+
+    def __hash__(self) -> int:
+        return hash((self.case, self.formula, tuple(self.parameters.items())))
 
     @property
     def potential(self) -> Potential:
@@ -46,33 +69,63 @@ class System:
         return _potential(self)
 
     @property
-    def changed(self) -> dict[str, float]:
-        """The parameters that are not 1."""
-        return {name: getattr(self, name) for name in PARAMETERS if getattr(self, name) != 1.0}
+    def letters(self) -> dict[str, float]:
+        """The values of the letters of the formula; ValueError if a character of it is not understood."""
+        return {name: self.parameters.get(name, 1.0) for name in formula_letters(self.formula)}
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """The names of all parameters; ValueError if a character of the formula is not understood."""
+        return (*PARAMETERS, *self.letters)
+
+    def value_of(self, name: str) -> float:
+        """The value of a parameter."""
+        return self.parameters.get(name, 1.0)
+
+    def with_parameter(self, name: str, value: float) -> System:
+        """The system with another value of one parameter."""
+        return replace(self, parameters={**self.parameters, name: value})
+
+    @property
+    def well_parameters(self) -> dict[str, float]:
+        """Those of ω1, ω2 and ε that are not 1."""
+        return {name: value for name, value in self.parameters.items() if name in PARAMETERS}
+
+    @property
+    def letter_parameters(self) -> dict[str, float]:
+        """The values of letters that are not 1."""
+        return {name: value for name, value in self.parameters.items() if name not in PARAMETERS}
 
     @property
     def title(self) -> str:
         """Name of the potential, with the parameters that are not 1."""
-        name = "Typed potential" if self.case == TYPED else POTENTIALS[self.case].title
-        changed = ", ".join(f"{PARAMETERS[name]} = {value:.6g}" for name, value in self.changed.items())
+        name = "Typed potential" if self.case == TYPED else CATALOGUE[self.case].title
+        changed = ", ".join(f"{PARAMETERS.get(name, name)} = {value:.6g}" for name, value in self.parameters.items())
         return f"{name} with {changed}" if changed else name
 
     @property
     def formula_shown(self) -> str:
         """V(x, y) as text, with the values of the parameters."""
-        if self.case == TYPED or self.changed:
+        if self.case == TYPED or self.parameters:
             return write_formula(self.potential, SHOWN_DIGITS)
-        return POTENTIALS[self.case].formula
+        return CATALOGUE[self.case].formula
 
     @property
     def energies(self) -> EnergyRange:
         """Energy range of the paper for its cases, else multiples of the escape energy."""
-        if self.case in CASES and not self.changed:
+        if self.case in CASES and not self.parameters:
             return PAPER_ENERGIES[self.case]
         return energy_range(self.potential)
 
 
 @lru_cache(maxsize=64)
 def _potential(system: System) -> Potential:
-    plain = parse_formula(system.formula) if system.case == TYPED else POTENTIALS[system.case].potential
-    return plain.with_parameters(system.omega_1, system.omega_2, system.epsilon)
+    letters = system.letter_parameters
+    if system.case == TYPED:
+        plain = parse_formula(system.formula, parameters=letters)
+    elif letters:
+        known = ", ".join(PARAMETERS)
+        raise ValueError(f"parameters: {reprlib.repr(next(iter(letters)))} is no parameter of {system.case}; it has {known}")
+    else:
+        plain = POTENTIALS[system.case]
+    return plain.with_parameters(**system.well_parameters)

@@ -6,31 +6,25 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import Enum
 from functools import lru_cache
-from math import comb
+from typing import ClassVar
 
 import numpy as np
 
-from engine.polynomials import HIGHEST_DEGREE, Powers, degree
-from engine.potentials.critical_points import NotIsolatedError, UndecidedError, winding_number
+from engine.potentials.critical_points import NotIsolatedError, UndecidedError
 from engine.potentials.exit_saddles import DescentError
-from engine.potentials.formula_parser import COEFFICIENT_RANGE, LONGEST_TEXT, MOST_TERMS, write_formula
-from engine.potentials.hill_region import is_open_below
+from engine.potentials.formula_parser import LONGEST_TEXT
+from engine.potentials.formula_writer import write_formula
+from engine.potentials.hill_region import SINGULAR_RATIO, is_open_below, is_open_without_saddle
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
-from engine.potentials.symmetry import count_rotations
 from engine.results.result import Result
+from engine.validation import checks_types
 
 MOST_CHANNELS = 16
 """Largest number of exit channels that the kernels of the Lyapunov orbit search support."""
 
 _CACHE_SIZE = 256
-# A Hessian is singular if the ratio of its eigenvalues is below this.
-_SINGULAR_RATIO = 1e-10
-# Radius of the circle for the index check, in units of the distance of the outermost critical point.
-_CIRCLE_RADIUS = 4.0
-# Significant digits of coefficients after a shift of the origin, and rounding errors of zero relative to the largest.
-_MOVED_DIGITS, _MOVED_ROUNDING = 12, 1e-12
-# Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
-_OPEN_ENERGY_FACTOR = 100.0
+# Significant digits of coefficients after a shift of the origin.
+_MOVED_DIGITS = 12
 
 
 class PointKind(Enum):
@@ -53,7 +47,7 @@ class CriticalPoint:
     channel: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PotentialReview(Result):
     """The result of `review_potential`; lengths and energies are dimensionless.
 
@@ -94,17 +88,20 @@ class PotentialReview(Result):
     refusal: str | None
     remarks: tuple[str, ...]
     moved_formula: str | None
+    row_dimension: ClassVar = "point"
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """Place, kind, energy and channel of each critical point."""
         names = [field.name for field in fields(CriticalPoint)]
-        return {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
+        columns = {name: np.array([getattr(point, name) for point in self.critical_points]) for name in names}
+        return columns | {"kind": np.array([point.kind.value for point in self.critical_points], dtype=str)}
 
     def describe(self) -> str:
         """Why the potential cannot be used, or what is unusual about it; empty for an ordinary one."""
         return self.refusal or " ".join(self.remarks)
 
 
+@checks_types(potential=Potential)
 @lru_cache(maxsize=_CACHE_SIZE)
 def review_potential(potential: Potential) -> PotentialReview:
     """Check whether a potential can be used, without compiling or integrating anything.
@@ -123,7 +120,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 
     Examples
     --------
-    >>> from engine import parse_formula, review_potential
+    >>> from escape_explorer import parse_formula, review_potential
     >>> review = review_potential(parse_formula("½(x² + y²) + xy² + 2x³"))
     >>> review.channels, round(review.escape_energy, 6), review.refusal
     (1, 0.00463, None)
@@ -139,7 +136,7 @@ def review_potential(potential: Potential) -> PotentialReview:
         highest_energy=potential.channel_mergers[0].energy if points and potential.channel_mergers else float("inf"),
         mirror_in_x=potential.mirror_in_x,
         mirror_in_y=potential.mirror_in_y,
-        rotations=count_rotations(potential),
+        rotations=potential.form.count_rotations(),
         refusal=refusal,
         remarks=() if refusal else _remarks(potential, points),
         moved_formula=_moved_to_well(potential, points),
@@ -147,7 +144,7 @@ def review_potential(potential: Potential) -> PotentialReview:
 
 
 def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    refusal = _limits_refusal(potential)
+    refusal = potential.form.limits_refusal()
     if refusal is not None:
         return (), refusal
     try:
@@ -176,7 +173,7 @@ def _critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
 
 def _kind(potential: Potential, x: float, y: float) -> PointKind:
     low, high = np.linalg.eigvalsh(potential.hessian_matrix(x, y))
-    if min(abs(low), abs(high)) <= _SINGULAR_RATIO * max(abs(low), abs(high)):
+    if min(abs(low), abs(high)) <= SINGULAR_RATIO * max(abs(low), abs(high)):
         return PointKind.DEGENERATE
     if low * high < 0.0:
         return PointKind.SADDLE
@@ -186,18 +183,6 @@ def _kind(potential: Potential, x: float, y: float) -> PointKind:
 def _channel(potential: Potential, x: float, y: float) -> int:
     near = np.flatnonzero(np.hypot(*(potential.saddles - [x, y]).T) < 1e-6 * potential.units.length)
     return int(near[0]) + 1 if near.size else 0
-
-
-def _limits_refusal(potential: Potential) -> str | None:
-    highest = degree(potential.coefficients)
-    if highest > HIGHEST_DEGREE:
-        return f"V has degree {highest}; the highest allowed degree is {HIGHEST_DEGREE}."
-    if len(potential.terms) > MOST_TERMS:
-        return f"V has {len(potential.terms)} terms; at most {MOST_TERMS} are allowed."
-    smallest, largest = COEFFICIENT_RANGE
-    if not all(smallest <= abs(c) <= largest for _, _, c in potential.terms):
-        return f"V has a coefficient whose magnitude is not between {smallest:g} and {largest:g}."
-    return None
 
 
 def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
@@ -231,10 +216,10 @@ def _moved_to_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> s
     nearest = next(iter(_minima(points)), None)
     if nearest is None or nearest is _point_at_origin(points):
         return None
-    terms = _shifted_terms(potential, nearest.x, nearest.y)
-    if any(abs(c) > COEFFICIENT_RANGE[1] for _, _, c in terms):
+    form = potential.form.moved(nearest.x, nearest.y)
+    if form is None:
         return None
-    formula = write_formula(Potential("", terms), _MOVED_DIGITS)
+    formula = write_formula(Potential("", form), _MOVED_DIGITS)
     return formula if len(formula) <= LONGEST_TEXT else None
 
 
@@ -245,17 +230,15 @@ def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> 
                 f"V has a degenerate critical point at ({point.x:.6g}, {point.y:.6g}), which is neither a saddle nor a minimum "
                 f"nor a maximum, so it is undefined whether orbits escape over it."
             )
-    outermost = max(np.hypot(point.x, point.y) for point in points)
     saddles = sum(point.kind is PointKind.SADDLE for point in points)
-    radius = _CIRCLE_RADIUS * (outermost if outermost > 0.0 else potential.units.length)
-    if winding_number(potential.derivative(1, 0), potential.derivative(0, 1), radius) != len(points) - 2 * saddles:
+    if not potential.form.are_complete(potential.critical_points, len(points) - 2 * saddles):
         return "Not all critical points were found: the sum of their indices is wrong (Poincaré–Hopf theorem)."
     return None
 
 
 def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
     if not potential.channels:
-        return _no_exit_refusal(potential, points)
+        return _no_exit_refusal(potential)
     if potential.channels > MOST_CHANNELS:
         return f"V has {potential.channels} channels; at most {MOST_CHANNELS} are allowed."
     if is_open_below(potential, potential.escape_energy, potential.critical_points):
@@ -263,9 +246,8 @@ def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> s
     return None
 
 
-def _no_exit_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str:
-    energy_range = max(abs(point.energy - points[0].energy) for point in points) or potential.units.energy
-    if is_open_below(potential, points[0].energy + _OPEN_ENERGY_FACTOR * energy_range, potential.critical_points):
+def _no_exit_refusal(potential: Potential) -> str:
+    if is_open_without_saddle(potential, potential.critical_points):
         return "The well is open without a saddle, so its exits and its escape energy are not defined."
     return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."
 
@@ -289,19 +271,6 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
         remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it {lowest.describe()} merge.")
     if not potential.mirror_in_y:
         remarks.append("V is not even in y: y = 0 is not a symmetry axis, and an orbit may stay on one side of it.")
-    if (0, 0) in potential.coefficients:
+    if potential.form.has_constant:
         remarks.append("The constant term has no effect on the orbits, but all energies include it.")
     return tuple(remarks)
-
-
-def _shifted_terms(potential: Potential, x: float, y: float) -> tuple[tuple[int, int, float], ...]:
-    """The terms of the potential expanded about its critical point (x, y), without the constant and linear terms."""
-    terms: dict[Powers, float] = {}
-    for i, j, c in potential.terms:
-        for k in range(i + 1):
-            for m in range(j + 1):
-                if k + m > 1:
-                    part = c * comb(i, k) * comb(j, m) * x ** (i - k) * y ** (j - m)
-                    terms[k, m] = terms.get((k, m), 0.0) + part
-    largest = max(map(abs, terms.values()), default=0.0)
-    return tuple((k, m, c) for (k, m), c in terms.items() if abs(c) > _MOVED_ROUNDING * largest)

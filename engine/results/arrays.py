@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 
@@ -9,3 +12,10 @@ def read_only(array: np.ndarray) -> np.ndarray:
     """Mark an array read-only in place and return it; for several arrays, ``map(read_only, arrays)``."""
     array.flags.writeable = False
     return array
+
+
+class ReadOnlyArrays:
+    """Base of dataclasses whose arrays are read-only: NumPy forgets it in a pickle, and so in results of other processes."""
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        vars(self).update({name: read_only(value) if isinstance(value, np.ndarray) else value for name, value in state.items()})

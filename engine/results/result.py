@@ -7,11 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from enum import Enum, IntEnum
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from engine.results.arrays import ReadOnlyArrays
+from engine.results.codes import describe_codes
 from engine.results.pictures import load_pictures
+from engine.results.summary import show_numbers, summarize
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,8 +23,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class Result:
-    """Base of dataclasses of results."""
+class Result(ReadOnlyArrays):
+    """Base of dataclasses of results; their arrays are read-only."""
+
+    codes: ClassVar[Mapping[str, type[IntEnum]]] = {}
+    """The attributes that are codes, with the meaning of these."""
+
+    row_dimension: ClassVar[str] = ""
+    """Name of the dimension of the columns in files; empty if the first column, whose values are different, is its coordinate."""
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
         """Draw the result.
@@ -53,6 +63,15 @@ class Result:
     def _repr_html_(self) -> str:
         return load_pictures().to_html(self)
 
+    def __repr__(self) -> str:
+        describe = getattr(self, "describe", None)
+        arrays = {name: value for name, value in self._attributes().items() if isinstance(value, np.ndarray)}
+        return summarize(type(self).__name__, describe() if describe is not None else "", self.shown_numbers(), arrays)
+
+    def shown_numbers(self) -> dict[str, str]:
+        """The scalar attributes as text: codes in words, other numbers to four digits."""
+        return show_numbers(self.numbers(), self.codes)
+
     def numbers(self) -> dict[str, Any]:
         """The scalar attributes by name."""
         return {name: value for name, value in self._attributes().items() if isinstance(value, bool | int | float | str)}
@@ -76,15 +95,33 @@ class Result:
         return table
 
     def to_xarray(self) -> xr.Dataset:
-        """The columns along the first of them, with the scalars as attributes; without columns a dataset of the scalars."""
+        """The columns along one dimension, with the scalars as attributes; without columns a dataset of the scalars.
+
+        It can be written as NetCDF and Zarr.
+        """
         import xarray as xr
 
-        numbers, columns = self.numbers(), self.columns()
+        columns = self.columns()
+        scalars = {name: _plain(value) for name, value in self.numbers().items()}
+        made = {"result": type(self).__name__}
         if not columns:
-            return xr.Dataset(numbers)
-        index, *others = columns
-        attributes = {name: int(value) if isinstance(value, bool) else value for name, value in numbers.items()}
-        return xr.Dataset({name: (index, columns[name]) for name in others}, {index: columns[index]}, attributes)
+            return xr.Dataset({name: ((), value, self._meaning(name, value)) for name, value in scalars.items()}, attrs=made)
+        dimension = self.row_dimension or next(iter(columns))
+        variables = {name: (dimension, values, self._meaning(name, values)) for name, values in columns.items()}
+        return xr.Dataset(variables, attrs=made | scalars)
+
+    def _meaning(self, name: str, values: Any) -> dict[str, str]:
+        """Attributes of a variable: what its codes are, or that its numbers are dimensionless."""
+        if name in self.codes:
+            return describe_codes(self.codes[name])
+        return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
+
+
+def _plain(value: Any) -> Any:
+    """A scalar as files hold it."""
+    if isinstance(value, Enum):
+        return value.value
+    return int(value) if isinstance(value, bool) else value
 
 
 class MapResult(Result):

@@ -9,21 +9,35 @@ import numpy as np
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
-from engine.slices.slice import Coordinate, Energy, Slice, checked_slice, highest_energy
+from engine.potentials.well_units import WellUnits
+from engine.slices.axes import ANGLES, Axis, Coordinate, Direction, ParameterAxis
+from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy
+from engine.slices.planes import checked_slice
+from engine.slices.slice import Slice
 from engine.slices.window import Window
+from engine.validation import checks_types
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
 _SCAN_POINTS = 801
-# The interior is searched up to this distance from the origin: in units of the well, and of the distance of the
+# The interior is searched up to this distance from the origin: in units of the distances of the nearest and of the
 # outermost exit saddle.
 _SEARCH_LENGTHS = 4.0
 _SEARCH_SADDLE_DISTANCES = 2.0
 _RAYS = 180
+# Points along a side of the lattice on which the interior of an oblique slice is searched, and how often it is refined.
+_SCAN_SIDE, _SCANS = 201, 3
+# Values of a parameter at which the interior is searched.
+_VALUES = 9
+# Points of a line of pixels that are tested for symmetry, and the largest distance of its pixels from 0 as a share of the window.
+_LINE_POINTS = 65
+_CENTRED = 1e-9
+_EMPTY = "must be at least about 1e-5 above the minimum of the well, and the fixed values inside the well"
 
 Range = tuple[float, float]
 
 
+@checks_types(potential=Potential)
 def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
     """A window that shows the whole interior: all starts that are neither forbidden nor outside.
 
@@ -47,7 +61,7 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
 
     Examples
     --------
-    >>> from engine import CASES, Plane, default_window
+    >>> from escape_explorer import CASES, Plane, default_window
     >>> window = default_window(CASES["III"], Plane.X_PX, 0.45)
     >>> round(window.x_low, 4), round(window.x_high, 4)
     (-1.0056, 1.0056)
@@ -56,20 +70,133 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
     return _default_window(potential, chosen, chosen.checked_energy(energy))
 
 
+def map_window(potential: Potential, plane: Slice, energy: Energy, resolution: tuple[int, int]) -> Window:
+    """The default window of a map, moved by half a pixel where a line of pixels would be on a line of symmetry.
+
+    An orbit of a potential even in x that starts with x = px = 0 stays there for ever, by symmetry alone. Such starts have
+    measure zero, and a column of them would count in shares and show a line that is no property of the basins; so for y.
+
+    Parameters
+    ----------
+    potential, plane, energy
+        As in `default_window`.
+    resolution
+        (columns, rows) of the map.
+    """
+    window = default_window(potential, plane, energy)
+    edges = [(window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)]
+    for place, (low, high) in enumerate(edges):
+        if _is_centred(low, high, resolution[place]) and _on_symmetry_line(potential, plane, energy, place, edges[1 - place]):
+            half = 0.5 * (high - low) / resolution[place]
+            edges[place] = low + half, high + half
+    return Window(*edges[0], *edges[1])
+
+
+def _is_centred(low: float, high: float, count: int) -> bool:
+    """Whether the middle one of several pixels is at 0, to rounding."""
+    return count > 1 and count % 2 == 1 and abs(low + high) < _CENTRED * (high - low)
+
+
+def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place: int, others: Range) -> bool:
+    """Whether all starts with 0 on one axis, 0 or 1, and values of this range on the other one stay on x = 0 or y = 0."""
+    line = plane if plane.parameter is None else plane.line(plane.parameter.low)
+    points = [np.linspace(*others, _LINE_POINTS)] * 2
+    points[place] = np.zeros(_LINE_POINTS)
+    states = line.states(potential, common_energy(energy), *points)
+    states = states[np.isfinite(states).all(axis=1)]
+    symmetries = ((potential.mirror_in_x, [0, 2]), (potential.mirror_in_y, [1, 3]))
+    return bool(states.size) and any(symmetric and not states[:, pair].any() for symmetric, pair in symmetries)
+
+
 @functools.lru_cache(maxsize=1024)
 def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Window:
-    units, highest = potential.units, highest_energy(energy)
-    well, well_energy = potential.in_well_units, highest / units.energy
-    ranges = _position_ranges(well, plane.in_well_units(units), well_energy)
-    if any(not ranges[axis][0] < ranges[axis][1] for axis in plane.axes if axis in ranges):
-        raise ValueError(f"energy={highest}: the interior is empty; must be at least about 1e-5 above the minimum of the well")
-    momenta = _momentum_range(well, well_energy, ranges)
-    first, second = (ranges.get(axis, momenta) for axis in plane.axes)
-    if isinstance(energy, tuple):
-        edges = [_widened(first, plane.axis_units(units)[0]), _widened(second, plane.axis_units(units)[1])]
-        edges[plane.axes.index(Coordinate.H)] = energy
-        return Window(*edges[0], *edges[1])
-    return _square_window(*first, *second).scaled(*plane.axis_units(units))
+    found, problem = [], None
+    for each in _potentials(potential, plane):
+        try:
+            found += _axis_ranges(each, plane, energy)
+        except ValueError as error:
+            # Along a parameter the others may have exits.
+            problem = error
+    if problem is not None and not found:
+        raise problem
+    if not found:
+        raise ValueError(f"energy={highest_energy(energy)}: the interior is empty on {plane.title}; {_EMPTY}")
+    x_low, ordinate_low = np.min(found, axis=0)[:, 0].tolist()
+    x_high, ordinate_high = np.max(found, axis=0)[:, 1].tolist()
+    if any(map(_is_whole, plane.axes)) or isinstance(energy, tuple):
+        return Window(
+            *_edges(plane.abscissa, energy, x_low, x_high), *_edges(plane.ordinate, energy, ordinate_low, ordinate_high)
+        )
+    x_unit, unit = (_exact_unit(axis, potential) for axis in plane.axes)
+    window = _square_window(x_low / x_unit, x_high / x_unit, ordinate_low / unit, ordinate_high / unit)
+    return window.scaled(x_unit, unit)
+
+
+def _exact_unit(axis: Axis, potential: Potential) -> float:
+    """The unit of an axis with the exact unit of time, so that the shape of a square does not depend on the user's units."""
+    units = WellUnits(potential.units.length, potential.exact_time_unit)
+    if isinstance(axis, Direction):
+        return 1.0 / float(np.hypot.reduce([value / c.unit(units) for c, value in axis.components.items()]))
+    return axis.unit(units)
+
+
+def _potentials(potential: Potential, plane: Slice) -> list[Potential]:
+    """The potentials over which a window extends: those along a parameter, else the one of the map."""
+    axis = plane.parameter
+    if axis is None:
+        return [potential]
+    return [axis.potential(value) for value in np.linspace(axis.low, axis.high, _VALUES).tolist()]
+
+
+def _axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[list[Range]]:
+    """The ranges of both axes over the interior of a slice, as a list of one pair; an empty list if it has none."""
+    units = potential.units
+    well, level, scaled = potential.in_well_units, highest_energy(energy) / units.energy, plane.in_well_units(units)
+    if any(isinstance(axis, Direction) for axis in plane.axes):
+        found = _scanned_ranges(well, scaled, scaled_energy(energy, 1.0 / units.energy))
+    else:
+        positions = _position_ranges(well, scaled, level)
+        momenta = _momentum_range(well, level, positions)
+        found = [positions.get(axis, momenta) if isinstance(axis, Coordinate) else momenta for axis in scaled.axes]
+    if any(not low < high for low, high in found):
+        return []
+    return [[(low * unit, high * unit) for (low, high), unit in zip(found, plane.axis_units(units), strict=True)]]
+
+
+def _is_whole(axis: Axis) -> bool:
+    """Whether the default window shows all of an axis, whatever the interior."""
+    return isinstance(axis, ParameterAxis) or axis in (*ANGLES, Coordinate.H)
+
+
+def _edges(axis: Axis, energy: Energy, low: float, high: float) -> Range:
+    """The edges of a window along an axis of which the interior has this range."""
+    if isinstance(axis, ParameterAxis):
+        return axis.low, axis.high
+    if axis in ANGLES:
+        return -np.pi, np.pi
+    if axis is Coordinate.H and isinstance(energy, tuple):
+        return energy
+    return _widened((low, high))
+
+
+def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[Range]:
+    """The ranges of both axes over the interior of a slice with a direction, from points on a lattice, in units of the well."""
+    reach = 2.0 * _search_radius(potential)
+    reaches = [reach * _exact_unit(axis, potential) for axis in plane.axes]
+    ranges = [_edges(axis, energy, -each, each) for axis, each in zip(plane.axes, reaches, strict=True)]
+    for _ in range(_SCANS):
+        sides = [np.linspace(low, high, _SCAN_SIDE) for low, high in ranges]
+        points = [side.ravel() for side in np.meshgrid(*sides)]
+        states = plane.states(potential, highest_energy(energy), *points)
+        exists = np.flatnonzero(np.isfinite(states).all(axis=1))
+        inside = exists[find_outside_channels(potential, highest_energy(energy), *states[exists, :2].T) == 0]
+        if not inside.size:
+            return [(0.0, 0.0), (0.0, 0.0)]
+        for place, axis in enumerate(plane.axes):
+            if not _is_whole(axis):
+                step, along = sides[place][1] - sides[place][0], points[place][inside]
+                ranges[place] = float(along.min() - step), float(along.max() + step)
+    return ranges
 
 
 def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[Coordinate, Range]:
@@ -93,10 +220,10 @@ def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate
     return -momentum, momentum
 
 
-def _widened(interval: Range, unit: float) -> Range:
+def _widened(interval: Range) -> Range:
     low, high = interval
     margin = _MARGIN * (high - low)
-    return unit * (low - margin), unit * (high + margin)
+    return low - margin, high + margin
 
 
 def _square_window(x_low: float, x_high: float, low: float, high: float) -> Window:
@@ -125,8 +252,10 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, he
 
 def _search_radius(potential: Potential) -> float:
     """A radius that contains the interior, unless the energy is many times the escape energy."""
-    outermost = float(np.hypot(*potential.saddles.T).max(initial=0.0))
-    return max(_SEARCH_LENGTHS, _SEARCH_SADDLE_DISTANCES * outermost)
+    distances = np.hypot(*potential.saddles.T)
+    # Not in units of the well, which are rounded: edges found on the scanned points must not depend on the user's units.
+    nearest, outermost = (float(distances.min()), float(distances.max())) if distances.size else (1.0, 0.0)
+    return max(_SEARCH_LENGTHS * nearest, _SEARCH_SADDLE_DISTANCES * outermost)
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:

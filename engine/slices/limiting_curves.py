@@ -7,14 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from engine.potentials.potential import Potential
-from engine.slices.slice import Energy, Slice, checked_slice, common_energy
-from engine.slices.window import Window
-from engine.validation import checked_number
+from engine.slices.energies import Energy, common_energy
+from engine.slices.planes import checked_slice
+from engine.slices.slice import Slice
+from engine.slices.window import GivenWindow, Window, checked_window
+from engine.validation import checked_number, checks_types
 
 _CONTOUR_SAMPLES = 201
 
 
-def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy, window: Window) -> list[np.ndarray]:
+@checks_types(potential=Potential)
+def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy, window: GivenWindow) -> list[np.ndarray]:
     """The boundary of the forbidden region of a slice: V(x, y) = h, px²/2 + V(x, 0) = h, or V(x, 0) = h.
 
     Parameters
@@ -26,7 +29,7 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
     energy
         h, dimensionless; ignored on a slice with an axis h.
     window
-        The part of the slice to trace.
+        The part of the slice to trace, given as in `MapSpec`.
 
     Returns
     -------
@@ -34,14 +37,14 @@ def trace_zero_velocity_curve(potential: Potential, plane: Slice, energy: Energy
 
     Examples
     --------
-    >>> from engine import CASES, Plane, default_window, trace_zero_velocity_curve
+    >>> from escape_explorer import CASES, Plane, default_window, trace_zero_velocity_curve
     >>> window = default_window(CASES["I"], Plane.X_PX, 0.19)
     >>> len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, window))
     1
     """
     # Along an axis h the required energy is the one that is missing.
     level = None if checked_slice(plane).energy_axis is not None else common_energy(energy)
-    return trace_equipotentials(potential, plane, (level or 0.0,), window)[0]
+    return trace_equipotentials(potential, plane, (level or 0.0,), checked_window(window))[0]
 
 
 def trace_equipotentials(potential: Potential, plane: Slice, energies: Sequence[float], window: Window) -> list[list[np.ndarray]]:

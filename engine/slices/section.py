@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engine.slices.slice import Coordinate, Slice, checked_slice
+from engine.slices.axes import Coordinate
+from engine.slices.planes import checked_slice
+from engine.slices.slice import Slice
 
 
 @dataclass(frozen=True)

@@ -1,45 +1,25 @@
 """Slices of phase space: which starts the points of a picture are.
 
-A slice names two coordinates as axes and holds the others. The energy decides one momentum, whose sign the slice fixes. Along
-an axis h every start has an energy of its own, and so have its exits.
+A slice has two axes: coordinates, oblique directions, h, or a parameter of the system; it holds the other coordinates. The
+energy decides one momentum, whose sign the slice fixes, or the speed where an angle is given. Along an axis h every start has an
+energy and exits of its own, along a parameter also a potential.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from typing import Any
 
 import numpy as np
 
 from engine.potentials.potential import Potential
+from engine.potentials.system import System
 from engine.potentials.well_units import WellUnits
 from engine.results.arrays import read_only
-from engine.validation import LARGEST_NUMBER, checked_array, checked_number, short_repr
-
-
-class Coordinate(Enum):
-    """A coordinate that an axis of a slice can have; the value is its symbol."""
-
-    X = "x"
-    Y = "y"
-    PX = "px"
-    PY = "py"
-    H = "h"
-
-    def unit(self, units: WellUnits) -> float:
-        """The unit of the coordinate in which it is a number of the size of the well."""
-        return {"x": units.length, "y": units.length, "px": units.momentum, "py": units.momentum, "h": units.energy}[self.value]
-
-
-Energy = float | tuple[float, float]
-"""The energy of a map: h, or on a slice with an axis h its range (low, high)."""
-
-_POSITIONS = (Coordinate.X, Coordinate.Y)
-_MOMENTA = (Coordinate.PX, Coordinate.PY)
-# The coordinates whose sign changes under x → −x.
-_MIRRORED = (Coordinate.X, Coordinate.PX)
+from engine.slices.axes import ANGLES, MOMENTA, POSITIONS, STATE, Axis, Coordinate, Direction, ParameterAxis
+from engine.slices.energies import Energy
+from engine.validation import LARGEST_NUMBER, check_type, checked_array, checked_number, short_repr
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,63 +29,93 @@ class Slice:
     Parameters
     ----------
     abscissa, ordinate
-        The coordinates of the axes: two different ones, at most one of them a momentum.
+        The axes: two different coordinates, a `Direction`, or a `ParameterAxis`, of which there is at most one.
     solved
-        The momentum that the energy decides; not an axis.
+        What the energy decides: a momentum, or with an angle the speed. None for the speed if an angle is used, px if py is,
+        else py.
     sign
-        Sign of that momentum, 1 or −1.
+        Sign of that momentum, 1 or −1; 1 for the speed.
     fixed
         ((coordinate, value), …): values of the other coordinates of the state, dimensionless; 0 for those left out.
 
     Raises
     ------
     ValueError
-        If a coordinate is used twice, a value is not finite, or the sign is not 1 or −1.
+        If a coordinate is used twice, the energy has nothing to decide, two directions are parallel, a value is not finite, or
+        the sign is not 1 or −1.
     """
 
-    abscissa: Coordinate
-    ordinate: Coordinate
-    solved: Coordinate = Coordinate.PY
+    abscissa: Axis
+    ordinate: Axis
+    solved: Coordinate | None = None
     sign: int = 1
     fixed: tuple[tuple[Coordinate, float], ...] = ()
 
     def __post_init__(self) -> None:
-        if self.solved not in _MOMENTA:
-            raise ValueError(f"solved={self.solved.value}: must be px or py")
-        if self.sign not in (1, -1):
-            raise ValueError(f"sign={short_repr(self.sign)}: must be 1 or -1")
-        used = [*self.axes, self.solved, *(coordinate for coordinate, _ in self.fixed)]
-        if len(set(used)) < len(used) or Coordinate.H in used[2:]:
-            raise ValueError(f"slice of {', '.join(c.value for c in used)}: each of x, y, px, py, h must be used at most once")
-        # Zeros are left out, so that equal slices compare equal.
-        values = ((coordinate, checked_number(f"fixed {coordinate.value}", value)) for coordinate, value in self.fixed)
-        kept = sorted(((coordinate, value) for coordinate, value in values if value), key=lambda pair: pair[0].value)
+        for name, axis in zip(("abscissa", "ordinate"), self.axes, strict=True):
+            if not isinstance(axis, Axis):
+                raise ValueError(f"{name}={short_repr(axis)}: must be a Coordinate, a Direction or a ParameterAxis")
+        check_type("solved", self.solved, (Coordinate, type(None)))
+        try:
+            object.__setattr__(self, "fixed", tuple((coordinate, value) for coordinate, value in self.fixed))
+        except (TypeError, ValueError):
+            raise ValueError(f"fixed={short_repr(self.fixed)}: must be ((coordinate, value), …)") from None
+        for coordinate, _ in self.fixed:
+            check_type("fixed", coordinate, Coordinate)
+        used = [axis for axis in self.axes if isinstance(axis, Coordinate)] + [coordinate for coordinate, _ in self.fixed]
+        if self.solved is None:
+            object.__setattr__(self, "solved", _momentum_left(self.axes, used))
+        _check_coordinates(self.axes, used, self.fixed, self.decided)
+        if self.sign not in (1, -1) or (self.decided is Coordinate.SPEED and self.sign < 0):
+            legal = "1" if self.decided is Coordinate.SPEED else "1 or -1"
+            raise ValueError(f"sign={short_repr(self.sign)}: must be {legal}")
+        values = {coordinate: checked_number(f"fixed {coordinate.key}", value) for coordinate, value in self.fixed}
+        if self.decided is Coordinate.SPEED and not any(angle in used for angle in ANGLES):
+            values[Coordinate.THETA] = 0.0
+        # Zeros are left out, so that equal slices compare equal; that of an angle tells which one is held.
+        kept = sorted(((c, value) for c, value in values.items() if value or c in ANGLES), key=lambda pair: pair[0].key)
         object.__setattr__(self, "fixed", tuple(kept))
 
     def __repr__(self) -> str:
         held = "".join(f"({coordinate}, {value!r}), " for coordinate, value in self.fixed)
-        return f"Slice({self.abscissa}, {self.ordinate}, {self.solved}, {self.sign}, ({held.rstrip()}))"
+        abscissa, ordinate = (str(axis) if isinstance(axis, Coordinate) else repr(axis) for axis in self.axes)
+        return f"Slice({abscissa}, {ordinate}, {self.solved}, {self.sign}, ({held.rstrip()}))"
 
     @property
-    def axes(self) -> tuple[Coordinate, Coordinate]:
+    def axes(self) -> tuple[Axis, Axis]:
         """Abscissa and ordinate."""
         return self.abscissa, self.ordinate
 
     @property
+    def decided(self) -> Coordinate:
+        """What the energy decides: px, py or the speed."""
+        assert self.solved is not None
+        return self.solved
+
+    @property
     def axis_names(self) -> tuple[str, str]:
-        """The symbols of abscissa and ordinate."""
-        return self.abscissa.value, self.ordinate.value
+        """The names of abscissa and ordinate in files."""
+        return self.abscissa.key, self.ordinate.key
+
+    @property
+    def axis_symbols(self) -> tuple[str, str]:
+        """The symbols of abscissa and ordinate in texts and at axes."""
+        return self.abscissa.symbol, self.ordinate.symbol
 
     @property
     def key(self) -> str:
-        """The name of the axes in addresses and on the command line, such as ``x_px``."""
-        return "_".join(self.axis_names)
+        """A name in file names, such as ``x_px`` or ``x_theta-y0.1``; with 6 digits of the fixed values."""
+        held = "".join(f"-{coordinate.key}{value:.6g}" for coordinate, value in self.fixed)
+        return "_".join(self.axis_names) + held + ("" if self.sign > 0 else "-negative")
 
     @property
     def title(self) -> str:
-        """The name in texts, such as "(x, px)"."""
-        held = "".join(f", {coordinate.value} = {value:.6g}" for coordinate, value in self.fixed)
-        return f"({', '.join(self.axis_names)}){held}"
+        """The name in texts, such as "(x, px)": axes, fixed values, and the momentum decided where it is not the usual one."""
+        held = [f"{coordinate.symbol} = {value:.6g}" for coordinate, value in self.fixed]
+        usual = _momentum_left(self.axes, [axis for axis in self.axes if isinstance(axis, Coordinate)])
+        if self.sign < 0 or (self.decided is not usual and self.decided is not Coordinate.SPEED):
+            held.append(f"{self.decided.symbol} {'>' if self.sign > 0 else '<'} 0")
+        return ", ".join([f"({', '.join(self.axis_symbols)})", *held])
 
     @property
     def energy_axis(self) -> int | None:
@@ -113,29 +123,52 @@ class Slice:
         return self.axes.index(Coordinate.H) if Coordinate.H in self.axes else None
 
     @property
+    def parameter_axis(self) -> int | None:
+        """0 if the abscissa is a parameter, 1 if the ordinate is one; None if all starts have one potential."""
+        return next((place for place, axis in enumerate(self.axes) if isinstance(axis, ParameterAxis)), None)
+
+    @property
+    def parameter(self) -> ParameterAxis | None:
+        """The axis that is a parameter; None if there is none."""
+        return next((axis for axis in self.axes if isinstance(axis, ParameterAxis)), None)
+
+    @property
     def free_axes(self) -> tuple[bool, bool]:
-        """For each axis, whether a start can be displaced along it at constant energy."""
-        return self.abscissa is not Coordinate.H, self.ordinate is not Coordinate.H
+        """For each axis, whether a start can be displaced along it at constant energy in the same potential."""
+        return self.abscissa.is_free, self.ordinate.is_free
 
     @property
     def shows_positions(self) -> bool:
         """Whether the axes are x and y, so that paths and exits can be drawn in the slice."""
-        return self.axes == _POSITIONS
+        return self.axes == POSITIONS
 
     @property
     def limiting_curve(self) -> str:
         """The equation of the boundary of the forbidden region, such as "½px² + V(x, 0) = h"."""
-        other = next(momentum for momentum in _MOMENTA if momentum is not self.solved)
-        symbols = {**{c: f"{value:.6g}" for c, value in self.fixed}, **{axis: axis.value for axis in self.axes}}
-        kinetic = f"½{symbols[other] if other in self.axes else f'({symbols[other]})'}² + " if other in symbols else ""
-        place = "" if self.shows_positions else f"({', '.join(symbols.get(position, '0') for position in _POSITIONS)})"
+        moved = {c for axis in self.axes for c in (axis.components if isinstance(axis, Direction) else {axis})}
+        symbols = {**{c: f"{value:.6g}" for c, value in self.fixed}, **{c: c.symbol for c in moved if c in STATE}}
+        kinetic = "".join(
+            f"½{symbols[momentum] if momentum in moved else f'({symbols[momentum]})'}² + "
+            for momentum in MOMENTA
+            if momentum in symbols and momentum is not self.decided
+        )
+        place = "" if self.shows_positions else f"({', '.join(symbols.get(position, '0') for position in POSITIONS)})"
         return f"{kinetic}V{place} = h"
 
-    def to_dict(self) -> dict[str, Any]:
-        """The slice as plain data: names of the axes, values of other coordinates, and the momentum that the energy decides."""
-        held = {coordinate.value: 0.0 for coordinate in (*_POSITIONS, *_MOMENTA)} | {c.value: value for c, value in self.fixed}
-        fixed = {name: value for name, value in held.items() if name not in (*self.axis_names, self.solved.value)}
-        return {"axes": list(self.axis_names), "fixed": fixed, "decided": self.solved.value, "sign": self.sign}
+    def to_dict(self, units: WellUnits) -> dict[str, Any]:
+        """The slice as plain data in units of a well: see `Slice` in modules/system.js of the page."""
+        scaled = self.in_well_units(units)
+        moves = [{axis.key: 1.0} if isinstance(axis, Coordinate) else _components(axis) for axis in scaled.axes]
+        fixed = {c.key: 0.0 for c in STATE if c is not self.decided} | {c.key: value for c, value in scaled.fixed}
+        return {
+            "axes": list(self.axis_names),
+            "units": list(self.axis_units(units)),
+            "moves": moves,
+            "fixed": fixed,
+            "decided": self.decided.key,
+            "sign": self.sign,
+            "mirrored": self.mirrored_axes,
+        }
 
     def axis_units(self, units: WellUnits) -> tuple[float, float]:
         """The units of both axes in which their coordinates are numbers of the size of the well."""
@@ -153,11 +186,12 @@ class Slice:
         return replace(units.restore(result), x=x, ordinate=ordinate)  # type: ignore[type-var]
 
     def in_well_units(self, units: WellUnits) -> Slice:
-        """The same slice with its fixed values in units of a well; itself if it has none."""
-        if not self.fixed:
+        """The same slice in units of a well; itself if it has neither fixed values nor directions."""
+        if not self.fixed and not any(isinstance(axis, Direction) for axis in self.axes):
             return self
         fixed = tuple((coordinate, value / coordinate.unit(units)) for coordinate, value in self.fixed)
-        return Slice(self.abscissa, self.ordinate, self.solved, self.sign, fixed)
+        abscissa, ordinate = (axis.in_well_units(units) for axis in self.axes)
+        return Slice(abscissa, ordinate, self.solved, self.sign, fixed)
 
     def checked_energy(self, energy: Any) -> Energy:
         """An energy of this slice: one finite number, or the pair (low, high) along an axis h."""
@@ -176,22 +210,72 @@ class Slice:
 
     def states(self, potential: Potential, energy: Any, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
         """(n, 4) the starts of points of the slice; parameters as in `start_states`."""
-        state = self._coordinates(x, ordinate)
-        (other,) = (state[momentum] for momentum in _MOMENTA if momentum is not self.solved)
+        if self.parameter is not None:
+            states = np.full((*np.shape(x), len(STATE)), np.nan)
+            for here, line, each in self._lines(x, ordinate):
+                states[here] = line.states(each, energy if np.ndim(energy) == 0 else energy[here], x[here], ordinate[here])
+            return states
+        start = self._coordinates(x, ordinate)
         with np.errstate(over="ignore", invalid="ignore"):
             # An overflow far from the origin gives a forbidden start.
-            left = self.energies(energy, x, ordinate) - potential.value(state[Coordinate.X], state[Coordinate.Y])
-            doubled = 2.0 * left - other * other
-        state[self.solved] = self.sign * np.sqrt(np.where(doubled >= 0, doubled, np.nan))
-        return np.column_stack([state[coordinate] for coordinate in (*_POSITIONS, *_MOMENTA)])
+            left = self.energies(energy, x, ordinate) - potential.value(start[Coordinate.X], start[Coordinate.Y])
+            doubled = 2.0 * left - self._square_of_others(start)
+        found = self.sign * np.sqrt(np.where(doubled >= 0, doubled, np.nan))
+        if self.decided is Coordinate.SPEED:
+            start[Coordinate.PX], start[Coordinate.PY] = _velocity(start, found)
+        else:
+            start[self.decided] = found
+        return np.column_stack([start[coordinate] for coordinate in STATE])
 
     def required_energy(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray:
         """The lowest energy at which a start exists; with an axis h, the energy missing there, positive where forbidden."""
-        state = self._coordinates(x, ordinate)
-        (other,) = (state[momentum] for momentum in _MOMENTA if momentum is not self.solved)
-        kinetic = 0.5 * other**2 - self.energies(0.0, x, ordinate)
-        required: np.ndarray = kinetic + potential.value(state[Coordinate.X], state[Coordinate.Y])
-        return required
+        if self.parameter is not None:
+            required = np.full(np.shape(x), np.inf)
+            for here, line, each in self._lines(x, ordinate):
+                required[here] = line.required_energy(each, x[here], ordinate[here])
+            return required
+        start = self._coordinates(x, ordinate)
+        kinetic = 0.5 * self._square_of_others(start) - self.energies(0.0, x, ordinate)
+        lowest: np.ndarray = kinetic + potential.value(start[Coordinate.X], start[Coordinate.Y])
+        return lowest
+
+    def _lines(self, x: np.ndarray, ordinate: np.ndarray) -> Iterator[tuple[np.ndarray, Slice, Potential]]:
+        """For each value of the parameter at which there is a system: where points have it, their slice, and their potential."""
+        axis, place = self.parameter, self.parameter_axis
+        assert axis is not None
+        assert place is not None
+        values = np.asarray((x, ordinate)[place])
+        for value in np.unique(values).tolist():
+            try:
+                yield values == value, self.line(value), axis.potential(value)
+            except ValueError:
+                continue
+
+    def of_system(self, system: System) -> Slice:
+        """The same slice with its parameter in another system; ValueError if this has not the parameter in its range."""
+        if self.parameter is None or self.parameter.system == system:
+            return self
+        abscissa, ordinate = (replace(a, system=system) if isinstance(a, ParameterAxis) else a for a in self.axes)
+        return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
+
+    def check_one_potential(self, name: str) -> None:
+        """Raise ValueError, with `name` as the parameter, if an axis is a parameter of the system."""
+        if self.parameter is not None:
+            raise ValueError(f"{name}: is on {self.title}; must be on a slice of one potential, without a parameter as axis")
+
+    def line(self, value: float) -> Slice:
+        """The slice of the starts at one value of the parameter that is an axis."""
+        abscissa, ordinate = (axis.at(value) if isinstance(axis, ParameterAxis) else axis for axis in self.axes)
+        return Slice(abscissa, ordinate, self.solved, self.sign, self.fixed)
+
+    def system_at(self, system: System, x: float, ordinate: float) -> System:
+        """The system of a point: `system`, or the one at its value of a parameter."""
+        axis = self.parameter
+        return system if axis is None else system.with_parameter(axis.key, (x, ordinate)[self.parameter_axis or 0])
+
+    def potential_at(self, potential: Potential, x: float, ordinate: float) -> Potential:
+        """The potential of a point: `potential`, or the one at its value of a parameter; ValueError if there is none."""
+        return potential if self.parameter is None else self.system_at(self.parameter.system, x, ordinate).potential
 
     def energy_groups(self, rows: int, columns: int) -> np.ndarray:
         """(rows · columns,) the number of the energy of each pixel, in row-major order: its place along an axis h, else 0."""
@@ -205,10 +289,11 @@ class Slice:
     @property
     def mirrored_axes(self) -> tuple[bool, bool] | None:
         """For each axis, whether its sign changes under x → −x; None if this mirror image of the slice is another one."""
-        held = [coordinate for coordinate, _ in self.fixed]
-        if self.solved in _MIRRORED or any(coordinate in _MIRRORED for coordinate in held):
+        parities = [axis.parity for axis in self.axes]
+        held = [coordinate.parity for coordinate, _ in self.fixed]
+        if None in parities or any(parity != 1 for parity in (self.decided.parity, *held)):
             return None
-        return self.abscissa in _MIRRORED, self.ordinate in _MIRRORED
+        return parities[0] == -1, parities[1] == -1
 
     def find_mirror_images(self, potential: Potential, x: np.ndarray, ordinate: np.ndarray) -> np.ndarray | None:
         """For each pixel, the pixel whose orbit is its exact mirror image under x → −x.
@@ -234,83 +319,78 @@ class Slice:
         return images.ravel()
 
     def _coordinates(self, x: np.ndarray, ordinate: np.ndarray) -> dict[Coordinate, np.ndarray]:
-        """Arrays of all coordinates of the state but the solved one, and of h where it is an axis."""
+        """Arrays of the coordinates of starts, where the momenta that the energy decides are not set yet."""
         held: Mapping[Coordinate, float] = dict(self.fixed)
-        state = {coordinate: np.full_like(x, held.get(coordinate, 0.0)) for coordinate in (*_POSITIONS, *_MOMENTA)}
-        return state | {self.abscissa: x, self.ordinate: ordinate}
+        start = {coordinate: np.full_like(x, held.get(coordinate, 0.0)) for coordinate in (*STATE, *held)}
+        # Coordinates are set, directions move from there.
+        for axis, along in sorted(zip(self.axes, (x, ordinate), strict=True), key=lambda pair: isinstance(pair[0], Direction)):
+            axis.move(start, along)
+        return start
+
+    def _square_of_others(self, start: Mapping[Coordinate, np.ndarray]) -> Any:
+        """The square of the momentum that the energy does not decide; 0 if it decides both."""
+        if self.decided is Coordinate.SPEED:
+            return 0.0
+        (other,) = (start[momentum] for momentum in MOMENTA if momentum is not self.decided)
+        return other * other
 
 
-class Plane(Slice, Enum):
-    """The named slices. Coordinates that are not axes are 0, and the momentum that the energy decides is positive.
-
-    The first three are those of Zotos (2014), the last one is the section of Hénon & Heiles (1964), Astron. J. 69, 73.
-    """
-
-    X_Y = Coordinate.X, Coordinate.Y
-    X_PX = Coordinate.X, Coordinate.PX
-    X_H = Coordinate.X, Coordinate.H
-    Y_PY = Coordinate.Y, Coordinate.PY, Coordinate.PX
+def _momentum_left(axes: tuple[Axis, Axis], used: Sequence[Coordinate]) -> Coordinate:
+    """What the energy decides by default."""
+    if any(angle in used for angle in ANGLES):
+        return Coordinate.SPEED
+    along = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
+    return Coordinate.PX if Coordinate.PY in {*used, *along} else Coordinate.PY
 
 
-SPACE = Plane.X_Y
-"""The plane of the positions, in which V, paths and exits are drawn."""
+def _check_coordinates(
+    axes: tuple[Axis, Axis], used: Sequence[Coordinate], fixed: Sequence[tuple[Coordinate, float]], decided: Coordinate
+) -> None:
+    """Raise ValueError unless the coordinates used and the decided one make one start for each point."""
+    if decided not in (*MOMENTA, Coordinate.SPEED):
+        raise ValueError(f"solved={decided.key}: must be px, py or v")
+    known = ", ".join(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
+    names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
+    if len({*used, decided}) <= len(used) or any(c in (Coordinate.H, Coordinate.SPEED) for c, _ in fixed):
+        raise ValueError(f"slice of {names}: each of {known} must be used at most once")
+    if len({axis.key for axis in axes}) < 2 or sum(isinstance(axis, ParameterAxis) for axis in axes) > 1:
+        raise ValueError(f"slice of {names}: the axes must be different ones, at most one of them a parameter")
+    moved = {c for axis in axes if isinstance(axis, Direction) for c in axis.components}
+    taken = {*used, *moved}
+    angles = sum(angle in used for angle in ANGLES)
+    if decided is Coordinate.SPEED and (any(momentum in taken for momentum in MOMENTA) or angles > 1):
+        raise ValueError(
+            f"slice of {names}: with an angle the energy decides the speed; px, py and another angle must be left out"
+        )
+    if decided is not Coordinate.SPEED and (angles or decided in taken):
+        raise ValueError(f"slice of {names}: {decided.key}, which the energy decides, must not be set by an axis or an angle")
+    if np.linalg.matrix_rank(_rows_of(axes)) < sum(_moves_state(axis) for axis in axes):
+        raise ValueError(f"slice of {names}: the directions of the axes must not be parallel")
 
 
-def common_energy(energy: Energy) -> float | None:
-    """h of all starts of a map; None on a slice with an axis h."""
-    return None if isinstance(energy, tuple) else energy
+def _moves_state(axis: Axis) -> bool:
+    return isinstance(axis, Direction) or axis in STATE
 
 
-def highest_energy(energy: Energy) -> float:
-    """The highest h of a map."""
-    return energy[1] if isinstance(energy, tuple) else energy
+def _rows_of(axes: tuple[Axis, Axis]) -> np.ndarray:
+    """(2, 4) the directions of the axes in (x, y, px, py); zeros for axes of other kinds."""
+    parts = [axis.components if isinstance(axis, Direction) else {axis: 1.0} for axis in axes]
+    return np.array([[part.get(coordinate, 0.0) for coordinate in STATE] for part in parts])
 
 
-def scaled_energy(energy: Energy, factor: float) -> Energy:
-    """The energy of a map in other units."""
-    return (factor * energy[0], factor * energy[1]) if isinstance(energy, tuple) else factor * energy
+def _components(axis: Axis) -> dict[str, float]:
+    """The components of a direction by name; none for a parameter, along which starts do not move."""
+    return {c.key: value for c, value in axis.components.items()} if isinstance(axis, Direction) else {}
 
 
-def checked_slice(value: Any) -> Slice:
-    """A slice, given as one or by the title or the key of a named one: "(x, px)" or "x_px"."""
-    if isinstance(value, Slice):
-        return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
-    for plane in Plane if isinstance(value, str) else ():
-        if value in (plane.title, plane.key):
-            return plane
-    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.title for plane in Plane)}")
-
-
-def _fields(chosen: Slice) -> tuple[Any, ...]:
-    return chosen.abscissa, chosen.ordinate, chosen.solved, chosen.sign, chosen.fixed
-
-
-def start_states(
-    potential: Potential, plane: Slice, energy: float | np.ndarray, x: np.ndarray, ordinate: np.ndarray
-) -> np.ndarray:
-    """The initial conditions of points of a slice.
-
-    Parameters
-    ----------
-    potential
-        The potential.
-    plane
-        The slice, such as a `Plane`.
-    energy
-        h, a number or (n,); ignored on a slice with an axis h.
-    x, ordinate
-        (n,) coordinates on the slice.
-
-    Returns
-    -------
-    (n, 4) x, y, px, py; the momentum that the energy decides is NaN where the start is forbidden.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from engine import CASES, Plane, start_states
-    >>> start_states(CASES["III"], Plane.X_PX, 0.45, np.array([0.0, 0.9]), np.array([0.3, 0.5])).round(4)
-    array([[0. , 0. , 0.3, 0.9],
-           [0.9, 0. , 0.5, nan]])
-    """
-    return checked_slice(plane).states(potential, energy, x, ordinate)
+def _velocity(start: Mapping[Coordinate, np.ndarray], speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """px and py of starts with an angle and a speed (n,)."""
+    if Coordinate.THETA in start:
+        angle = start[Coordinate.THETA]
+        return speed * np.cos(angle), speed * np.sin(angle)
+    x, y, angle = start[Coordinate.X], start[Coordinate.Y], start[Coordinate.BETA]
+    radius = np.hypot(x, y)
+    # At the origin, where no direction is radial, that of the +x axis is taken.
+    away_x, away_y = np.where(radius > 0, (x, y) / np.where(radius > 0, radius, 1.0), np.array([[1.0], [0.0]]))
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return speed * (cosine * away_x - sine * away_y), speed * (cosine * away_y + sine * away_x)

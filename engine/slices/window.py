@@ -41,6 +41,10 @@ class Window:
         return _interval_centres(self.x_low, self.x_high, columns), _interval_centres(self.ordinate_low, self.ordinate_high, rows)
 
 
+type GivenWindow = Window | tuple[float, float, float, float]
+"""A window as functions take it: a `Window`, or (x_low, x_high, ordinate_low, ordinate_high)."""
+
+
 def checked_window(window: Any) -> Window:
     """A `Window`, given as one or as (x_low, x_high, ordinate_low, ordinate_high)."""
     if isinstance(window, Window):

@@ -11,30 +11,36 @@ import numpy as np
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.maps.compute import run_map
-from engine.maps.result import EscapeMap, describe_codes
+from engine.maps.result import EscapeMap
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.potentials.potential import Potential
+from engine.results.codes import describe_codes
 from engine.slices.slice import Slice
-from engine.slices.window import Window
+from engine.slices.window import GivenWindow, Window
 from engine.sweeps.complete_map import require_complete
-from engine.sweeps.energy_curves import EnergyCurvesSpec
+from engine.sweeps.curves import MOST_VALUES, CurvesSpec
+from engine.sweeps.energy_grid import checked_sweep
+from engine.validation import checked_count, checks_types
 
 if TYPE_CHECKING:
     import xarray as xr
 
+# More crossings than any orbit has by the largest t_max.
+_MOST_CROSSINGS = 2**31 - 1
 _WINDOW = tuple(Window.__dataclass_fields__)
 
 
 @shows_progress("crossing statistics")
+@checks_types(potential=Potential, execution=Execution)
 def compute_crossing_statistics(
     potential: Potential,
     plane: Slice,
-    energies: Sequence[float],
+    energies: Sequence[float] | np.ndarray,
     resolution: tuple[int, int] = DEFAULT_RESOLUTION,
     t_max: float = 1e5,
     *,
-    window: Window | None = None,
+    window: GivenWindow | None = None,
     count_outside: bool = False,
     most_crossings: int | None = None,
     execution: Execution = DEFAULT_EXECUTION,
@@ -56,7 +62,7 @@ def compute_crossing_statistics(
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8.
     window
-        Window of all maps; None for the default window of each energy.
+        Window of all maps, given as in `MapSpec`; None for the default window of each energy.
     count_outside, most_crossings
         As in `tabulate_crossing_statistics`.
     execution
@@ -75,13 +81,14 @@ def compute_crossing_statistics(
 
     Examples
     --------
-    >>> from engine import CASES, Plane, compute_crossing_statistics
+    >>> from escape_explorer import CASES, Plane, compute_crossing_statistics
     >>> table = compute_crossing_statistics(CASES["III"], Plane.X_PX, (0.4, 0.5, 0.6), (40, 40), t_max=1e3)
     >>> table["direct_share"].values.round(3)
     array([0.573, 0.786, 0.938])
     """
-    sweep = EnergyCurvesSpec(potential, plane, tuple(energies), resolution, t_max, exponent=False)
-    specs = [replace(sweep.point(h).map_spec, window=window) if window else sweep.point(h).map_spec for h in sweep.energies]
+    _, values = checked_sweep(plane, energies, MOST_VALUES)
+    sweep = CurvesSpec(potential, plane, values, resolution, t_max, exponent=False)
+    specs = [replace(sweep.point(h).map_spec, window=window) if window else sweep.point(h).map_spec for h in sweep.values]
     _check_most_crossings(most_crossings)
     maps = _compute_maps(specs, execution)
     return tabulate_crossing_statistics(maps, count_outside=count_outside, most_crossings=most_crossings)
@@ -153,12 +160,13 @@ def _compute_maps(specs: Sequence[MapSpec], execution: Execution) -> Iterator[Es
 
 
 def _check_most_crossings(most_crossings: int | None) -> None:
-    if most_crossings is not None and most_crossings < 0:
-        raise ValueError(f"most_crossings={most_crossings}: must be 0 or more, or None")
+    if most_crossings is not None:
+        checked_count("most_crossings", most_crossings, 0, _MOST_CROSSINGS)
 
 
 def _check_next(frame: EscapeMap, last: MapSpec | None) -> None:
     spec = frame.spec
+    spec.plane.check_one_potential("maps")
     if spec.common_energy is None:
         raise ValueError(f"maps: one is on {spec.plane.title}; must be on a slice without an axis h")
     if not frame.complete:

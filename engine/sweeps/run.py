@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,7 +24,7 @@ from engine.storage.output_lock import hold_lock
 from engine.sweeps.complete_map import require_complete
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.zarr_store import SweepStore, create_store
-from engine.validation import checked_count
+from engine.validation import checked_count, checks_types
 from engine.warmup import prepare_kernels
 
 if TYPE_CHECKING:
@@ -38,9 +39,10 @@ MOST_CORES = 1_000_000
 
 
 @shows_progress("sweep")
+@checks_types(spec=SweepSpec, store=(str, os.PathLike), execution=Execution)
 def run_sweep(
     spec: SweepSpec,
-    store: Path,
+    store: str | os.PathLike[str],
     *,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> xr.Dataset:
@@ -67,7 +69,8 @@ def run_sweep(
     Raises
     ------
     ValueError
-        When the store holds another sweep or other files, or no exit is defined at one of the energies.
+        When the store holds another sweep or other files, the folder that is to hold it does not exist, or no exit is defined at
+        one of the energies.
     OSError
         When the store cannot be written to; finished energies and blocks stay valid. BlockingIOError when another process
         computes into it, with one sentence that names the process.
@@ -76,12 +79,11 @@ def run_sweep(
 
     Examples
     --------
-    >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> from engine import CASES, Plane, SweepSpec, run_sweep
+    >>> from escape_explorer import CASES, Plane, SweepSpec, run_sweep
     >>> spec = SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.25), resolution=(20, 20), t_max=100.0)
     >>> with TemporaryDirectory() as folder:
-    ...     dataset = run_sweep(spec, Path(folder, "maps.zarr"))
+    ...     dataset = run_sweep(spec, f"{folder}/maps.zarr")
     ...     print(dict(dataset["fate"].sizes))
     {'h': 2, 'px': 20, 'x': 20}
     """
@@ -141,6 +143,8 @@ def _compute_block(spec: MapSpec, rows: np.ndarray, execution: Execution) -> Esc
 
 def _find_store(spec: SweepSpec, path: Path) -> SweepStore | None:
     """Open the store of a request; None if the folder is missing or empty."""
+    if not path.parent.exists():
+        raise ValueError(f"store={path}: the folder {path.parent} does not exist; make it first")
     if not path.exists() or not any(path.iterdir()):
         return None
     if not (path / "zarr.json").exists():
@@ -191,6 +195,7 @@ class SweepPlan:
         return f"{self.orbits:.3g} orbits: about {took} on {cores} ({spent}), at most {self.bytes / 1e9:.3g} GB"
 
 
+@checks_types(spec=SweepSpec, execution=Execution)
 def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Execution = DEFAULT_EXECUTION) -> SweepPlan:
     """Estimate the cost of a sweep from the processor time of coarse maps, 48 and 96 pixels a side, at twelve energies.
 
@@ -214,6 +219,13 @@ def plan_sweep(spec: SweepSpec, *, cores: int | None = None, execution: Executio
         When `cores` is less than 1, or no exit is defined at one of the energies.
     concurrent.futures.CancelledError
         When cancelled.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, Plane, SweepSpec, plan_sweep
+    >>> plan = plan_sweep(SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.5), resolution=(1000, 1000), t_max=100.0), cores=64)
+    >>> plan.orbits, plan.cores
+    (2000000, 64)
     """
     if cores is not None:
         cores = checked_count("cores", cores, 1, MOST_CORES)

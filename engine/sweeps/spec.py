@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +12,9 @@ import numpy as np
 from engine.maps.compute import LARGEST_RUN
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
 from engine.potentials.potential import Potential
-from engine.slices.default_window import default_window
+from engine.slices.default_window import map_window
 from engine.slices.slice import Slice
-from engine.slices.window import Window
+from engine.slices.window import GivenWindow
 from engine.sweeps.energy_grid import checked_sweep
 
 MOST_SWEPT_ENERGIES = 10_000
@@ -56,9 +57,9 @@ class SweepSpec:
 
     potential: Potential
     plane: Slice
-    energies: tuple[float, ...]
+    energies: Sequence[float] | np.ndarray
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
-    window: Window | None = None
+    window: GivenWindow | None = None
     t_max: float = 1e5
     certify: bool = True
     piece: int | None = None
@@ -74,7 +75,7 @@ class SweepSpec:
 
     def map_spec(self, energy: float) -> MapSpec:
         """The spec of the map at one energy."""
-        window = self.window or default_window(self.potential, self.plane, self.energies[-1])
+        window = self.window or map_window(self.potential, self.plane, self.energies[-1], self.resolution)
         return MapSpec(self.potential, self.plane, energy, self.resolution, window, self.t_max, self.certify)
 
     def provenance(self) -> dict[str, Any]:

@@ -151,7 +151,6 @@ def create_store(
         Rows per chunk.
     """
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    path.parent.mkdir(parents=True, exist_ok=True)
     try:
         _create_group(unfinished, template, fill_values, coordinates, attributes, chunk_rows)
         os.replace(unfinished, path)

@@ -1,4 +1,4 @@
-"""From a potential's terms to its compiled kernels.
+"""From the definition of a potential to its compiled kernels.
 
 Generated functions (`engine.taylor.source`) are shared by all potentials of the same structure, and the kernels that call them
 (`engine.taylor.kernels`) by all potentials. For each potential there are callables that pass its coefficients and the addresses
@@ -12,34 +12,37 @@ import inspect
 import linecache
 import sys
 import threading
+from collections.abc import Hashable
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
+from engine.expressions.graph import make_graph
+from engine.expressions.nodes import Expression
 from engine.taylor.jit.compiled_operations import compiled_operations
 from engine.taylor.jit.decorator import kernel
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.jit.llvm_emitter import straight_line, table_reader
-from engine.taylor.kernels import fixed_step, periodic_shooting, propagate, section_passages
-from engine.taylor.source.recurrence import REACH, GeneratedCode, Terms, generate_code
+from engine.taylor.kernels import fixed_step, interior, periodic_shooting, propagate, section_passages
+from engine.taylor.source.recurrence import REACH, Definition, GeneratedCode, generate_code
 
-_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages)
+_KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages, interior)
 # Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
-# Powers of x and y of the potentials whose functions are generated.
-_generated_powers: set[frozenset[tuple[int, int]]] = set()
+# The potentials whose functions are generated, see `_outline`.
+_generated: set[tuple[Hashable, int]] = set()
 
 
-def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleType:
+def load_kernels(definition: Definition, channels: int, reach: float = REACH) -> ModuleType:
     """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
     ----------
-    terms
-        ((i, j, c), …) of V = Σ c x^i y^j.
+    definition
+        ((i, j, c), …) of V = Σ c x^i y^j, or an expression.
     channels
         Number of exit channels, 0 or more.
     reach
@@ -52,12 +55,12 @@ def load_kernels(terms: Terms, channels: int, reach: float = REACH) -> ModuleTyp
     loaded from the cache.
     """
     with _lock:
-        return _load(terms, channels, reach)
+        return _load(definition, channels, reach)
 
 
-def is_generated(terms: Terms) -> bool:
-    """Whether functions were generated for a potential with the same powers of x and y; to generate them takes 0.3 s."""
-    return _powers(terms) in _generated_powers
+def is_generated(definition: Definition, channels: int) -> bool:
+    """Whether functions were generated for a potential of the same form with as many channels; to generate them takes 0.3 s."""
+    return (_outline(definition), channels) in _generated
 
 
 class GeneratedKernel:
@@ -126,11 +129,11 @@ class _BoundKernel:
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
-def _load(terms: Terms, channels: int, reach: float) -> ModuleType:
-    code = generate_code(terms, channels, reach)
+def _load(definition: Definition, channels: int, reach: float) -> ModuleType:
+    code = generate_code(definition, channels, reach)
     name, generated = _define_module(code)
-    _generated_powers.add(_powers(terms))
-    coefficients = code.tabulate(terms)
+    _generated.add((_outline(definition), channels))
+    coefficients = code.tabulate(definition)
     bound = ModuleType(name)
     for each, function in generated.items():
         setattr(bound, each, _BoundKernel(function, (), coefficients))
@@ -145,8 +148,9 @@ def _load(terms: Terms, channels: int, reach: float) -> ModuleType:
     return bound
 
 
-def _powers(terms: Terms) -> frozenset[tuple[int, int]]:
-    return frozenset((i, j) for i, j, _ in terms)
+def _outline(definition: Definition) -> Hashable:
+    """Powers of x and y, or the graph of an expression."""
+    return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
 @functools.cache

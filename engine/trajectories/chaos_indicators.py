@@ -1,10 +1,13 @@
-"""Three chaos indicators of one orbit: SALI, the finite-time Lyapunov exponent and Birkhoff digits.
+"""Chaos indicators of one orbit: SALI, the finite-time Lyapunov exponent and Birkhoff digits.
 
-Each indicator calls a bounded orbit regular, chaotic or undecided by its own rule. They can disagree, most often on sticky
-orbits: chaotic orbits that follow a torus for a long time. Escaping orbits get no verdict.
+Each indicator judges a bounded orbit by its own rule. SALI and the exponent come from deviation vectors, which can show chaos.
+Where they do not, there is no sign of chaos until then: sticky orbits follow a torus for a long time before they leave it. Only
+averages that agree as on a torus make an orbit regular. An escaping orbit can be chaotic while it is inside; there is no other
+verdict on it.
 
 The thresholds below were calibrated on 850 orbits bounded until t = 1e5 on six maps (I at h = 0.12 and 0.13, II at 0.16 and 0.17,
-III at 0.24 and 0.26). "Tori" are the orbits among them certified by 8 agreeing digits.
+III at 0.24 and 0.26). "Tori" are the orbits among them certified by 8 agreeing digits. `benchmarks.verdicts` counts how many of
+the verdicts turn out wrong later.
 """
 
 from __future__ import annotations
@@ -26,7 +29,7 @@ from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.results.wording import format_time
 from engine.trajectories.trajectory import Orbit
-from engine.validation import checked_state, checked_t_max
+from engine.validation import checked_state, checked_t_max, checks_types
 
 MIN_GROWTH_TIME = 100.0
 """Shortest orbit judged by the growth of a deviation vector, in units of the well.
@@ -35,13 +38,16 @@ On tori ln|w|/ln t can come close to `CHAOTIC_POWER` at t = 30.
 """
 
 REGULAR_SALI = 1e-5
-"""A SALI above this is regular. Few tori lie between this and `CHAOS_THRESHOLD`, together with orbits that turn chaotic later."""
+"""A SALI above this is no sign of chaos. Between this and `CHAOS_THRESHOLD` are few tori, and orbits that turn chaotic later."""
 
 CHAOTIC_POWER = 2.0
 """A deviation vector that grew beyond t to this power is chaotic. On tori ln|w|/ln t stayed below 1.5 from t = 100 to 1e5."""
 
 REGULAR_POWER = 1.5
-"""Fastest growth from t/10 to t, as a power of t, that is called regular. On a torus a deviation vector grows like t."""
+"""Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
+
+REGULAR_DIGITS = 7.0
+"""Digits from which averages over both halves of an orbit agree as on a torus, see `benchmarks.verdicts`."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
 """By window T: fewer digits than this are chaotic. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
@@ -50,14 +56,20 @@ _GROWTH_FIT_SAMPLES = 200
 
 
 class Verdict(StrEnum):
-    """Conclusion of an indicator about a bounded orbit."""
+    """Conclusion about a bounded orbit; the last one is about an orbit that escapes.
+
+    ``NO_SIGN``: nothing that tells it from a regular orbit until the end of the integration, and no evidence of a torus.
+    ``UNDECIDED``: too short to tell, or in between.
+    """
 
     REGULAR = "regular"
     CHAOTIC = "chaotic"
+    NO_SIGN = "no sign of chaos"
     UNDECIDED = "undecided"
+    CHAOTIC_INSIDE = "chaotic while inside"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BirkhoffDigits(Result):
     """Number of digits to which weighted averages over two consecutive windows agree, by window length; arrays are read-only.
 
@@ -68,7 +80,7 @@ class BirkhoffDigits(Result):
     digits
         (m,) agreeing digits, above 0 and at most 16. On a recognised torus the last value is `CERTIFIED_DIGITS` or more.
     time_unit
-        Unit of time of the well, of which the windows are multiples.
+        Unit of time of the well before rounding, 1/ω, of which the windows are multiples.
     """
 
     windows: np.ndarray = field(metadata=TIME)
@@ -92,7 +104,7 @@ class IndicatorVerdict:
     value
         SALI, the exponent per unit of time, or the digits of the longest window; NaN if not available.
     conclusion
-        The `Verdict` for a bounded orbit, otherwise None.
+        The `Verdict` for a bounded orbit, ``CHAOTIC_INSIDE`` for one that is chaotic before it escapes, otherwise None.
     sentence
         The conclusion and its reason in words.
     """
@@ -103,6 +115,7 @@ class IndicatorVerdict:
     sentence: str
 
 
+@checks_types(potential=Potential, execution=Execution)
 def compute_birkhoff_digits(
     potential: Potential, state: Any, t_max: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> BirkhoffDigits:
@@ -138,11 +151,12 @@ def compute_birkhoff_digits(
 
     Examples
     --------
-    >>> from engine import CASES, compute_birkhoff_digits
+    >>> from escape_explorer import CASES, compute_birkhoff_digits
     >>> compute_birkhoff_digits(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=2000.0).digits.round(1)
     array([8.9])
     """
-    start, t_max, units = checked_state("state", state), checked_t_max(t_max), potential.units
+    start, units = checked_state("state", state), potential.units
+    t_max = checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
     return units.restore(_compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution))
 
 
@@ -152,7 +166,10 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
     orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
-    for window in WINDOWS:
+    # Not in units of the well, which are rounded: verdicts must not depend on the user's units.
+    unit = potential.exact_time_unit
+    windows = [window * unit for window in WINDOWS]
+    for window in windows:
         if 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
             break
         found = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
@@ -162,7 +179,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
         digits.append(float(found))
         if found >= CERTIFIED_DIGITS:
             break
-    return BirkhoffDigits(read_only(np.array(WINDOWS[: len(digits)])), read_only(np.array(digits)))
+    return BirkhoffDigits(read_only(np.array(windows[: len(digits)])), read_only(np.array(digits)), unit)
 
 
 def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t_end: float, execution: Execution) -> bool:
@@ -172,6 +189,7 @@ def _stays_inside(potential: Potential, curves: np.ndarray, orbit: OrbitBatch, t
     return bool(orbit.fate[0] == Fate.NOT_COMPUTED)
 
 
+@checks_types(orbit=Orbit, digits=(BirkhoffDigits, type(None)))
 def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> tuple[IndicatorVerdict, ...]:
     """Evaluate the chaos indicators of an orbit at its end.
 
@@ -184,32 +202,74 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
 
     Returns
     -------
-    One `IndicatorVerdict` each for SALI, the Lyapunov exponent and, if given, the digits. An orbit that escapes or starts outside
-    gets values but no conclusion: escape and chaos are different questions.
+    One `IndicatorVerdict` each for SALI, the Lyapunov exponent, the Birkhoff digits of both halves of a bounded orbit and, if
+    given, the digits. An orbit that escapes is chaotic while
+    inside where SALI or the growth of a deviation vector reached the threshold of chaos before; otherwise it gets values but no
+    conclusion, as does a start outside: no orbit that escapes is regular, and one that escapes early may not show its chaos.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, evaluate_indicators, integrate_orbit
+    >>> for indicator in evaluate_indicators(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.3), t_max=2e3)):
+    ...     print(indicator.name, indicator.conclusion)
+    SALI no sign of chaos
+    Lyapunov exponent no sign of chaos
+    Birkhoff digits of halves regular
     """
     values = _final_values(orbit, digits)
-    if orbit.fate != Fate.BOUNDED:
-        sentence = _describe_unbounded(orbit)
-        return tuple(IndicatorVerdict(name, value, None, sentence) for name, value in values)
-    judged = [_judge_sali(orbit), _judge_exponent(orbit)]
-    if digits is not None:
-        judged.append(_judge_digits(digits))
+    judged: list[tuple[Verdict | None, str]]
+    if orbit.fate == Fate.BOUNDED:
+        judged = [_judge_sali(orbit), _judge_exponent(orbit), _judge_halves(orbit)]
+        judged += [_judge_digits(digits)] if digits is not None else []
+    elif orbit.fate >= 1:
+        judged = [_judge_sali_inside(orbit), _judge_growth_inside(orbit), (None, _describe_escape(orbit))][: len(values)]
+    else:
+        judged = [(None, describe_fate(orbit.fate))] * len(values)
     return tuple(IndicatorVerdict(name, value, *verdict) for (name, value), verdict in zip(values, judged, strict=True))
 
 
 def _final_values(orbit: Orbit, digits: BirkhoffDigits | None) -> list[tuple[str, float]]:
     """Name and final value of each indicator."""
     values = [("SALI", float(orbit.sali[-1])), ("Lyapunov exponent", float(orbit.lyapunov_exponent[-1]))]
+    if orbit.fate == Fate.BOUNDED:
+        values.append(("Birkhoff digits of halves", orbit.digits_of_halves))
     if digits is not None:
         values.append(("Birkhoff digits", float(digits.digits[-1]) if digits.digits.size else float("nan")))
     return values
 
 
-def _describe_unbounded(orbit: Orbit) -> str:
-    if orbit.fate < 1:
-        return describe_fate(orbit.fate)
+def _describe_escape(orbit: Orbit) -> str:
+    return f"The orbit escapes at t = {format_time(orbit.escape_time)}, so this is not a verdict."
+
+
+def _judge_sali_inside(orbit: Orbit) -> tuple[Verdict | None, str]:
+    """Verdict on an orbit that escapes, whose history ends there."""
+    least = float(np.min(orbit.sali))
+    if judge_regularity(least) is not Regularity.CHAOTIC:
+        return None, _describe_escape(orbit)
     time = format_time(orbit.escape_time)
-    return f"The orbit escapes at t = {time}, so this is not a verdict."
+    return (
+        Verdict.CHAOTIC_INSIDE,
+        f"SALI fell to {least:.2g} before the escape at t = {time}: {CHAOS_THRESHOLD:g} or below is chaotic.",
+    )
+
+
+def _judge_growth_inside(orbit: Orbit) -> tuple[Verdict | None, str]:
+    """The same from the growth of a deviation vector."""
+    t_end = float(orbit.t[-1])
+    log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
+    if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
+        return None, _describe_escape(orbit)
+    time, power = format_time(t_end), f"t^{CHAOTIC_POWER:g}"
+    return (
+        Verdict.CHAOTIC_INSIDE,
+        f"A deviation vector grew by e^{log_growth:.3g} before the escape at t = {time}, more than {power}.",
+    )
+
+
+def _growth_limit(t_end: float, time_unit: float) -> float:
+    """Logarithm of the largest growth of a deviation vector that is not chaotic."""
+    return CHAOTIC_POWER * float(np.log(t_end / time_unit))
 
 
 def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
@@ -219,7 +279,7 @@ def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
     elif t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)
     elif value > REGULAR_SALI:
-        verdict, reason = Verdict.REGULAR, f"above {REGULAR_SALI:g}: the deviation vectors stay apart, as on a torus"
+        verdict, reason = _no_sign(t_end, f"above {REGULAR_SALI:g}: the deviation vectors stay apart, as on a torus")
     else:
         verdict, reason = Verdict.UNDECIDED, f"above {CHAOS_THRESHOLD:g}, but less than on most tori"
     return verdict, f"SALI is {value:.2g}, {reason}."
@@ -237,15 +297,19 @@ def _judge_exponent(orbit: Orbit) -> tuple[Verdict, str]:
 
 def _judge_growth(log_growth: float, power: float, t_end: float, time_unit: float) -> tuple[Verdict, str]:
     """Verdict and reason from the logarithm of the growth until `t_end` and the recent growth as a power of t."""
-    limit = CHAOTIC_POWER * float(np.log(t_end / time_unit))
+    limit = _growth_limit(t_end, time_unit)
     if log_growth > limit:
         return Verdict.CHAOTIC, f"more than t^{CHAOTIC_POWER:g} = e^{limit:.3g}, which no torus reaches"
     if t_end < MIN_REGULAR_TIME * time_unit:
         return _undecided_too_short(t_end)
     if power <= REGULAR_POWER:
-        reason = f"recently like t^{power:.2f}, on a torus like t; an exponent above {limit / t_end:.2g} would be detected"
-        return Verdict.REGULAR, reason
+        detected = f"an exponent above {limit / t_end:.2g} would be detected"
+        return _no_sign(t_end, f"recently like t^{power:.2f}, on a torus like t; {detected}")
     return Verdict.UNDECIDED, f"less than t^{CHAOTIC_POWER:g}, but recently like t^{power:.2f}, faster than on a torus"
+
+
+def _no_sign(t_end: float, reason: str) -> tuple[Verdict, str]:
+    return Verdict.NO_SIGN, f"{reason}: no sign of chaos until t = {format_time(t_end)}"
 
 
 def _undecided_too_short(t_end: float) -> tuple[Verdict, str]:
@@ -261,11 +325,22 @@ def _fit_growth_power(orbit: Orbit) -> float:
     return float(slope)
 
 
+def _judge_halves(orbit: Orbit) -> tuple[Verdict, str]:
+    value, t_end = orbit.digits_of_halves, float(orbit.t[-1])
+    if t_end < MIN_REGULAR_TIME * orbit.time_unit:
+        verdict, reason = _undecided_too_short(t_end)
+    elif value >= REGULAR_DIGITS:
+        verdict, reason = Verdict.REGULAR, f"{REGULAR_DIGITS:g} or more, as on a torus"
+    else:
+        verdict, reason = Verdict.UNDECIDED, f"fewer than {REGULAR_DIGITS:g}: this shows no torus"
+    return verdict, f"Averages over both halves of the orbit agree to {value:.1f} digits, {reason}."
+
+
 def _judge_digits(digits: BirkhoffDigits) -> tuple[Verdict, str]:
     if not digits.digits.size:
         return Verdict.UNDECIDED, "No windows to compare: the orbit is too short or runs along an axis."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
-    chaotic = CHAOTIC_DIGITS[window / digits.time_unit]
+    chaotic = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
     if value >= CERTIFIED_DIGITS:
         verdict, reason = Verdict.REGULAR, f"{CERTIFIED_DIGITS:g} or more, as on a torus"
     elif value < chaotic:

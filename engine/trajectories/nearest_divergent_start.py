@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import LENGTH
 from engine.results.result import Result
-from engine.slices.slice import Energy, Slice, checked_slice
-from engine.validation import checked_number, checked_t_max
+from engine.slices.energies import Energy
+from engine.slices.planes import checked_slice
+from engine.slices.slice import Slice
+from engine.validation import checked_number, checked_t_max, checks_types
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
 _MIN_DISTANCE = 1e-13
@@ -52,8 +55,10 @@ class DivergentStart(Result):
     distance: float = field(metadata=LENGTH)
     fate: int
     reference_fate: int
+    codes: ClassVar = {"fate": Fate, "reference_fate": Fate}
 
 
+@checks_types(potential=Potential, execution=Execution)
 def find_divergent_start(
     potential: Potential,
     plane: Slice,
@@ -105,18 +110,20 @@ def find_divergent_start(
 
     Examples
     --------
-    >>> from engine import CASES, Plane, find_divergent_start
+    >>> from escape_explorer import CASES, Plane, find_divergent_start
     >>> divergent = find_divergent_start(CASES["III"], Plane.X_PX, 0.45, 0.3, 0.2, t_max=1e3)
     >>> divergent.reference_fate, divergent.fate, round(divergent.distance, 3)
     (1, 4, 0.047)
     """
-    t_max, units = checked_t_max(t_max), potential.units
+    plane = checked_slice(plane)
+    h = _checked_energy(plane, energy, x, ordinate)
+    if plane.parameter is not None:
+        potential, plane = plane.potential_at(potential, x, ordinate), plane.line((x, ordinate)[plane.parameter_axis or 0])
+    t_max, units = checked_t_max(t_max, unit=lambda: potential.exact_time_unit), potential.units
     nearest = _MIN_DISTANCE * units.length
     furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
     if not furthest > nearest:
         raise ValueError(f"furthest={furthest}: must be a finite number above {nearest:g}")
-    plane = checked_slice(plane)
-    h = _checked_energy(plane, energy, x, ordinate)
     centre = np.array([x, ordinate]) / plane.axis_units(units)
     search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 from engine.dynamics.certificates import Certificate, describe_certificate
 from engine.dynamics.fates import Fate, describe_fate
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS
 from engine.results.result import Result
 from engine.results.wording import format_count, format_time
-from engine.trajectories.chaos_indicators import BirkhoffDigits, Verdict, evaluate_indicators
+from engine.trajectories.chaos_indicators import BirkhoffDigits, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
+from engine.validation import checks_types
 
 
 @dataclass(frozen=True)
@@ -27,10 +29,12 @@ class OrbitVerdict(Result):
     crossings
         Upward crossings of y = 0 until then.
     certificate
-        Why the orbit is called bounded: ``INTEGRATED`` holds until `t_end` only, other certificates for ever. ``NONE`` if it is
-        not bounded.
+        Why the orbit is called bounded: ``INTEGRATED`` holds until `t_end` only, ``CLOSED`` for ever, and ``QUASI_PERIODIC`` is
+        evidence of a torus, on which it would stay for ever. ``NONE`` if it is not bounded.
     character
-        Regular, chaotic or undecided; None unless the orbit is bounded.
+        If the orbit is bounded, what its indicators show until `t_end`; chaotic while inside or None if it is not.
+    evidence
+        The indicators that decide on the character, with their values; empty if none does.
     """
 
     fate: int
@@ -38,42 +42,64 @@ class OrbitVerdict(Result):
     crossings: int
     certificate: Certificate
     character: Verdict | None
+    evidence: str
+    codes: ClassVar = {"fate": Fate, "certificate": Certificate}
 
     @property
     def is_bounded_for_ever(self) -> bool:
-        """Whether a certificate shows that the orbit never escapes."""
-        return self.certificate not in (Certificate.NONE, Certificate.INTEGRATED)
+        """Whether the orbit can never escape, which its energy proves."""
+        return self.certificate is Certificate.CLOSED
 
     def describe(self) -> str:
         """The verdict in one sentence."""
         crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
         if self.fate >= 1:
             kind = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
-            return f"Escaped through channel {self.fate} at t = {time}, {kind}."
+            return f"Escaped through channel {self.fate} at t = {time}, {kind}{self._inside}."
         if self.character is None:
             return describe_fate(self.fate)
-        undecided = self.character is Verdict.UNDECIDED
-        decided = ", undecided whether regular or chaotic" if undecided else f" and {self.character}"
-        if self.is_bounded_for_ever:
-            reason = describe_certificate(self.certificate)
-            return f"Bounded for ever ({reason}){decided}, with {crossings} until t = {time}."
-        return f"Bounded until t = {time}{decided}, with {crossings}."
+        reason = describe_certificate(self.certificate)
+        match self.certificate:
+            case Certificate.CLOSED:
+                return f"Bounded for ever ({reason}){self._decided}, with {crossings} until t = {time}."
+            case Certificate.QUASI_PERIODIC:
+                return f"Bounded until t = {time} and probably for ever ({reason}){self._decided}, with {crossings}."
+            case _:
+                return f"Bounded until t = {time}{self._decided}, with {crossings}."
 
     def summarize(self) -> str:
         """The verdict in a few words, for lists."""
         if self.fate >= 1:
-            return f"channel {self.fate} at t = {format_time(self.t_end, digits=5)}"
+            return f"channel {self.fate} at t = {format_time(self.t_end, digits=5)}{self._inside}"
         if self.character is None:
             return Fate(self.fate).name.lower().replace("_", " ")
         return f"bounded {'for ever' if self.is_bounded_for_ever else f'until t = {format_time(self.t_end)}'}, {self.character}"
 
+    @property
+    def _decided(self) -> str:
+        """What follows on the character in a sentence on a bounded orbit."""
+        match self.character:
+            case Verdict.UNDECIDED:
+                return ", undecided whether regular or chaotic"
+            case Verdict.NO_SIGN:
+                return f", no sign of chaos until t = {format_time(self.t_end)}"
+            case _:
+                return f", {self.character} ({self.evidence})"
 
+    @property
+    def _inside(self) -> str:
+        """What follows in a sentence on an escape."""
+        return f", {self.character}" if self.character is not None else ""
+
+
+@checks_types(orbit=Orbit, digits=(BirkhoffDigits, type(None)))
 def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerdict:
     """The verdict on an orbit, from its energy, its outcome and its chaos indicators.
 
     A bounded orbit is regular or chaotic if an indicator of `evaluate_indicators` concludes so and none concludes the opposite.
-    It is bounded for ever if its energy is below every saddle, or if its Birkhoff averages agree as on an invariant torus: the
-    same certificates as those of single pixels on maps.
+    Without either, it shows no sign of chaos until the end if none of its deviation vectors does, and is undecided otherwise. It
+    is bounded for ever if its energy is below every saddle; Birkhoff averages that agree as on an invariant torus are evidence
+    for that, unless another indicator shows chaos. One that escapes is chaotic while inside if an indicator says so.
 
     Parameters
     ----------
@@ -84,23 +110,39 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
 
     Examples
     --------
-    >>> from engine import CASES, integrate_orbit, judge_orbit
+    >>> from escape_explorer import CASES, integrate_orbit, judge_orbit
     >>> print(judge_orbit(integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), t_max=1e3)).describe())
     Escaped through channel 1 at t = 15.1781, after 1 upward crossing of y = 0.
-    >>> print(judge_orbit(integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=1e3)).describe())
-    Bounded for ever (its energy is below every saddle) and regular, with 160 upward crossings of y = 0 until t = 1 000.
+    >>> judge_orbit(integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=1e3)).summarize()
+    'bounded for ever, regular'
     """
-    conclusions = (indicator.conclusion for indicator in evaluate_indicators(orbit, digits))
-    character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else None
-    return OrbitVerdict(orbit.fate, float(orbit.t[-1]), orbit.crossings, _certificate(orbit, digits), character)
+    indicators = evaluate_indicators(orbit, digits)
+    conclusions = [indicator.conclusion for indicator in indicators]
+    character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
+    certificate = _certificate(orbit, digits, Verdict.CHAOTIC in conclusions)
+    evidence = _evidence(indicators, character)
+    return OrbitVerdict(orbit.fate, float(orbit.t[-1]), orbit.crossings, certificate, character, evidence)
 
 
-def _combine(conclusions: Iterable[Verdict | None]) -> Verdict:
-    decided = {conclusion for conclusion in conclusions if conclusion is not None and conclusion is not Verdict.UNDECIDED}
-    return decided.pop() if len(decided) == 1 else Verdict.UNDECIDED
+def _combine(conclusions: Sequence[Verdict | None]) -> Verdict:
+    decided = {Verdict.REGULAR, Verdict.CHAOTIC}.intersection(conclusions)
+    if len(decided) == 1:
+        return decided.pop()
+    of_deviations = conclusions[:2]
+    return Verdict.NO_SIGN if not decided and set(of_deviations) == {Verdict.NO_SIGN} else Verdict.UNDECIDED
 
 
-def _certificate(orbit: Orbit, digits: BirkhoffDigits | None) -> Certificate:
-    if orbit.certificate is not Certificate.INTEGRATED or digits is None or not digits.digits.size:
+def _character_inside(conclusions: Sequence[Verdict | None]) -> Verdict | None:
+    return Verdict.CHAOTIC_INSIDE if Verdict.CHAOTIC_INSIDE in conclusions else None
+
+
+def _evidence(indicators: Sequence[IndicatorVerdict], character: Verdict | None) -> str:
+    """The indicators that conclude what the character is, with their values."""
+    deciding = [one for one in indicators if character is not None and one.conclusion is character]
+    return ", ".join(f"{one.name} {one.value:.2g}" for one in deciding)
+
+
+def _certificate(orbit: Orbit, digits: BirkhoffDigits | None, shows_chaos: bool) -> Certificate:
+    if orbit.certificate is not Certificate.INTEGRATED or shows_chaos or digits is None or not digits.digits.size:
         return orbit.certificate
     return Certificate.QUASI_PERIODIC if digits.digits[-1] >= CERTIFIED_DIGITS else Certificate.INTEGRATED

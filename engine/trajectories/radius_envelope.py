@@ -30,7 +30,7 @@ MAX_INTERVALS = 100_000
 _SAMPLE_INTERVAL = 0.05
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RadiusEnvelope(Result):
     """Smallest and largest R² in intervals of time, dimensionless; arrays are read-only.
 
@@ -85,7 +85,7 @@ def compute_radius_envelope(
     ValueError
         If a parameter is out of range, or the start lies beyond a Lyapunov orbit.
     """
-    start, t_max = checked_state("state", state), checked_t_max(t_max)
+    start, t_max = checked_state("state", state), checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
     units, well = potential.units, potential.in_well_units
     start, t_max = start / units.state, t_max / units.time

@@ -8,8 +8,10 @@ from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import find_crossings
 from engine.trajectories.trajectory import Orbit
+from engine.validation import checks_types
 
 
+@checks_types(potential=Potential, orbit=Orbit)
 def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
     """Find the upward crossings of y = 0 from the samples of an orbit; the start is not counted.
 
@@ -28,7 +30,7 @@ def find_section_crossings(potential: Potential, orbit: Orbit) -> np.ndarray:
 
     Examples
     --------
-    >>> from engine import CASES, find_section_crossings, integrate_orbit
+    >>> from escape_explorer import CASES, find_section_crossings, integrate_orbit
     >>> orbit = integrate_orbit(CASES["II"], (0.1, 0.0, 0.0, 0.3), t_max=20.0)
     >>> find_section_crossings(CASES["II"], orbit).round(4)
     array([[ 0.1162, -0.042 ],

@@ -14,7 +14,7 @@ from engine.potentials.well_units import LENGTH, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
-from engine.validation import checked_state, checked_t_max
+from engine.validation import checked_state, checked_t_max, checks_types
 
 LONGEST_SEPARATION = 2000.0
 """Longest time over which two orbits are compared, in units of the well: neighbours in a chaotic sea separate long before."""
@@ -22,7 +22,7 @@ LONGEST_SEPARATION = 2000.0
 _SAMPLES = 2000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Separation(Result):
     """Distance of two orbits against time, dimensionless; arrays are read-only.
 
@@ -44,6 +44,7 @@ class Separation(Result):
         return self.t.nbytes + self.distance.nbytes
 
 
+@checks_types(potential=Potential, execution=Execution)
 def compute_separation(
     potential: Potential, first: Any, second: Any, t_end: float, *, execution: Execution = DEFAULT_EXECUTION
 ) -> Separation:
@@ -73,14 +74,15 @@ def compute_separation(
 
     Examples
     --------
-    >>> from engine import CASES, compute_separation
+    >>> from escape_explorer import CASES, compute_separation
     >>> first, second = (0.1, 0.0, 0.05, 0.6), (0.1 + 1e-9, 0.0, 0.05, 0.6)
     >>> distance = compute_separation(CASES["I"], first, second, t_end=15.0).distance
     >>> distance.size, round(float(distance[-1] / distance[0]))
     (2000, 235)
     """
     units, potential = potential.units, potential.in_well_units
-    times = np.linspace(0.0, min(checked_t_max(t_end) / units.time, LONGEST_SEPARATION), _SAMPLES)
+    longest = checked_t_max(t_end, unit=lambda: potential.exact_time_unit, name="t_end")
+    times = np.linspace(0.0, min(longest / units.time, LONGEST_SEPARATION), _SAMPLES)
     kernels = kernels_of(potential)
     paths = []
     for name, state in (("first", first), ("second", second)):

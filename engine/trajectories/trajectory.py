@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,13 +14,17 @@ from engine.dynamics.fates import Fate
 from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.exits.lyapunov_orbits import exit_curves
+from engine.invariant_sets.birkhoff_averages import compare_halves
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_deviations, sample_path
-from engine.validation import checked_state, checked_t_max
+from engine.validation import checked_state, checked_t_max, checks_types
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MAX_ORBIT_TIME = 1e7
 """Largest t_max of `integrate_orbit`, whose samples then take 3 GB."""
@@ -30,7 +35,7 @@ _MIN_SAMPLES = 400
 _MAX_SAMPLES = 500_000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit(Result):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
 
@@ -58,7 +63,7 @@ class Orbit(Result):
     certificate
         ``CLOSED`` if its energy is below every saddle, ``INTEGRATED`` if it is bounded until t_max, ``NONE`` if not bounded.
     time_unit
-        Unit of time of the well, in which the chaos indicators measure the length of an orbit.
+        Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
     potential
         The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
     """
@@ -79,6 +84,18 @@ class Orbit(Result):
     certificate: Certificate
     time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
+    codes: ClassVar = {"fate": Fate, "certificate": Certificate}
+
+    @cached_property
+    def digits_of_halves(self) -> float:
+        """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree: many on a torus."""
+        return compare_halves(self.x, self.y)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""
+        dataset = super().to_xarray()
+        made = {} if self.potential is None else {"potential": self.potential.name, "terms": self.potential.form.text}
+        return dataset.assign_attrs(made)
 
     @property
     def nbytes(self) -> int:
@@ -87,6 +104,7 @@ class Orbit(Result):
         return sum(array.nbytes for array in (self.t, *state, self.sali, self.lyapunov_exponent, self.r2))
 
 
+@checks_types(potential=Potential, execution=Execution)
 def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, execution: Execution = DEFAULT_EXECUTION) -> Orbit:
     """Integrate one orbit until it escapes or `t_max`.
 
@@ -116,12 +134,13 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
 
     Examples
     --------
-    >>> from engine import CASES, integrate_orbit
+    >>> from escape_explorer import CASES, integrate_orbit
     >>> orbit = integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), t_max=100.0)
     >>> orbit.fate, round(orbit.escape_time, 4), orbit.to_pandas().shape[1]
     (1, 15.1781, 8)
     """
-    start, t_max, units = checked_state("state", state), checked_t_max(t_max, MAX_ORBIT_TIME), potential.units
+    start, units = checked_state("state", state), potential.units
+    t_max = checked_t_max(t_max, MAX_ORBIT_TIME, lambda: potential.exact_time_unit)
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
     return replace(units.restore(orbit), potential=potential)
 
@@ -135,7 +154,8 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
     for array in arrays:
         read_only(array)
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
-    return Orbit(*arrays, fate, escape_time, crossings, energy_error, energy, _certificate(potential, energy, fate))
+    certificate = _certificate(potential, energy, fate)
+    return Orbit(*arrays, fate, escape_time, crossings, energy_error, energy, certificate, potential.exact_time_unit)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:

@@ -10,7 +10,8 @@ from types import MappingProxyType
 from matplotlib.figure import Figure
 
 from engine import CASES, Plane
-from plots.figure_axes import save_figure, software
+from plots.figure_axes import save_figure
+from plots.figure_style import FigureFormat
 from reproduction.figures.map_figures import draw_energy_plane, draw_nine_maps
 from reproduction.figures.potential_figures import draw_potential
 from reproduction.figures.statistics_figures import draw_percentages, draw_statistics, draw_survival
@@ -41,15 +42,8 @@ class FigureEntry:
         """Draw the figure and return the content of its files by file name, with caption and quality in their metadata."""
         figure, quality = self.draw(shelf), shelf.quality
         keywords = f"{quality.name} quality, {quality.resolution} x {quality.resolution} starts, t_max {quality.t_max:g}"
-        png = {"Title": self.name, "Description": self.caption, "Comment": keywords, "Software": software()}
-        pdf = {
-            "Title": self.name, "Subject": self.caption, "Keywords": keywords,
-            "Creator": software(), "Producer": software(), "CreationDate": None,
-        }  # fmt: skip
-        return {
-            f"{self.name}.png": save_figure(figure, "png", png),
-            f"{self.name}.pdf": save_figure(figure, "pdf", pdf),
-        }
+        facts = {"Title": self.name, "Description": self.caption, "Comment": keywords}
+        return {f"{self.name}.{format}": save_figure(figure, format, facts) for format in (FigureFormat.PNG, FigureFormat.PDF)}
 
 
 def _of_case(case: str) -> Sequence[FigureEntry]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -10,12 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, EscapeMap, Fate, Plane, Window
-from plots.figure_axes import LETTER, add_figure_legend, label_axes, name_panel, new_figure, patches
-from plots.image_columns import longest_typical_time
+from plots.figure_axes import add_figure_legend, label_axes, name_panel, new_figure, patches
+from plots.figure_style import SCREEN
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.map_figure import add_time_bar, draw_limits, draw_pixels, show_window
 from plots.map_images import picture_pixels
 from plots.palette import PAPER
+from plots.time_scale import TimeScale, common_scale
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import axis_label, plane_label
 from reproduction.paper_ranges import nine_energies, plane_energies
@@ -29,18 +31,18 @@ _SIDE = 3
 def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) -> Figure:
     """One picture of `TITLES` at the paper's nine energies, all in one window."""
     frames = [shelf.map(case, plane, energy) for energy in nine_energies(case)]
-    shown, longest = _common_window(frames), max(map(longest_typical_time, frames))
+    shown, times = _common_window(frames), common_scale(frames)
     title = f"Case {case}, {plane_label(plane)} plane: {TITLES[picture]}"
-    figure = new_figure(10.6 if picture == "times" else 9.6, 10.4, title, equal=True)
+    figure = new_figure(replace(SCREEN, width=26.9 if picture == "times" else 24.4), 26.4, title, equal=True)
     panels = figure.subplots(_SIDE, _SIDE, sharex=True, sharey=True)
     for axes, frame in zip(panels.flat, frames, strict=True):
-        draw_map_panel(axes, frame, picture, shown, longest=longest)
+        draw_map_panel(axes, frame, picture, shown, times=times)
         name_panel(axes, f"$h = {frame.spec.energy:.2f}$")
         place = axes.get_subplotspec()
         label_axes(axes, axes.get_xlabel() if place.is_last_row() else "", axes.get_ylabel() if place.is_first_col() else "")
     if picture == "times":
-        bar = add_time_bar(figure, longest, PAPER, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="max")
-        bar.set_label(r"escape time $t_{\mathrm{esc}}$", fontsize=LETTER)
+        bar = add_time_bar(figure, times, PAPER, ax=panels.ravel().tolist(), shrink=0.75, aspect=34, pad=0.015, extend="both")
+        bar.set_label(r"escape time $t_{\mathrm{esc}}$", fontsize=SCREEN.font_size)
     add_figure_legend(figure, [*_colour_handles(case, picture), *panels[0, 0].collections])
     return figure
 
@@ -48,7 +50,7 @@ def draw_nine_maps(case: str, shelf: MapShelf, *, plane: Plane, picture: str) ->
 def draw_energy_plane(case: str, shelf: MapShelf) -> Figure:
     """Basins on (x, h)."""
     frame = shelf.map(case, Plane.X_H, plane_energies(case))
-    figure = new_figure(7.6, 6.6, f"Case {case}, {plane_label(Plane.X_H)} plane: basins of escape")
+    figure = new_figure(replace(SCREEN, width=19.3), 16.8, f"Case {case}, {plane_label(Plane.X_H)} plane: basins of escape")
     axes = figure.subplots()
     draw_map_panel(axes, frame, "basins", frame.spec.find_window(), equal=False)
     add_figure_legend(figure, [*_colour_handles(case, "basins"), *axes.collections])
@@ -61,7 +63,7 @@ def draw_map_panel(
     picture: str,
     shown: Window,
     *,
-    longest: float | None = None,
+    times: TimeScale | None = None,
     analyses: MapAnalyses = NO_ANALYSES,
     equal: bool = True,
 ) -> None:
@@ -80,7 +82,7 @@ def draw_map_panel(
         One of `plots.map_images.TITLES`.
     shown
         Window of the panel.
-    longest
+    times
         Upper end of the scale of escape times; None for the one of the map.
     analyses
         Regularity of bounded orbits, if the picture shows it.
@@ -88,14 +90,15 @@ def draw_map_panel(
         Whether both axes have the same scale.
     """
     spec = frame.spec
-    pixels = picture_pixels(frame, picture, PAPER, analyses, longest)
+    pixels = picture_pixels(frame, picture, PAPER, analyses, times)
     white = frame.fate == Fate.OUTSIDE
     if picture == "characters":
         white |= frame.fate > Fate.BOUNDED
     pixels[::-1][white] = 0
     draw_pixels(axes, pixels, spec.find_window(), shown)
     draw_limits(axes, spec.potential, spec.plane, spec.energy, shown)
-    show_window(axes, shown, *map(axis_label, spec.plane.axes), equal=equal)
+    across, up = map(axis_label, spec.plane.axis_names)
+    show_window(axes, shown, across, up, equal=equal)
 
 
 def _common_window(frames: Sequence[EscapeMap]) -> Window:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import (
     CASES,
-    Coordinate,
     LyapunovOrbit,
     Plane,
     Potential,
@@ -19,6 +20,7 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from plots.figure_axes import label_axes, name_panels, new_figure, style_axes
+from plots.figure_style import SCREEN
 from plots.palette import LIGHT, PAPER
 from plots.potential_figure import draw_equipotentials, draw_pieces, enlarge
 from reproduction.map_shelf import MapShelf
@@ -35,7 +37,9 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
     """Three panels with the same window."""
     potential, energy = CASES[case], CHANNEL_ENERGIES[case]
     window = enlarge(default_window(potential, Plane.X_Y, energy))
-    figure = new_figure(12.6, 4.85, f"Case {case}: the potential and its {potential.channels} channels", equal=True)
+    figure = new_figure(
+        replace(SCREEN, width=32.0), 12.3, f"Case {case}: the potential and its {potential.channels} channels", equal=True
+    )
     panels = list(figure.subplots(1, 3, sharex=True, sharey=True))
     orbits = find_lyapunov_orbits(potential, energy)
     draw_equipotentials(panels[0], potential, window)
@@ -46,7 +50,7 @@ def draw_potential(case: str, shelf: MapShelf) -> Figure:
         axes.set_ylim(window.ordinate_low, window.ordinate_high)
         axes.set_aspect("equal")
         style_axes(axes)
-        label_axes(axes, axis_label(Coordinate.X), axis_label(Coordinate.Y) if axes is panels[0] else "")
+        label_axes(axes, axis_label("x"), axis_label("y") if axes is panels[0] else "")
     escape = f"equipotentials, the escape energy ${potential.escape_energy:.4g}$ in red"
     name_panels(
         panels, [escape, f"channels and Lyapunov orbits, $h = {energy}$", f"one orbit through each channel, $h = {energy}$"]

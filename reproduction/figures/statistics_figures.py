@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from engine import CASES, PAPER_FITS, Plane, compute_statistics, fit_decay_laws,
 from engine.service import tabulate_crossing_statistics
 from plots.curve_figures import draw_decay_laws, draw_shares
 from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
+from plots.figure_style import SCREEN
 from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import plane_label
@@ -35,7 +37,7 @@ _SAMPLES = 400
 
 def draw_statistics(case: str, shelf: MapShelf) -> Figure:
     """Ne/N0 and Nde/N0 against h with the paper's fits and new ones; dN_n/N0 and p_n against n."""
-    figure = new_figure(11.4, 8.6, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
+    figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = shelf.curves(case, Plane.X_PX)
     h, starts, paper = table["h"].values, table["starts"].values, PAPER_FITS[case]
@@ -86,7 +88,7 @@ def _draw_crossings(shares: Axes, chances: Axes, table: xr.Dataset) -> None:
 
 def draw_percentages(case: str, shelf: MapShelf) -> Figure:
     """Percentages of the interior starts on (x, y) and (x, px)."""
-    figure = new_figure(11.4, 4.6, f"Case {case}: percentages of bounded and escaping starts")
+    figure = new_figure(SCREEN, 11.7, f"Case {case}: percentages of bounded and escaping starts")
     panels = list(figure.subplots(1, 2, sharey=True))
     planes = (Plane.X_Y, Plane.X_PX)
     for axes, plane in zip(panels, planes, strict=True):
@@ -102,11 +104,13 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
 def draw_survival(case: str, shelf: MapShelf) -> Figure:
     """One panel per energy, on (x, px)."""
     energies = three_energies(case)
-    figure = new_figure(12.6, 4.6, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped")
+    figure = new_figure(
+        replace(SCREEN, width=32.0), 11.7, f"Case {case}, {plane_label(Plane.X_PX)} plane: share of the starts not yet escaped"
+    )
     panels = list(figure.subplots(1, len(energies), sharex=True))
     for axes, energy in zip(panels, energies, strict=True):
         statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
-        draw_decay_laws(axes, fit_decay_laws(statistics, shelf.quality.t_max, execution=shelf.execution), shelf.quality.t_max)
+        draw_decay_laws(axes, fit_decay_laws(statistics, execution=shelf.execution), shelf.quality.t_max)
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
     name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from plots.figure_axes import (
     patches,
     style_axes,
 )
+from plots.figure_style import SCREEN
 from plots.map_analyses import MapAnalyses
 from plots.palette import MEASURED, PAPER, THRESHOLD
 from reproduction.figures.map_figures import draw_map_panel
@@ -44,7 +46,7 @@ def draw_characters(shelf: MapShelf) -> Figure:
     frame = shelf.map(STICKY_CASE, Plane.X_PX, STICKY_ENERGY)
     regularity = shelf.regularity(frame)
     title = f"Case {STICKY_CASE}, {plane_label(Plane.X_PX)} plane, $h = {STICKY_ENERGY}$: bounded orbits"
-    figure = new_figure(6.8, 7.2, title, equal=True)
+    figure = new_figure(replace(SCREEN, width=17.3), 18.3, title, equal=True)
     axes = figure.subplots()
     draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses(regularity=regularity))
     add_figure_legend(figure, [*patches(PAPER.character_entries[1:3]), *axes.collections])
@@ -55,7 +57,7 @@ def draw_super_sticky(shelf: MapShelf) -> Figure:
     """R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
     search = shelf.super_sticky()
     orbit = _follow_late_orbit(search, shelf)
-    figure = new_figure(11.4, 4.8, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, orbit)}")
+    figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, orbit)}")
     panels = list(figure.subplots(1, 2, sharey=True, width_ratios=(2, 1)))
     if orbit is not None:
         _draw_history(panels[0], orbit, search.spec.t_max)

@@ -47,7 +47,7 @@ class Watch:
     def __init__(self, page: Page) -> None:
         self.problems: list[str] = []
         page.on("console", self._console)
-        page.on("pageerror", lambda error: self.problems.append(f"page error: {error}"))
+        page.on("pageerror", lambda error: self.problems.append(f"page error: {error.stack}"))
         page.on("request", self._request)
         page.on("response", self._response)
 
@@ -86,7 +86,6 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
         height: int = 1400,
         link: str = "",
         *,
-        first_visit: bool = False,
         touch: bool = False,
         theme: str = "light",
     ) -> ExplorerPage:
@@ -97,8 +96,6 @@ def _opening(chromium: Browser, server: str) -> Iterator[Callable[..., ExplorerP
             permissions=["clipboard-read", "clipboard-write"],
         )
         contexts.append(context)
-        if not first_visit:
-            context.add_init_script("localStorage.setItem('escape-explorer-visited', 'yes')")
         page = context.new_page()
         page.set_default_timeout(TIMEOUT_MS)
         watches.append(Watch(page))

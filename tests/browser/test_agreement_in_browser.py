@@ -67,9 +67,9 @@ def test_buttons_are_enabled_shortly_after_their_orbits_were_cleared(explorer: E
     explorer.click("basins", -0.1, 0.05)
     # Until then the buttons are those of the first orbit.
     explorer.page.wait_for_url(re.compile("orbits=-0"))
-    expect(explorer.button("Next frame")).to_be_enabled()
+    expect(explorer.button("Play the orbits")).to_be_enabled()
     explorer.press("Clear all")
-    expect(explorer.button("Next frame")).to_be_hidden()
+    expect(explorer.button("Play the orbits")).to_be_hidden()
 
 
 def test_switches_follow_the_state_after_a_gallery_entry(explorer: ExplorerPage) -> None:

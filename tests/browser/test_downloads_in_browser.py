@@ -14,10 +14,19 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
+from plots.figure_style import FigureStyle
 from plots.palette import COLOUR_BLIND_SAFE
 from tests.browser.explorer_page import ExplorerPage
 
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"
+
+_SIZE_OF_COPIED_IMAGE = """async () => {
+  for (let frames = 0; frames < 3000; frames++) {
+    const [item] = await navigator.clipboard.read()
+    if (item?.types.includes("image/png")) return (await item.getType("image/png")).size
+    await new Promise(requestAnimationFrame)
+  }
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -34,12 +43,36 @@ def download_file(explorer: ExplorerPage, label: str) -> tuple[str, bytes]:
     return download.value.suggested_filename, Path(download.value.path()).read_bytes()
 
 
-def test_a_picture_of_all_maps(small: ExplorerPage) -> None:
-    name, data = download_file(small, "Picture (PNG)")
+def test_a_figure_of_all_maps(small: ExplorerPage) -> None:
+    name, data = download_file(small, "Save figure")
     assert name == "escapes-III-x_px-h0.45-t1000.png"
     picture = Image.open(io.BytesIO(data))
-    assert picture.width > 3 * 600
+    assert picture.width == int(FigureStyle().inches * FigureStyle().dpi)
     assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("what", ["Basins of escape", "The well in (x, y)", "Orbits", "Statistics"])
+def test_figures_as_pdf_of_a_given_width(what: str, small: ExplorerPage) -> None:
+    small.page.get_by_label("What to draw").select_option(what)
+    small.page.get_by_role("radiogroup", name="Format").get_by_label("PDF").check()
+    width = small.page.get_by_label("Width in cm")
+    width.fill("8.5")
+    width.press("Enter")
+    name, data = download_file(small, "Save figure")
+    assert name.endswith(".pdf")
+    box = re.search(rb"/MediaBox \[ ?0 0 ([0-9.]+)", data)
+    assert box is not None
+    assert float(box[1]) == pytest.approx(8.5 / 2.54 * 72.0, abs=0.01)
+
+
+def test_a_width_that_is_not_legal_is_named(small: ExplorerPage) -> None:
+    width = small.page.get_by_label("Width in cm")
+    width.fill("1")
+    width.press("Enter")
+    small.press("Save figure")
+    expect(small.text("width=1.0: must be from 4 to 100 cm")).to_be_visible()
+    width.fill("16")
+    width.press("Enter")
 
 
 def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
@@ -69,6 +102,11 @@ def test_the_link_is_copied(small: ExplorerPage) -> None:
     small.press("Copy link")
     expect(small.text("Copied.")).to_be_visible()
     assert small.page.evaluate("() => navigator.clipboard.readText()") == small.page.url
+
+
+def test_an_image_is_copied(small: ExplorerPage) -> None:
+    small.press("Copy image")
+    assert small.page.evaluate(_SIZE_OF_COPIED_IMAGE) > 10_000
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import Locator, expect
 
 from app.state.presets import PRESETS, Preset
@@ -16,7 +17,7 @@ def heading(explorer: ExplorerPage, drawer: str) -> Locator:
 
 
 def card(explorer: ExplorerPage, preset: Preset) -> Locator:
-    return explorer.page.locator(f"button[data-key='{preset.key}']")
+    return explorer.page.locator(f".gallery:not(.few) button[data-key='{preset.key}']")
 
 
 def expect_open(explorer: ExplorerPage, drawer: str | None) -> None:
@@ -47,6 +48,17 @@ def test_escape_closes_the_drawer_and_so_does_its_button(explorer: ExplorerPage)
     explorer.press("Help")
     explorer.press("Close")
     expect_open(explorer, None)
+
+
+@pytest.mark.parametrize("drawer", HEADINGS)
+def test_the_focus_moves_into_a_drawer_and_back(explorer: ExplorerPage, drawer: str) -> None:
+    explorer.button(drawer).focus()
+    explorer.page.keyboard.press("Enter")
+    expect_open(explorer, drawer)
+    expect(explorer.button("Close")).to_be_focused()
+    explorer.page.keyboard.press("Escape")
+    expect_open(explorer, None)
+    expect(explorer.button(drawer)).to_be_focused()
 
 
 def test_a_button_in_focus_can_be_pressed_with_the_keyboard(explorer: ExplorerPage) -> None:

@@ -88,7 +88,7 @@ def test_an_invalid_energy_gives_a_warning_and_the_picture_stays_grey(explorer: 
     before = explorer.column("fate")
     explorer.type_number("Exact h", "100")
     warning = explorer.page.get_by_role("alert")
-    expect(warning).to_contain_text("energy=100.0")
+    expect(warning).to_contain_text("h = 100")
     np.testing.assert_array_equal(explorer.column("fate"), before)
     pictures = explorer.page.locator(".map, .well")
     expect(pictures).to_have_count(4)
@@ -120,7 +120,7 @@ def test_a_bounded_orbit_is_judged_by_its_sali(for_orbits: ExplorerPage) -> None
     middle = np.argwhere(fate == 4).mean(axis=0)
     row, column = min(np.argwhere(fate == 4), key=lambda pixel: np.sum((pixel - middle) ** 2))
     for_orbits.click("basins", float(x[column]), float(px[row]))
-    expect(for_orbits.text(re.compile("Bounded (until t = 100 000|for ever .*) and (regular|chaotic)"))).to_be_visible()
+    expect(for_orbits.text(re.compile("Bounded until t = 100 000.*, (regular|chaotic|no sign of chaos)"))).to_be_visible()
 
 
 def test_a_click_on_a_forbidden_pixel_gives_a_passing_message_and_adds_no_start(shared: ExplorerPage) -> None:

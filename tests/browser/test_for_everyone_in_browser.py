@@ -1,4 +1,4 @@
-"""Accessibility: themes, names of widgets, keys, and the tour."""
+"""Accessibility: themes, names of widgets, keys, and the first view."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 from playwright.sync_api import expect
 
 from app.views.panels.browser_events import KEYS
-from app.views.panels.tour import STEPS
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -66,8 +65,8 @@ def everything_open(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
         ("radiogroup", "Case"), ("radiogroup", "Plane"), ("radio", "III"), ("slider", "Energy h"), ("spinbutton", "Exact h"),
         ("combobox", "t_max"), ("combobox", "Resolution"), ("combobox", "Colours"),
         ("checkbox", "Pixels to trust"), ("radiogroup", "Drag over a map to"), ("radiogroup", "Analysis"),
-        ("radiogroup", "Orbits"), ("textbox", "x"), ("textbox", "px"), ("button", "Play"), ("button", "Pause"),
-        ("button", "Next frame"), ("button", "Previous frame"), ("group", "Time along the orbits"), ("button", "Copy link"),
+        ("radiogroup", "Orbits"), ("textbox", "x"), ("textbox", "px"), ("button", "Play the orbits"),
+        ("slider", "Time along the orbits"), ("button", "Copy link"),
         ("button", "Dark theme"), ("button", "About: Basins of escape"),
     ],
 )  # fmt: skip
@@ -96,28 +95,33 @@ def test_keys_in_a_number_box_are_no_shortcuts(explorer: ExplorerPage) -> None:
     assert explorer.page.evaluate("history.state.entry") == 1
 
 
-def test_the_tour_starts_at_the_first_visit_only(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(first_visit=True)
-    tour = explorer.page.get_by_role("dialog")
-    expect(tour).to_be_visible()
-    tour.get_by_role("button", name="Next").click()
-    expect(tour).to_contain_text(f"2 of {len(STEPS)}")
-    tour.get_by_role("button", name="Skip").click()
-    expect(tour).to_be_hidden()
-    explorer.page.reload()
-    explorer.wait_until_complete()
-    expect(tour).to_be_hidden()
+def test_enter_sets_an_orbit_in_the_middle_of_the_maps(explorer: ExplorerPage) -> None:
+    x_low, x_high, low, high = explorer.ranges("basins")
+    # A button that has the focus would be pressed.
+    explorer.page.get_by_role("heading", level=1).click()
+    explorer.page.keyboard.press("Enter")
+    explorer.wait_for_data("starts", "data.x.length == 1")
+    starts = explorer.model_data("starts")
+    assert abs(starts["x"][0] - 0.5 * (x_low + x_high)) < 0.01 * (x_high - x_low)
+    assert abs(starts["y"][0] - 0.5 * (low + high)) < 0.01 * (high - low)
 
 
-def test_the_tour_can_be_taken_from_the_help_and_ended(explorer: ExplorerPage) -> None:
-    tour = explorer.page.get_by_role("dialog")
-    explorer.press("Help")
-    explorer.press("Take the tour")
-    expect(tour).to_contain_text(f"1 of {len(STEPS)}")
-    explorer.page.keyboard.press("Escape")
-    expect(tour).to_be_hidden()
+def test_enter_on_a_button_sets_no_orbit(explorer: ExplorerPage) -> None:
+    explorer.button("Gallery").focus()
+    explorer.page.keyboard.press("Enter")
+    expect(explorer.button("Close")).to_be_visible()
     explorer.press("Close")
-    expect(explorer.button("Close")).to_have_count(0)
+    assert not explorer.model_data("starts").get("x")
+
+
+def test_the_first_view_invites_to_six_others(explorer: ExplorerPage) -> None:
+    card = explorer.page.get_by_role("button", name="A sticky orbit")
+    expect(explorer.page.locator("[role=toolbar] button")).to_have_count(6)
+    card.click()
+    explorer.wait_for_view("case=III", "orbits=")
+    expect(card).to_be_hidden()
+    explorer.press("Clear all")
+    expect(card).to_be_visible()
 
 
 def test_the_keys_are_listed_in_the_help(explorer: ExplorerPage) -> None:

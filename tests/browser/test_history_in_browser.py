@@ -1,4 +1,4 @@
-"""Each action is an entry of the browser's history, which the page's own buttons and keys use, too."""
+"""Each action is an entry of the browser's history, through which keys lead, too."""
 
 from __future__ import annotations
 
@@ -17,23 +17,12 @@ def zoom(explorer: ExplorerPage) -> float:
     return explorer.column("dw")
 
 
-def expect_buttons(explorer: ExplorerPage, *shown: str) -> None:
-    for label in ("← Back", "Forward →", "Whole plane"):
-        expect(explorer.button(label)).to_be_visible(visible=label in shown)
-
-
-def test_buttons_are_shown_while_they_lead_somewhere(explorer: ExplorerPage) -> None:
-    width = explorer.column("dw")
-    expect_buttons(explorer)
+def test_the_whole_plane_is_offered_in_a_part_of_it(explorer: ExplorerPage) -> None:
+    width, whole = explorer.column("dw"), explorer.button("Whole plane")
+    expect(whole).to_be_hidden()
     zoom(explorer)
-    expect_buttons(explorer, "← Back", "Whole plane")
-    explorer.press("← Back")
-    expect_buttons(explorer, "Forward →")
-    explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] == {width}")
-    explorer.press("Forward →")
-    expect_buttons(explorer, "← Back", "Whole plane")
     explorer.press("Whole plane")
-    expect_buttons(explorer, "← Back")
+    expect(whole).to_be_hidden()
     explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] == {width}")
 
 
@@ -66,9 +55,9 @@ def test_an_action_can_be_repeated_after_it_was_undone(explorer: ExplorerPage) -
     for _ in range(2):
         explorer.pick("II")
         explorer.wait_for_view("case=II&")
-        explorer.press("← Back")
+        explorer.page.go_back()
+        expect(explorer.radio("I")).to_be_checked()
         explorer.wait_for_view("case=I&")
-        expect(explorer.button("← Back")).to_be_hidden()
 
 
 def test_all_steps_of_the_wheel_are_one_entry(explorer: ExplorerPage) -> None:
@@ -76,5 +65,6 @@ def test_all_steps_of_the_wheel_are_one_entry(explorer: ExplorerPage) -> None:
     for _ in range(2):
         explorer.page.mouse.wheel(0, -100)
     explorer.wait_for_view("window=")
-    explorer.press("← Back")
-    expect_buttons(explorer, "Forward →")
+    explorer.page.go_back()
+    explorer.wait_for_view(HOME)
+    expect(explorer.button("Whole plane")).to_be_hidden()

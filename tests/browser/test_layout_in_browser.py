@@ -10,11 +10,11 @@ import pytest
 from playwright.sync_api import Locator, expect
 
 from app.state.help_texts import HELP_TEXTS
-from app.views.maps.map_plots import SHORT_TITLES
+from app.views.maps.picture_grid import SHORT_TITLES
 from app.views.maps.well import TITLE
-from engine import CASES, Fate
+from engine import CASES
 from plots.map_images import TITLES
-from plots.palette import PALETTES, Entry
+from plots.palette import PALETTES
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -49,9 +49,9 @@ _ELEMENTS = """() => {
     walk(document)
     return count
 }"""
-_LEGEND = """legend => [...legend.querySelectorAll(".patch")]
+_LEGEND = """foot => [...foot.querySelectorAll(".patch")]
     .map(patch => [patch.textContent.trim(), patch.getAttribute("style").replace("--colour:", "")])"""
-_IDLE = ("← Back", "Forward →", "Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find its twin", "Count the whole view")
+_IDLE = ("Whole plane", "Stop", "Continue", "Clear all", "Remove", "Find its twin", "Count the whole view")
 
 
 def figures(explorer: ExplorerPage) -> dict[str, list[float]]:
@@ -87,7 +87,7 @@ def phone(open_for_all: OpenExplorer) -> ExplorerPage:
 
 def test_the_page_opens_with_few_models_and_elements(wide: ExplorerPage) -> None:
     assert wide.page.evaluate("() => Bokeh.documents[0]._all_models.size") <= 250
-    assert wide.page.evaluate(_ELEMENTS) <= 1200
+    assert wide.page.evaluate(_ELEMENTS) <= 1275
 
 
 def test_nothing_idle_is_shown(wide: ExplorerPage) -> None:
@@ -124,6 +124,28 @@ def test_the_maps_do_not_move_when_an_orbit_is_clicked(page: str, request: pytes
     assert boxes(explorer, names) == before
     explorer.return_home()
     explorer.wait_for_data("starts", "data.x.length == 0")
+
+
+def test_on_a_phone_the_map_comes_first_with_the_energy_below_it(phone: ExplorerPage) -> None:
+    left, top, right, bottom = figures(phone)["basins"][:4]
+    assert (left, right) == (0, 420)
+    assert top < 112
+    slider, play = phone.page.get_by_role("slider", name="Energy h").bounding_box(), phone.button("▶ Play").bounding_box()
+    assert slider is not None
+    assert play is not None
+    assert bottom <= slider["y"] < bottom + 60
+    assert play["y"] <= slider["y"] <= play["y"] + play["height"]
+
+
+def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
+    top = figures(phone)["basins"][1]
+    phone.page.evaluate("window.scrollTo(0, 200)")
+    assert figures(phone)["basins"][1] == top
+    hint = phone.text("Click a map to see the orbit").bounding_box()
+    assert hint is not None
+    above = phone.page.evaluate("([x, y]) => document.elementFromPoint(x, y).className", [hint["x"] + 5, hint["y"] + 5])
+    assert "controls" not in above
+    phone.page.evaluate("window.scrollTo(0, 0)")
 
 
 def test_on_a_phone_one_map_is_shown_and_can_be_chosen(phone: ExplorerPage) -> None:
@@ -167,43 +189,80 @@ def test_figures_do_not_overlap(open_explorer: OpenExplorer, width: int, touch: 
 
 def assert_apart(explorer: ExplorerPage, names: set[str], width: int) -> None:
     """Some figures are in view, none overlaps another, and nothing is wider than the screen."""
+    # On a phone the map stays while the sheet is scrolled over it.
+    explorer.page.evaluate("scrollTo(0, 0)")
     shown = figures(explorer)
     assert names <= set(shown)
     assert not [pair for pair in itertools.combinations(shown, 2) if overlap(shown[pair[0]][:4], shown[pair[1]][:4])]
     assert explorer.page.evaluate("document.documentElement.scrollWidth") <= width
 
 
-def legend(explorer: ExplorerPage) -> list[tuple[str, str]]:
-    """Label and colour of each entry."""
-    return [tuple(entry) for entry in explorer.page.locator(".legend").first.evaluate(_LEGEND)]
-
-
-def expected_entries(palette: str, channels: int) -> list[tuple[str, str]]:
-    """Entries of every map without layers and curves."""
-    colours = PALETTES[palette]
-    outcomes = [colours.outcomes[fate] for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED)]
-    entries: list[Entry] = [*colours.channel_entries(channels), *colours.crossing_entries, *outcomes]
-    return [(entry.label, entry.colour) for entry in entries]
+def legend(explorer: ExplorerPage, picture: str) -> dict[str, str]:
+    """Colour of each item of the legend in a picture, by its label."""
+    return dict(explorer.page.locator(f".foot[data-picture={picture}]").evaluate(_LEGEND))
 
 
 @pytest.mark.parametrize("palette", list(PALETTES))
-def test_the_legend_has_the_colours_of_the_palette(explorer: ExplorerPage, palette: str) -> None:
+def test_the_legends_have_the_colours_of_the_palette(explorer: ExplorerPage, palette: str) -> None:
     if palette != "paper":
         explorer.choose("Colours", PALETTES[palette].name)
         explorer.wait_for_view(f"palette={palette}")
-    expect(explorer.page.locator(".legend").first).to_contain_text("channel 1")
-    assert set(expected_entries(palette, CASES["I"].channels)) <= set(legend(explorer))
+    colours = PALETTES[palette]
+    item = explorer.page.locator(".foot[data-picture=basins] .patch").first
+    expect(item).to_have_attribute("style", f"--colour:{colours.channels[0]}")
+    shown = legend(explorer, "basins")
+    assert [shown[str(k)] for k in (1, 2)] == list(colours.channels[: CASES["I"].channels])
+    assert shown["bounded"] == colours.bounded
+    assert legend(explorer, "crossings") == {entry.label: entry.colour for entry in colours.crossing_entries}
 
 
-def test_the_legend_follows_case_and_plane(explorer: ExplorerPage) -> None:
-    strip = explorer.page.locator(".legend").first
+def test_the_legends_follow_case_and_plane(explorer: ExplorerPage) -> None:
     explorer.pick("III")
-    expect(strip).to_contain_text("channel 4")
-    assert set(expected_entries("paper", 4)) <= set(legend(explorer))
-    for plane, curve in (("(x, h)", "V(x, 0) = h"), ("(x, y)", "V = h"), ("(x, px)", "½px² + V(x, 0) = h")):
+    expect(explorer.page.locator(".foot[data-picture=basins]")).to_contain_text("4")
+    assert legend(explorer, "basins")["4"] == PALETTES["paper"].channels[3]
+    axes = explorer.page.locator(".map.bk-Figure .axis-names").first
+    for plane, names in (("(x, h)", "h ↑ x →"), ("(x, y)", "y ↑ x →"), ("(x, px)", "px ↑ x →")):
         explorer.pick(plane)
-        expect(strip).to_contain_text(f"limiting curve {curve}")
-        assert ("at other energies" in dict(legend(explorer))) == (plane != "(x, h)")
+        expect(axes).to_have_text(names)
+
+
+def test_an_item_of_a_legend_lights_its_pixels(explorer: ExplorerPage) -> None:
+    palette = "() => Bokeh.documents[0].get_model_by_name('basins').renderers[0].glyph.color_mapper.palette"
+    before = explorer.page.evaluate(palette)
+    item = explorer.page.locator(".foot[data-picture=basins] .patch").first
+    item.hover()
+    lit = explorer.page.evaluate(palette)
+    colour = PALETTES["paper"].channels[0]
+    assert [one for one in lit if len(one) == len(colour)] == [colour]
+    explorer.page.mouse.move(5, 5)
+    assert explorer.page.evaluate(palette) == before
+
+
+@pytest.mark.parametrize("size", [(1600, 1000), pytest.param((1280, 720), marks=pytest.mark.slow)])
+def test_a_picture_fills_the_height_when_it_is_enlarged(open_explorer: OpenExplorer, size: tuple[int, int]) -> None:
+    explorer = open_explorer(*size, QUICK)
+    explorer.press(f"Enlarge, or show all: {TITLES['times']}")
+    explorer.wait_for_view("focus=times")
+    explorer.page.wait_for_function(f"() => ({_FIGURES})().times[4] > {0.7 * size[1]}")
+    shown = figures(explorer)
+    assert all(abs(frame[4] - frame[5]) <= 1 for frame in shown.values())
+    assert max(frame[3] for frame in shown.values()) <= size[1]
+    assert not [pair for pair in itertools.combinations(shown, 2) if overlap(shown[pair[0]][:4], shown[pair[1]][:4])]
+    # A small picture is a button.
+    explorer.press(f"Enlarge, or show all: {TITLE}")
+    explorer.wait_for_view("focus=well")
+    explorer.page.keyboard.press("Escape")
+    explorer.page.wait_for_function(f"() => new Set(Object.values(({_FIGURES})()).map(frame => frame[4])).size == 1")
+    assert "focus" not in explorer.page.url
+
+
+def test_a_key_enlarges_a_picture_and_shows_all_again(explorer: ExplorerPage) -> None:
+    side = figures(explorer)["basins"][4]
+    explorer.page.keyboard.press("2")
+    explorer.wait_for_view("focus=basins")
+    explorer.page.wait_for_function(f"() => ({_FIGURES})().basins[4] > {1.5 * side}")
+    explorer.page.keyboard.press("2")
+    explorer.page.wait_for_function(f"() => ({_FIGURES})().basins[4] == {side}")
 
 
 def test_a_mode_of_dragging_acts_on_all_maps(explorer: ExplorerPage) -> None:

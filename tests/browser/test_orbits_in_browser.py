@@ -14,6 +14,14 @@ from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 MAPS = ("basins", "times", "crossings")
+_WATCH_SHIFTS = """() => {
+    window.shifts = 0
+    const add = list => list.getEntries().forEach(entry => window.shifts += entry.value)
+    new PerformanceObserver(add).observe({type: "layout-shift"})
+}"""
+_EXPONENT = "[...Bokeh.index.all_views()].find(view => view.model.name == 'exponent')"
+PARTS = ("note", "orbit-list", "verdict", "player", "interval", "sali", "exponent", "r2", "separation")
+
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
 
 
@@ -41,13 +49,14 @@ def test_five_orbits_are_marked_in_their_colours(for_orbits: ExplorerPage) -> No
 def test_plots_stay_on_the_page_while_their_orbits_are_integrated(explorer: ExplorerPage) -> None:
     explorer.click("basins", *STARTS[0])
     explorer.wait_for_data("paths", "data.xs.length == 1")
+    explorer.page.wait_for_function(f"() => ({_EXPONENT})?.el.isConnected")
     explorer.page.evaluate("() => { window.gone = 0 }")
     explorer.page.evaluate(
-        """() => {
-            const view = [...Bokeh.index.all_views()].find(view => view.model.name == 'exponent')
-            const look = () => { window.gone += !view.el.isConnected; requestAnimationFrame(look) }
+        f"""() => {{
+            const view = {_EXPONENT}
+            const look = () => {{ window.gone += !view.el.isConnected; requestAnimationFrame(look) }}
             look()
-        }"""
+        }}"""
     )
     end = explorer.model_data("paths")["xs"][0][-1]
     explorer.drag_energy_to(0.7)
@@ -99,10 +108,10 @@ def test_a_twin_is_found_and_the_distance_drawn(for_orbits: ExplorerPage) -> Non
 def test_a_time_moves_along_path_sali_and_r2_together(for_orbits: ExplorerPage) -> None:
     for_orbits.click("basins", 0.1, 0.05)
     expect(for_orbits.text("Escaped through")).to_be_visible()
-    for_orbits.press("Next frame")
+    for_orbits.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
     for_orbits.wait_for_data("points", "data.x.length == 1")
     first = for_orbits.model_data("points")
-    for_orbits.press("Play")
+    for_orbits.press("Play the orbits")
     for_orbits.wait_for_data("points", f"data.x.length == 1 && data.x[0] != {first['x'][0]!r}")
     spans = for_orbits.page.evaluate(
         """() => ['sali', 'r2'].map(name => Bokeh.documents[0].get_model_by_name(name).center
@@ -118,10 +127,54 @@ def test_orbits_can_be_cleared_while_their_time_plays(for_orbits: ExplorerPage) 
     for _ in range(2):
         for_orbits.click("basins", 0.1, 0.05)
         expect(for_orbits.text("Escaped through")).to_be_visible()
-        for_orbits.press("Play")
+        for_orbits.press("Play the orbits")
         for_orbits.wait_for_data("points", "data.x.length == 1")
         for_orbits.press("Clear all")
         for_orbits.wait_for_data("starts", "data.x.length == 0")
+
+
+def places(explorer: ExplorerPage) -> dict[str, object]:
+    """Places and sizes of the parts of the inspector, which must all be on the page."""
+    found = {part: explorer.page.locator(f".{part}").first.bounding_box() for part in PARTS}
+    assert None not in found.values()
+    return dict(found)
+
+
+def test_nothing_moves_with_further_orbits_messages_and_the_player(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(height=1000, link=f"{QUICK}&orbits=0.1,0.05")
+    explorer.wait_for_data("r2_histories", "data.xs.length == 1")
+    explorer.page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    before = places(explorer)
+    explorer.page.evaluate(_WATCH_SHIFTS)
+    explorer.page.get_by_role("slider", name="Time along the orbits").press("ArrowRight")
+    explorer.press("Find its twin")
+    expect(explorer.text("The twin starts")).to_be_visible()
+    explorer.wait_for_data("separation_source", "data.t.length > 100")
+    explorer.click("basins", *STARTS[1])
+    explorer.wait_for_data("r2_histories", "data.xs.length == 3")
+    expect(explorer.page.get_by_role("radio", name=re.compile("3: .* at t"))).to_have_count(1)
+    assert places(explorer) == before
+    assert explorer.page.evaluate("window.shifts") == 0
+
+
+def test_messages_end_with_what_they_were_about(for_orbits: ExplorerPage) -> None:
+    for_orbits.open_fold("Type a start")
+    for_orbits.type_number("px", "nothing")
+    expect(for_orbits.text("Type a number into both boxes first.")).to_be_visible()
+    for_orbits.click("basins", 0.1, 0.05)
+    expect(for_orbits.text("Type a number into both boxes first.")).to_have_count(0)
+    for_orbits.press("Find its twin")
+    expect(for_orbits.text("The twin starts")).to_be_visible()
+    for_orbits.press("Remove")
+    expect(for_orbits.text("The twin starts")).to_have_count(0)
+
+
+def test_the_values_of_an_orbit_are_in_a_fold(for_orbits: ExplorerPage) -> None:
+    for_orbits.click("basins", 0.1, 0.05)
+    for_orbits.open_fold("Values")
+    rows = for_orbits.page.get_by_role("table", name="values of the orbit").get_by_role("row")
+    heights = {row.bounding_box()["height"] for row in rows.all()}  # type: ignore[index]
+    assert (rows.count(), max(heights) < 25) == (6, True)
 
 
 def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(for_orbits: ExplorerPage) -> None:
@@ -130,7 +183,7 @@ def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(for
     for_orbits.page.locator(".r2").first.scroll_into_view_if_needed()
     whole = for_orbits.ranges("r2")
     for_orbits.drag("r2", (0.2 * whole[1], 0.1), (0.4 * whole[1], 0.1))
-    expect(for_orbits.text("Shown: t = ")).to_be_visible()
+    expect(for_orbits.button("Whole orbit")).to_be_visible()
     begin, end = for_orbits.ranges("r2")[:2]
     assert (begin, end) == pytest.approx((0.2 * whole[1], 0.4 * whole[1]), rel=0.05)
     times = for_orbits.model_data("r2_histories")["xs"][0]

@@ -6,30 +6,93 @@ import urllib.parse
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Locator, expect
 
 from plots.palette import OUTCOMES
+from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 pytestmark = pytest.mark.browser
 
+# A well of negative energies with a root, a function and a parameter.
+PLUMMER = "−1/√(r² + c²) − 0.1 x²y exp(−y²) − 0.05 y³"
 # A coefficient that no other test uses; the kernels are those of the same terms.
 WEAKER = "½(x² + y²) − 0.5xy²"
 
 
-def test_a_typed_potential_is_reviewed_applied_and_written_to_the_link(explorer: ExplorerPage) -> None:
+def open_box(explorer: ExplorerPage) -> Locator:
+    """The box of the formula, with its drawer open."""
     explorer.press("Other …")
     box = explorer.page.get_by_label("V(x, y) =")
-    box.fill("½(x² + y²) − x<y")
-    expect(explorer.text("'<' is not understood")).to_be_visible()
+    expect(box).to_be_visible()
+    return box
+
+
+def linked(explorer: ExplorerPage, name: str) -> str | None:
+    """A parameter of the address."""
+    return dict(urllib.parse.parse_qsl(urllib.parse.urlsplit(explorer.page.url).query)).get(name)
+
+
+def test_the_maps_follow_the_text_and_an_error_leaves_them(explorer: ExplorerPage) -> None:
+    box = open_box(explorer)
     box.fill(WEAKER)
-    expect(explorer.text("2 channels above the escape energy h = 0.5")).to_be_visible()
-    box.press("Enter")
     explorer.wait_for_view("case=typed")
-    query = urllib.parse.parse_qs(urllib.parse.urlsplit(explorer.page.url).query)
-    assert (query["case"], query["V"]) == (["typed"], [WEAKER])
-    explorer.press("Other …")
+    expect(explorer.text("2 channels above the escape energy h = 0.5")).to_be_visible()
+    explorer.forget_pixels()
+    box.press_sequentially("<y")
+    expect(explorer.text("'<' is not understood")).to_be_visible()
+    expect(explorer.text("The maps still show Typed potential: V = x²/2 + y²/2 − xy²/2")).to_be_visible()
+    assert explorer.page.evaluate("Bokeh.documents[0].get_model_by_name('maps').data === window.before")
+    assert linked(explorer, "V") == WEAKER
+    explorer.press("Close")
+
+
+def test_a_refused_text_is_there_when_the_drawer_opens_again(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=QUICK)
+    box = open_box(explorer)
+    box.fill("x²y²")
+    expect(explorer.text("valley")).to_be_visible()
+    explorer.press("Close")
     expect(box).to_be_hidden()
+    expect(open_box(explorer)).to_have_value("x²y²")
+    expect(explorer.text("valley")).to_be_visible()
+
+
+def test_all_that_is_typed_is_one_step_back(explorer: ExplorerPage) -> None:
+    box = open_box(explorer)
+    box.fill("½(x² + y²) − 0.")
+    box.press_sequentially("64xy²")
+    box.press("Enter")
+    explorer.wait_for_view("0.64xy²")
+    explorer.press("Close")
+    explorer.page.go_back()
+    expect(explorer.radio("I")).to_be_checked()
+    explorer.page.wait_for_function("() => history.state.entry === 0")
+
+
+def test_quick_steps_of_a_parameter_end_at_the_same_number_everywhere(explorer: ExplorerPage) -> None:
+    open_box(explorer)
+    rail = explorer.page.get_by_role("slider", name="ω1", exact=True)
+    rail.focus()
+    for _ in range(13):
+        rail.press("ArrowRight")
+    explorer.wait_for_view("omega_1=1.13&")
+    expect(rail).to_have_value("1.13")
+    expect(explorer.page.get_by_label("ω1, number")).to_have_value("1.13")
+    expect(explorer.text("Case I with ω1 = 1.13")).to_be_visible()
+    explorer.press("Close")
+
+
+def test_the_box_of_a_parameter_takes_numbers_beyond_its_slider(explorer: ExplorerPage) -> None:
+    open_box(explorer)
+    box = explorer.page.get_by_label("ω2, number")
+    box.fill("2.5")
+    box.press("Enter")
+    explorer.wait_for_view("omega_2=2.5&")
+    box.fill("77")
+    box.press("Tab")
+    expect(box).to_have_value("2.5")
+    explorer.press("Close")
 
 
 def test_a_link_opens_a_potential_with_its_parameters(open_explorer: Callable[..., ExplorerPage]) -> None:
@@ -42,3 +105,20 @@ def test_a_link_with_an_invalid_potential_gives_a_message_and_shows_case_one(ope
     explorer = open_explorer(link="?t_max=100&V=" + urllib.parse.quote("x²y² <img src=x onerror=alert(1)>"))
     expect(explorer.page.get_by_role("alert")).to_contain_text("Ignored the potential in the link")
     expect(explorer.text("Case I")).to_be_visible()
+
+
+def test_a_formula_with_functions_has_maps_orbits_and_a_slider(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link="?resolution=112&t_max=100&letters=c:0.6&V=" + urllib.parse.quote(PLUMMER))
+    explorer.wait_until_done()
+    expect(explorer.page.get_by_role("alert")).to_have_count(0)
+    assert (explorer.column("fate") - len(OUTCOMES) + 1).max() >= 1
+    left, right, low, high = explorer.ranges("basins")
+    explorer.click("basins", 0.5 * (left + right) + 0.05 * (right - left), 0.5 * (low + high))
+    explorer.page.wait_for_url(lambda address: "orbits=" in address)
+    open_box(explorer)
+    rail = explorer.page.get_by_role("slider", name="c", exact=True)
+    rail.focus()
+    rail.press("ArrowRight")
+    explorer.wait_for_view("letters=c:0.61", "h=-0.")
+    assert (explorer.column("fate") - len(OUTCOMES) + 1).max() >= 1
+    explorer.press("Close")

@@ -16,10 +16,11 @@ from playwright.sync_api import expect
 from app.state.presets import PRESETS
 from app.state.view_state import Analysis, ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
-from app.views.components.numbers import grouped, percent
+from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
 from engine.service import Job
-from plots.image_columns import longest_typical_time, map_columns
+from plots.image_columns import map_columns
+from plots.time_scale import fitted_scale
 from tests.app.state.opened_link import open_link
 from tests.browser.explorer_page import ExplorerPage
 
@@ -36,7 +37,8 @@ ROUNDS = 20
 """Most states that follow each other after an action."""
 
 POLL_MS = 100
-LEGEND, SHARES, VERDICT = ".legend, .passages", "table[aria-label=statistics]", "p > b"
+PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
+LEGEND, SHARES, VERDICT = ".legend, .legend [title], .passages", "table[aria-label=statistics]", ".verdict"
 
 # What the page shows, and what has to be equal; the first difference, or null. The parts of shadow roots count.
 _DIFFERENCE = """expected => {
@@ -45,7 +47,8 @@ _DIFFERENCE = """expected => {
     const walk = root => {
         for (const element of root.querySelectorAll("*")) {
             if (element.shadowRoot) walk(element.shadowRoot)
-            for (const place in texts) if (element.matches(place)) texts[place] += element.textContent + " "
+            const text = `${element.title} ${element.textContent} ${element.shadowRoot?.textContent ?? ""} `
+            for (const place in texts) if (element.matches(place)) texts[place] += text
             if (!(element instanceof HTMLInputElement)) continue
             const label = (element.labels?.[0]?.innerText || element.getAttribute("aria-label") || "").trim()
             if (["radio", "checkbox"].includes(element.type)) found[label] = element.checked
@@ -74,6 +77,12 @@ _DIFFERENCE = """expected => {
     if (paths !== expected.orbits) return `${paths} paths`
     return null
 }"""
+
+# Waits for a step back: before it is taken, a further one would be counted from the old entry, and could leave the page.
+_GO = """steps => steps > 0 ? history.go(steps) : new Promise(done => {
+    addEventListener("popstate", () => done(), {once: true})
+    history.go(steps)
+})"""
 
 # The end of waiting: the page agrees, or its address is another one.
 _AGREEMENT = f"""expected => {{
@@ -119,16 +128,18 @@ def expected_page(address: str) -> dict[str, Any]:
     layers = {label: bool(getattr(state, name)) for name, label in LAYER_LABELS.items()}
     analyses = {label: state.analysis is analysis for analysis, label in ANALYSIS_LABELS.items()}
     cases = {case: state.case == case for case in CASES}
-    planes = {plane.title: state.plane is plane for plane in Plane}
+    planes = {plane.title: state.plane is plane for plane in PLANES}
     energy = {} if state.plane.energy_axis is not None else {"Exact h": state.energy}
-    orbits = [state.orbit_job(start) for start in state.starts]
+    jobs = [job for start in state.starts if (job := state.orbit_job(start)) is not None]
+    # The picture of the well has the orbits in the well of the chosen one.
+    well = None if shown.orbit is None else shown.orbit.potential
     return {
         "address": f"?{query}",
         "widgets": cases | planes | layers | analyses | energy,
         "picture": None if shown.frame is None else expected_picture(shown.frame),
         "texts": expected_texts(state, shown),
         "starts": len(state.starts),
-        "orbits": sum(orbit is not None for orbit in orbits),
+        "orbits": sum(well in (None, job.arguments[0]) for job in jobs),
     }
 
 
@@ -144,9 +155,9 @@ def expected_texts(state: ViewState, shown: Shown) -> dict[str, list[str]]:
     texts: dict[str, list[str]] = {}
     if shown.frame is not None:
         channels = [f"channel {k + 1}" for k in range(state.potential.channels)]
-        layers = {"Bounded orbits": state.judge, "Enters by": state.origins}
-        times = f"≥ {grouped(state.lock_times or longest_typical_time(shown.frame))}"
-        texts[LEGEND] = [times, *channels, *(name for name, is_on in layers.items() if is_on)]
+        layers = {"bounded and chaotic": state.judge, "Enters by": state.origins}
+        times = state.lock_times or fitted_scale(shown.frame)
+        texts[LEGEND] = [f"≤ {times.low:g}", *channels, *(name for name, is_on in layers.items() if is_on)]
     if shown.frame is not None and state.analysis is Analysis.STATISTICS:
         statistics = compute_statistics(shown.frame, state.box)
         texts[SHARES] = [percent(share, 2) for fate, share in statistics.shares.items() if fate >= Fate.BOUNDED]
@@ -176,7 +187,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
     def move(steps: int) -> None:
         """Go through the browser's history, without leaving the page."""
         if page.evaluate("() => history.state?.entry ?? 0") + steps >= 0:
-            page.evaluate("steps => history.go(steps)", steps)
+            page.evaluate(_GO, steps)
 
     def click() -> None:
         x_low, x_high, low, high = explorer.ranges("basins")
@@ -208,7 +219,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
         return lambda: page.get_by_label(label, exact=True).click()
 
     plain = {f"case {case}": lambda case=case: explorer.pick(case) for case in CASES}
-    plain |= {f"plane {plane.title}": lambda plane=plane: explorer.pick(plane.title) for plane in Plane}
+    plain |= {f"plane {plane.title}": lambda plane=plane: explorer.pick(plane.title) for plane in PLANES}
     plain |= {f"layer {label}": switch(label) for label in LAYER_LABELS.values()}
     plain |= {f"analysis {label}": lambda label=label: explorer.pick(label) for label in ANALYSIS_LABELS.values()}
     plain |= {f"key {name}": key(name) for name in ("+", "-", "h", "ArrowLeft")}

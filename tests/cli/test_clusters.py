@@ -47,7 +47,7 @@ def test_scheduler_address_is_used(run: Run, tmp_path: Path, monkeypatch: pytest
     from engine.execution import SerialExecutor
 
     addresses: list[str] = []
-    executor = Mock(wraps=SerialExecutor())
+    executor = Mock(spec=SerialExecutor, wraps=SerialExecutor())
     client = Mock()
     client.__enter__ = Mock(return_value=client)
     client.__exit__ = Mock(return_value=None)

@@ -15,18 +15,24 @@ from PIL import Image
 
 from engine import (
     CASES,
+    Coordinate,
     MapSpec,
+    ParameterAxis,
     Plane,
+    Slice,
+    System,
     compute_map,
     compute_origin_fates,
     compute_regularity,
     compute_trust,
     find_stable_manifolds,
 )
-from plots.exports import png_bytes
+from plots.figure_files import map_figure_bytes
+from plots.figure_style import FigureFormat, FigureStyle
 from plots.map_analyses import MapAnalyses
 from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
+C = Coordinate
 Run = Callable[..., tuple[int, str, str]]
 
 REQUESTS = {
@@ -41,6 +47,14 @@ REQUESTS = {
     "(x, h)": (
         ("I", "--energies", 0.13, 0.4, "--plane", "x_h", "--resolution", 8, "--t-max", 100),
         MapSpec(CASES["I"], Plane.X_H, (0.13, 0.4), (8, 8), t_max=100.0),
+    ),
+    "(y, py) at another x": (
+        ("II", "--energy", 0.2, "--axes", "y,py", "--fix", "x=0.1", "--fix", "px=-", "--resolution", 8, "--t-max", 100),
+        MapSpec(CASES["II"], Slice(C.Y, C.PY, C.PX, -1, ((C.X, 0.1),)), 0.2, (8, 8), t_max=100.0),
+    ),
+    "along a parameter": (
+        ("I", "--energy", 0.2, "--axes", "x,eps=0.5:2", "--fix", "px=0", "--resolution", 8, "--t-max", 100),
+        MapSpec(CASES["I"], Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (8, 8), t_max=100.0),
     ),
     "backward": (
         ("I", "--energy", 0.2, "--resolution", 8, "--t-max", 100, "--backward"),
@@ -87,20 +101,44 @@ def test_manifolds_csv_has_full_precision(run: Run, tmp_path: Path) -> None:
 
 
 def test_png_equals_the_download_of_the_page(run: Run, tmp_path: Path) -> None:
-    options = ("--picture", "times", "--picture", "characters", "--side", 120, "--palette", "safe", "--format", "png")
+    options = (
+        "--picture",
+        "times",
+        "--picture",
+        "characters",
+        "--width",
+        9,
+        "--dpi",
+        100,
+        "--palette",
+        "safe",
+        "--format",
+        "png",
+    )
     assert run("map", *BOUNDED, *options, "--output", tmp_path / "map")[0] == 0
     frame = compute_map(BOUNDED_SPEC)
     analyses = MapAnalyses(regularity=compute_regularity(frame))
-    wanted = png_bytes(frame, ("times", "characters"), COLOUR_BLIND_SAFE, 120, analyses=analyses)
+    wanted = map_figure_bytes(
+        frame, ("times", "characters"), COLOUR_BLIND_SAFE, FigureFormat.PNG, FigureStyle(9.0, 100.0), analyses=analyses
+    )
     with Image.open(tmp_path / "map.png") as found, Image.open(BytesIO(wanted)) as expected:
         np.testing.assert_array_equal(np.asarray(found), np.asarray(expected))
 
 
 def test_default_png_has_three_pictures_in_the_paper_palette(run: Run, tmp_path: Path) -> None:
-    assert run("map", *BOUNDED, "--side", 100, "--output", tmp_path / "map")[0] == 0
-    wanted = png_bytes(compute_map(BOUNDED_SPEC), ("basins", "times", "crossings"), PAPER, 100)
+    assert run("map", *BOUNDED, "--output", tmp_path / "map")[0] == 0
+    wanted = map_figure_bytes(compute_map(BOUNDED_SPEC), ("basins", "times", "crossings"), PAPER, FigureFormat.PNG, FigureStyle())
     with Image.open(tmp_path / "map.png") as found, Image.open(BytesIO(wanted)) as expected:
         np.testing.assert_array_equal(np.asarray(found), np.asarray(expected))
+
+
+@pytest.mark.parametrize("format", FigureFormat)
+def test_the_ending_of_the_file_name_is_its_format(format: FigureFormat, run: Run, tmp_path: Path) -> None:
+    path = tmp_path / f"h0.13.{format}"
+    assert run("map", *BOUNDED, "--picture", "basins", "--no-titles", "--font-size", 7, "--output", path)[0] == 0
+    assert list(tmp_path.iterdir()) == [path]
+    style = FigureStyle(font_size=7.0, titles=False)
+    assert path.read_bytes() == map_figure_bytes(compute_map(BOUNDED_SPEC), ["basins"], PAPER, format, style)
 
 
 @pytest.mark.parametrize("count_outside", [False, True])
@@ -118,7 +156,7 @@ def test_json_contains_shares_and_files(count_outside: bool, run: Run, tmp_path:
 
 def test_default_file_names_describe_the_map(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run("map", *BOUNDED, "--side", 100)[0] == 0
+    assert run("map", *BOUNDED)[0] == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13-t1000.nc", "escapes-I-x_px-h0.13-t1000.png"]
 
 

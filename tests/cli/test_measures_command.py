@@ -14,11 +14,12 @@ import xarray as xr
 
 from engine import (
     CASES,
-    EnergyCurvesSpec,
+    CurvesSpec,
     MapSpec,
     Plane,
     compute_basin_entropy,
-    compute_energy_curves,
+    compute_curves,
+    compute_flux,
     compute_map,
     compute_statistics,
     compute_uncertainty_exponent,
@@ -33,7 +34,7 @@ Run = Callable[..., tuple[int, str, str]]
 MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.2, (25, 25), t_max=100.0)
 SWEEP = ("I", "--low", 0.12, "--high", 0.2, "--count", 3, "--resolution", 15, "--t-max", 50, "--no-exponent")
-SWEEP_SPEC = EnergyCurvesSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.12, 0.2, 3)), (15, 15), 50.0, exponent=False)
+SWEEP_SPEC = CurvesSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.12, 0.2, 3)), (15, 15), 50.0, exponent=False)
 
 
 def test_lyapunov_json_and_csv_equal_the_engine_result(run: Run, tmp_path: Path) -> None:
@@ -48,6 +49,15 @@ def test_lyapunov_json_and_csv_equal_the_engine_result(run: Run, tmp_path: Path)
     assert [int(row["channel"]) for row in rows] == [orbit.channel for orbit in wanted for _ in orbit.x]
     times = np.concatenate([np.linspace(0.0, orbit.period, orbit.x.size) for orbit in wanted])
     np.testing.assert_allclose([float(row["t"]) for row in rows], times, rtol=1e-14)
+
+
+def test_flux_stands_beside_the_lyapunov_orbits(run: Run) -> None:
+    _, out, _ = run("lyapunov", "III", "--energy", 0.45, "--json")
+    found, wanted = json.loads(out), compute_flux(CASES["III"], 0.45)
+    assert [one["flux"] for one in found["orbits"]] == wanted.flux.tolist()
+    assert found["decay_rate"] == wanted.decay_rate
+    _, text, _ = run("lyapunov", "III", "--energy", 0.45)
+    assert "decay rate 0.167" in text
 
 
 def test_lyapunov_orbits_end_on_the_zero_velocity_curve(run: Run) -> None:
@@ -92,22 +102,22 @@ def test_measures_json_equals_the_engine_result(run: Run) -> None:
 def test_curves_netcdf_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     assert run("curves", *SWEEP, "--output", tmp_path / "curves")[0] == 0
     with xr.open_dataset(tmp_path / "curves.nc", engine="h5netcdf") as found:
-        xr.testing.assert_equal(found.load(), compute_energy_curves(SWEEP_SPEC).to_xarray())
+        xr.testing.assert_equal(found.load(), compute_curves(SWEEP_SPEC).to_xarray())
 
 
 def test_curves_csv_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     run("curves", *SWEEP, "--output", tmp_path / "curves")
     with (tmp_path / "curves.csv").open() as file:
         rows = list(csv.DictReader(file))
-    curves = compute_energy_curves(SWEEP_SPEC)
-    for name, wanted in (("h", curves.energies), ("channel_2", curves.shares[:, 2]), ("s_b", curves.curve("s_b"))):
+    curves = compute_curves(SWEEP_SPEC)
+    for name, wanted in (("h", curves.values), ("channel_2", curves.shares[:, 2]), ("s_b", curves.curve("s_b"))):
         assert [float(row[name]) for row in rows] == wanted.tolist()
 
 
 def test_nan_is_null_in_json(run: Run, tmp_path: Path) -> None:
     _, out, _ = run("curves", *SWEEP, "--json", "--output", tmp_path / "curves")
     lowest = json.loads(out)["points"][0]
-    assert math.isnan(compute_energy_curves(SWEEP_SPEC).curve("mean_escape_time")[0])
+    assert math.isnan(compute_curves(SWEEP_SPEC).curve("mean_escape_time")[0])
     assert lowest["mean_escape_time"] is None
     assert lowest["bounded"] == 1.0
 
@@ -118,3 +128,12 @@ def test_no_progress_without_a_terminal(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(*command, "--json")[2] == ""
+
+
+@pytest.mark.parametrize(("ending", "begins"), [("csv", b"h,bounded"), ("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")])
+def test_the_ending_of_the_file_name_is_the_format_of_the_curves(ending: str, begins: bytes, run: Run, tmp_path: Path) -> None:
+    energies = ("--low", 0.2, "--high", 0.3, "--count", 2, "--resolution", 12, "--t-max", 100, "--no-exponent")
+    path = tmp_path / f"curves.{ending}"
+    assert run("curves", "I", *energies, "--width", 8.5, "--no-titles", "--output", path)[0] == 0
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes().startswith(begins)

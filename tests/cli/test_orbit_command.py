@@ -10,8 +10,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from engine import CASES, BirkhoffDigits, Plane, compute_birkhoff_digits, integrate_orbit, judge_orbit, start_states
-from engine.service import evaluate_indicators
+from engine import (
+    CASES,
+    BirkhoffDigits,
+    Plane,
+    compute_birkhoff_digits,
+    evaluate_indicators,
+    integrate_orbit,
+    judge_orbit,
+    start_states,
+)
 from plots.exports import orbits_csv
 from plots.palette import COLOUR_BLIND_SAFE
 
@@ -45,7 +53,8 @@ def test_bounded_orbit_has_verdicts_of_all_indicators(run: Run) -> None:
     verdicts = evaluate_indicators(orbit, digits)
     assert code == 0
     assert judge_orbit(orbit, digits).describe() in out
-    assert [verdict.name for verdict in verdicts if verdict.sentence in out] == ["SALI", "Lyapunov exponent", "Birkhoff digits"]
+    names = ["SALI", "Lyapunov exponent", "Birkhoff digits of halves", "Birkhoff digits"]
+    assert [verdict.name for verdict in verdicts if verdict.sentence in out] == names
 
 
 def test_the_table_has_the_verdict_of_all_indicators(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,6 +91,15 @@ def test_picture_shows_the_path(t_max: int, run: Run, tmp_path: Path) -> None:
     rows, columns = np.nonzero(inked)
     # The orbit stays near the y axis, the longer side of its bounding box.
     assert np.ptp(rows) > 1.5 * np.ptp(columns) > 0
+
+
+@pytest.mark.parametrize("ending", ["csv", "png", "svg", "pdf"])
+def test_the_ending_of_the_file_name_is_its_format(ending: str, run: Run, tmp_path: Path) -> None:
+    begins = {"csv": b"# escape-explorer", "png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
+    path = tmp_path / f"orbit.{ending}"
+    assert run("orbit", "I", "--state", *STATE, "--t-max", 20, "--width", 8.5, "--output", path)[0] == 0
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.read_bytes().startswith(begins[ending])
 
 
 def test_start_outside_writes_files(run: Run, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ RANDOM = tuple(
         "0.432x² + 0.339y² − 2.441x²y + 1.8y³ + 1.144xy³",
     )
 )
-ALL = (*(entry.potential for entry in POTENTIALS.values()), *RANDOM)
+ALL = (*POTENTIALS.values(), *RANDOM)
 
 each_potential = pytest.mark.parametrize("potential", ALL, ids=lambda potential: potential.name)
 each_compiled = pytest.mark.parametrize(

@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 
 from engine import classify_orbits, find_lyapunov_orbits
 from engine.potentials.potential import Potential
-from engine.potentials.symmetry import count_rotations
 from tests.contracts.potentials import each_compiled
 from tests.peers import taylor_heyoka
 from tests.peers.dop853 import equations, variational_equations
@@ -75,7 +74,7 @@ def trace_of_monodromy(potential: Potential, start: np.ndarray, period: float) -
 
 @each_compiled
 def test_rotated_starts_escape_through_rotated_channels(potential: Potential) -> None:
-    rotations = count_rotations(potential)
+    rotations = potential.form.count_rotations()
     if rotations < 2:
         pytest.skip("no rotation")
     energy, angle = energy_of(potential, ENERGY_FACTOR), 2.0 * np.pi / rotations

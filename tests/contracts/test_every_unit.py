@@ -5,7 +5,7 @@ With L a power of 2 and E a power of 4 all conversions are exact, and so must be
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -33,24 +33,21 @@ from engine import (
     compute_trust,
     compute_uncertainty_exponent,
     default_window,
+    evaluate_indicators,
     find_divergent_start,
     find_lyapunov_orbits,
     find_section_crossings,
     find_stable_manifolds,
     integrate_orbit,
+    judge_orbit,
     review_potential,
     start_states,
     trace_zero_velocity_curve,
 )
 from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.well_units import WellUnits
-from engine.service import (
-    compute_energy_point,
-    compute_radius_envelope,
-    evaluate_indicators,
-    find_super_sticky_orbits,
-)
-from engine.sweeps.energy_curves import EnergyPointSpec
+from engine.service import compute_curve_point, compute_radius_envelope, find_super_sticky_orbits
+from engine.sweeps.curve_points import CurvePointSpec
 
 
 @dataclass(frozen=True)
@@ -83,7 +80,7 @@ EXACT = (Scaling(2.0**-6, 1.0), Scaling(8.0, 4.0**-3), Scaling(1.0, 4.0**8))
 INEXACT = (Scaling(3.0, 0.7), Scaling(0.01, 1e-3))
 # Of degree 4, with channels of different kinds, and in other units than those of its well.
 SKEW = Potential("skew", ((2, 0, 0.9), (0, 2, 0.41), (3, 0, 0.23), (1, 2, -0.52), (0, 4, -0.07)))
-SYSTEMS = {"II": (CASES["II"], 0.19), "C5": (POTENTIALS["C5"].potential, 1.2), "skew": (SKEW, 1.1)}
+SYSTEMS = {"II": (CASES["II"], 0.19), "C5": (POTENTIALS["C5"], 1.2), "skew": (SKEW, 1.1)}
 
 
 def name_of(scaling: Scaling) -> str:
@@ -165,10 +162,15 @@ def test_resumed_maps_and_origins(name: str, scaling: Scaling) -> None:
 
 @each_system
 @exactly_scaled
-def test_energy_points_with_uncertainty_exponents(name: str, scaling: Scaling) -> None:
+def test_curve_points_with_uncertainty_exponents(name: str, scaling: Scaling) -> None:
     usual, scaled = escape_map(name, Plane.X_PX), escape_map(name, Plane.X_PX, scaling)
-    point, scaled_point = (compute_energy_point(EnergyPointSpec(m.spec, False), frame=m) for m in (usual, scaled))
+    channels = usual.spec.channels
+    point, scaled_point = (
+        compute_curve_point(CurvePointSpec(m.spec, False, 0.2, tuple(range(channels + 1)), channels), frame=m)
+        for m in (usual, scaled)
+    )
     assert scaled_point.shares == point.shares
+    assert scaled_point.largest_island == scaling.length * scaling.momentum * point.largest_island
     assert scaled_point.median_escape_time == scaling.time * point.median_escape_time
     found, scaled_found = (compute_uncertainty_exponent(m.spec, pairs=40, separations=7, work=1e5) for m in (usual, scaled))
     np.testing.assert_array_equal(scaled_found.uncertain, found.uncertain)
@@ -285,6 +287,57 @@ def test_robust_outcomes_in_units_that_round(name: str, scaling: Scaling) -> Non
     for orbit, other in zip(find_lyapunov_orbits(scaled, scaled_energy), find_lyapunov_orbits(potential, energy), strict=True):
         assert orbit.period == pytest.approx(scaling.time * other.period, rel=1e-9)
         np.testing.assert_allclose(orbit.x, scaling.length * other.x, rtol=0.0, atol=1e-9 * scaling.length)
+
+
+# No powers of 2, from the least to the largest that are supported.
+FAR = (Scaling(100.0, 0.3), Scaling(1e-6, 1e6), Scaling(1e6, 1e-6), Scaling(3e-5, 2e-4), Scaling(7e4, 5e5))
+
+
+@pytest.mark.parametrize("plane", Plane)
+@pytest.mark.parametrize("name", ["I", "III", "C5", "skew"])
+@pytest.mark.parametrize("scaling", FAR, ids=name_of)
+def test_default_windows_in_units_that_round(name: str, plane: Plane, scaling: Scaling) -> None:
+    potential = CASES[name] if name in CASES else SYSTEMS[name][0]
+    energy, factor = 1.2 * potential.escape_energy, scaling.energy
+    usual = default_window(potential, plane, (0.9 * energy, energy) if plane.energy_axis is not None else energy)
+    levels = (0.9 * factor * energy, factor * energy) if plane.energy_axis is not None else factor * energy
+    found = default_window(scaling.potential(potential), plane, levels)
+    units = plane.axis_units(WellUnits(scaling.length, scaling.time))
+    restored = found.scaled(*(1.0 / unit for unit in units))
+    np.testing.assert_allclose(astuple(restored), astuple(usual), rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["III", "C5", "skew"])
+@pytest.mark.parametrize("scaling", FAR, ids=name_of)
+def test_reviews_in_units_that_round(name: str, scaling: Scaling) -> None:
+    potential = CASES[name] if name in CASES else SYSTEMS[name][0]
+    usual, found = review_potential(potential), review_potential(scaling.potential(potential))
+    assert (found.refusal, found.channels) == (None, usual.channels)
+    assert found.escape_energy == pytest.approx(scaling.energy * usual.escape_energy, rel=1e-9)
+
+
+def test_a_coefficient_without_effect_is_refused() -> None:
+    assert "a coefficient below 1e-18" in str(
+        review_potential(Potential("", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, 1.0), (2, 1, 1e-20)))).refusal
+    )
+
+
+@pytest.mark.parametrize(
+    "scaling", [*FAR[:2], *(pytest.param(each, marks=pytest.mark.exhaustive) for each in FAR[2:])], ids=name_of
+)
+def test_maps_and_verdicts_in_units_that_round(scaling: Scaling) -> None:
+    potential, energy, t_max = CASES["III"], 0.3, 2e3
+    scaled = scaling.potential(potential)
+    usual = compute_map(MapSpec(potential, Plane.X_PX, energy, (24, 24), t_max=t_max))
+    found = compute_map(MapSpec(scaled, Plane.X_PX, scaling.energy * energy, (24, 24), t_max=scaling.time * t_max))
+    doubtful = compute_trust(usual).trust == Trust.DOUBTFUL
+    np.testing.assert_array_equal(found.fate[~doubtful], usual.fate[~doubtful])
+    states = np.array([[0.1, 0.0, 0.05, 0.4], [0.0, 0.0, 0.02, 0.4]])
+    for state in states:
+        orbit = integrate_orbit(potential, state, t_max)
+        other = integrate_orbit(scaled, scaling.states(state), scaling.time * t_max)
+        assert judge_orbit(other).character is judge_orbit(orbit).character
+        assert other.digits_of_halves == pytest.approx(orbit.digits_of_halves, abs=0.5)
 
 
 @pytest.mark.parametrize("epsilon", [100.0, 0.01, 1e6])

@@ -15,7 +15,7 @@ from playwright.sync_api import Browser
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.system_review import review_catalogue_entry
 from app.views.analysis.basin_measures import BasinMeasuresView
-from app.views.analysis.energy_curves import EnergyCurvesView
+from app.views.analysis.curves import CurvesView
 from app.views.analysis.potential_panel import PotentialPanel
 from app.views.components.notice import Notice
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
@@ -47,17 +47,17 @@ def _verdict() -> tuple[Callable[[str], None], pn.pane.HTML]:
 
 
 def _curves() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    curves = EnergyCurvesView(lambda *_: None, lambda *_: None)
+    curves = CurvesView(lambda *_: None, lambda *_: None)
     return curves.say, curves.text
 
 
 def _measures() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    measures = BasinMeasuresView(lambda *_: None)
+    measures = BasinMeasuresView(lambda *_: None, lambda text: None, lambda: None)
     return measures.say, measures.text
 
 
 def _potential() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    panel = PotentialPanel(review_catalogue_entry("I"), lambda _: None, lambda _: None)
+    panel = PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
     return panel.say, panel.message
 
 

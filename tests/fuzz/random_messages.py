@@ -121,9 +121,6 @@ class RandomMessages:
                 yield model, "command", {"type": "map", "entries": [["name", command], ["number", number]]}
                 link = self.random.choice(["", "?case=II", "?case=III&h=0.3&resolution=48", "?h=x&plane=q", "?" + "x" * 900])
                 yield model, "address", {"type": "map", "entries": [["link", link], ["number", number]]}
-            elif kind.startswith("TourCard"):
-                yield model, "step", self.random.randint(-1, 30)
-                yield model, "running", self.random.random() < 0.5
 
     def _plausible_event(self) -> dict[str, Any]:
         waiting = [(model, each) for model, _, attributes in self._named() for each in self._subscribed(attributes)]

@@ -13,8 +13,8 @@ from app.state.permalink import write_link
 from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
-from engine import POTENTIALS, Potential, PotentialReview, parse_formula, review_potential, write_formula
-from engine.service import PARAMETERS, TYPED, System
+from engine import POTENTIALS, Potential, PotentialReview, System, parse_formula, review_potential, write_formula
+from engine.service import PARAMETERS, TYPED
 from plots.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
@@ -68,10 +68,12 @@ def test_any_formula(text: str) -> None:
 
 @given(st.sampled_from(list(POTENTIALS)), *[mostly(st.floats(0.5, 2.0))] * 3)
 def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: Any, epsilon: Any) -> None:
-    plain = POTENTIALS[name].potential
+    plain = POTENTIALS[name]
     changed = result_or_error(lambda: plain.with_parameters(omega_1, omega_2, epsilon), PARAMETERS)
     if changed is not None:
-        check_display(System(name, "", float(omega_1), float(omega_2), float(epsilon)), reviewed(changed))
+        check_display(
+            System(name, "", dict(zip(PARAMETERS, map(float, (omega_1, omega_2, epsilon)), strict=True))), reviewed(changed)
+        )
 
 
 @given(case_strings)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from engine import (
     CASES,
-    EnergyCurvesSpec,
+    CurvesSpec,
     EscapeMap,
     MapSpec,
     Plane,
@@ -36,10 +36,11 @@ from engine import (
     integrate_orbit,
     judge_orbit,
     measure_deviation,
+    plan_sweep,
     start_states,
     trace_zero_velocity_curve,
 )
-from engine.service import LONGEST_TIME, compute_radius_envelope, fit_uncertainty, plan_sweep, trace_equipotentials
+from engine.service import LONGEST_TIME, compute_radius_envelope, fit_uncertainty, trace_equipotentials
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]
@@ -173,8 +174,8 @@ def test_divergent_start(plane: Any, energy: Any, x: Any, ordinate: Any, t_max: 
 
 @given(planes, mostly(st.lists(energies, max_size=4), anything), resolutions, st.none() | edges, times)
 def test_sweep_specs(plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any) -> None:
-    names = ["plane", "Plane", "energies", "energy", "resolution", "window", "t_max"]
-    result_or_error(lambda: EnergyCurvesSpec(CASE, plane, swept, resolution, t_max), names)
+    names = ["plane", "Plane", "energies", "values", "energy", "resolution", "window", "t_max"]
+    result_or_error(lambda: CurvesSpec(CASE, plane, swept, resolution, t_max), names)
     result_or_error(lambda: SweepSpec(CASE, plane, swept, resolution, window, t_max), names)
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from functools import cache
+from functools import cache, singledispatch
 
 import heyoka as hy
 import numpy as np
 
 from engine import Potential
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
+from engine.potentials.expression_form import ExpressionForm
+from engine.potentials.polynomial_form import PolynomialForm
 from tests.peers.dop853 import PeerOutcomes
 from tests.peers.exit_lines import ExitLine
 
@@ -23,14 +26,45 @@ def coordinates():
 
 def equations(potential: Potential) -> list:
     x, y, px, py = coordinates()
-
-    def term(c: float, i: int, j: int):
-        # Not as powers: the series of y**3 divides by y.
-        return math.prod([x] * i + [y] * j, start=hy.expression(c))
-
-    fx = sum((term(-c * i, i - 1, j) for i, j, c in potential.terms if i), start=hy.expression(0.0))
-    fy = sum((term(-c * j, i, j - 1) for i, j, c in potential.terms if j), start=hy.expression(0.0))
+    fx, fy = (_in_heyoka(potential.form.force(axis)) for axis in (0, 1))
     return [(x, px), (y, py), (px, fx), (py, fy)]
+
+
+@singledispatch
+def _in_heyoka(form):
+    raise TypeError(form)
+
+
+@_in_heyoka.register
+def _(form: PolynomialForm):
+    x, y, *_ = coordinates()
+    # Not as powers: the series of y**3 divides by y.
+    terms = (math.prod([x] * i + [y] * j, start=hy.expression(c)) for i, j, c in form.terms)
+    return sum(terms, start=hy.expression(0.0))
+
+
+@_in_heyoka.register
+def _(form: ExpressionForm):
+    return _node(form.expression)
+
+
+def _node(expression: Expression):
+    match expression:
+        case Coordinate(axis):
+            return coordinates()[axis]
+        case Sum(constant, terms):
+            return sum((c * _node(part) for part, c in terms), start=hy.expression(constant))
+        case Product(factors):
+            return math.prod((_power(_node(base), n) for base, n in factors), start=hy.expression(1.0))
+        case Function(name, argument):
+            return getattr(hy, name)(_node(argument))
+    raise TypeError(expression)
+
+
+def _power(base, exponent: float):
+    if exponent > 0.0 and exponent == int(exponent):
+        return math.prod([base] * int(exponent), start=hy.expression(1.0))
+    return base**exponent
 
 
 def taylor_coefficients(potential: Potential, state: np.ndarray) -> np.ndarray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from io import BytesIO
 from typing import Any
@@ -12,27 +11,24 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib import pyplot
-from PIL import Image
 
 from engine import (
     CASES,
-    EnergyCurvesSpec,
-    EscapeMap,
+    CurvesSpec,
     MapSpec,
     Orbit,
     Plane,
-    compute_energy_curves,
+    System,
+    compute_curves,
     compute_map,
     compute_origin_fates,
     compute_trust,
     integrate_orbit,
     judge_orbit,
 )
-from engine.service import TYPED, System
-from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from engine.service import TYPED
+from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 from plots.map_analyses import MapAnalyses
-from plots.map_images import TITLES
-from plots.palette import COLOUR_BLIND_SAFE, PAPER
 
 START = (0.1, 0.0, 0.05, 0.6)
 SPECS = {
@@ -47,40 +43,8 @@ SPECS = {
 
 
 @pytest.fixture(scope="module")
-def escape_map() -> EscapeMap:
-    return compute_map(SPECS["a window"])
-
-
-@pytest.fixture(scope="module")
 def orbit() -> Orbit:
     return integrate_orbit(CASES["I"], START, 100.0)
-
-
-def test_a_png_has_the_pictures_side_by_side(escape_map: EscapeMap) -> None:
-    widths = []
-    for pictures in (["times"], ["times", "basins"], ["times", "basins", "crossings"]):
-        with Image.open(BytesIO(png_bytes(escape_map, pictures, COLOUR_BLIND_SAFE, 120, starts=[(0.1, 0.1)]))) as image:
-            widths.append(image.width)
-    assert min(np.diff(widths)) > 120
-    assert abs(widths[2] - 2 * widths[1] + widths[0]) < 60
-
-
-def test_pictures_can_be_drawn_in_several_threads(escape_map: EscapeMap) -> None:
-    with ThreadPoolExecutor(4) as pool:
-        files = list(pool.map(lambda _: png_bytes(escape_map, ["basins"], PAPER, 100), range(4)))
-    assert len(set(files)) == 1
-
-
-def test_a_png_contains_its_provenance(escape_map: EscapeMap) -> None:
-    with Image.open(BytesIO(png_bytes(escape_map, list(TITLES), PAPER, 100))) as image:
-        notes = image.info
-    assert notes["Software"].startswith("escape-explorer ")
-    assert {name: notes[name] for name in escape_map.provenance()} == {k: str(v) for k, v in escape_map.provenance().items()}
-
-
-def test_a_png_without_pictures_is_rejected(escape_map: EscapeMap) -> None:
-    with pytest.raises(ValueError, match=r"pictures=\[\]: must be at least one of curves"):
-        png_bytes(escape_map, [], PAPER, 200)
 
 
 @pytest.mark.parametrize("name", SPECS)
@@ -135,9 +99,7 @@ def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
 
 
 def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
-    curves = compute_energy_curves(
-        EnergyCurvesSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), resolution=(20, 20), t_max=100.0, exponent=False)
-    )
+    curves = compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), resolution=(20, 20), t_max=100.0, exponent=False))
     comments, rows = table(curves_csv(curves))
     assert "# t_max: 100.0" in comments
     assert [float(row["h"]) for row in rows] == [0.13, 0.2]
@@ -177,7 +139,12 @@ def test_the_script_reproduces_and_draws_the_map_and_the_orbits(name: str, monke
 
 @pytest.mark.parametrize(
     "system",
-    [System("C5"), System("One exit", epsilon=0.5), System("III", omega_1=1.1), System(TYPED, "x²/2 + y²/2 − x²y", 1.0, 0.9)],
+    [
+        System("C5"),
+        System("One exit", parameters={"epsilon": 0.5}),
+        System("III", parameters={"omega_1": 1.1}),
+        System(TYPED, "x²/2 + y²/2 − x²y", {"omega_2": 0.9}),
+    ],
 )
 def test_the_script_reproduces_the_potential(system: System) -> None:
     head = python_lines(SPECS["a window"], system).split("spec = ")[0]

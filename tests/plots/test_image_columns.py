@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,8 +21,8 @@ from engine import (
     compute_regularity,
 )
 from plots import palette
-from plots.image_columns import character_column, longest_typical_time, map_columns, passage_column
-from plots.palette import PAPER
+from plots.image_columns import NO_LAYER, character_column, difference_column, draw_over, map_columns, passage_column
+from plots.palette import DIFFERENCES, OUTCOMES, PAPER
 
 
 @pytest.fixture(scope="module")
@@ -113,22 +114,6 @@ def test_a_coarse_frame_fills_the_window() -> None:
     assert columns["y"][0] + columns["dh"][0] >= window.ordinate_high
 
 
-def test_the_time_scale_ends_at_a_round_number_above_99_percent_of_the_times(escape_map: EscapeMap) -> None:
-    high = longest_typical_time(escape_map)
-    assert high in {step * 10.0**k for step in (1.0, 2.0, 5.0) for k in range(1, 6)}
-    assert np.mean(escape_map.escape_time[escape_map.fate > 0] <= high) >= 0.99
-
-
-@pytest.mark.parametrize(
-    ("early", "late", "expected"),
-    [(1000, 0, 20.0), (995, 5, 20.0), (985, 15, 500.0), (0, 1000, 500.0), (0, 0, 100.0)],
-)
-def test_the_time_scale_leaves_out_the_last_percent(early: int, late: int, expected: float) -> None:
-    times = np.repeat([15.0, 400.0, np.nan], [early, late, 100])
-    frame = SimpleNamespace(escape_time=times, fate=np.where(np.isnan(times), Fate.BOUNDED, 1))
-    assert longest_typical_time(frame) == expected
-
-
 def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
     origins = compute_origin_fates(MapSpec(CASES["III"], Plane.X_PX, 0.3, (45, 45), t_max=200.0))
     colours = np.array(PAPER.passage_colours)[passage_column(origins)["passage"][0]]
@@ -140,3 +125,76 @@ def test_a_passage_has_the_colour_of_its_origin_and_exit() -> None:
             seen += int(where.sum())
     assert seen == np.sum(origins.fate >= 0)
     assert set(colours[origins.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
+
+
+def columns_of(
+    fate: list[list[int]], window: tuple[float, float, float, float], *, complete: bool = False
+) -> dict[str, list[Any]]:
+    """Columns of a frame with these codes of fates in all images, row 0 lowest."""
+    codes, (low, high, bottom, top) = np.array(fate, np.uint8), window
+    images = {name: [codes] for name in ("fate", "crossing_class", "crossings", "escape_time")}
+    return {**images, "x": [low], "y": [bottom], "dw": [high - low], "dh": [top - bottom], "complete": [complete]}
+
+
+def test_undecided_pixels_show_those_of_an_earlier_map() -> None:
+    earlier = columns_of([[7, 8], [9, 6]], (0.0, 2.0, 0.0, 2.0))
+    frame = columns_of([[5, 0], [0, 0]], (0.0, 2.0, 0.0, 2.0))
+    assert draw_over(frame, earlier, (2, 2))["fate"][0].tolist() == [[5, 8], [9, 6]]
+
+
+def test_coarse_pixels_do_not_replace_finer_ones_of_the_same_place() -> None:
+    earlier = columns_of([[7, 8], [9, 6]], (0.0, 2.0, 0.0, 2.0))
+    frame = columns_of([[5]], (0.0, 2.0, 0.0, 2.0))
+    assert draw_over(frame, earlier, (4, 4))["fate"][0].tolist() == [[7, 8], [9, 6]]
+
+
+def test_pixels_beyond_the_earlier_window_are_those_of_the_frame() -> None:
+    earlier = columns_of([[7, 8]], (0.0, 2.0, 0.0, 1.0))
+    frame = columns_of([[5, 4]], (1.0, 3.0, 0.0, 1.0))
+    assert draw_over(columns_of([[0, 4]], (1.0, 3.0, 0.0, 1.0)), earlier, (2, 1))["fate"][0].tolist() == [[8, 4]]
+    assert draw_over(frame, earlier, (2, 1))["fate"][0].tolist() == [[5, 4]]
+
+
+def test_a_complete_map_is_shown_as_it_is() -> None:
+    earlier = columns_of([[7, 8]], (0.0, 2.0, 0.0, 1.0))
+    frame = columns_of([[0, 4]], (0.0, 2.0, 0.0, 1.0), complete=True)
+    assert draw_over(frame, earlier, (2, 1)) == frame
+
+
+def class_of_difference(one: int, other: int) -> int:
+    """The code of a pixel whose orbits have these fates in two views, written out case by case."""
+    first = len(OUTCOMES)
+    if Fate.NOT_COMPUTED in (one, other):
+        return list(OUTCOMES).index(Fate.NOT_COMPUTED)
+    without = [fate in (Fate.FORBIDDEN, Fate.OUTSIDE) for fate in (one, other)]
+    if all(without):
+        return list(OUTCOMES).index(Fate(one))
+    if any(without):
+        return first + 2
+    return first + (one != other)
+
+
+def test_pixels_of_two_views_are_compared_by_their_fates(escape_map: EscapeMap) -> None:
+    other = compute_map(replace(escape_map.spec, energy=0.2))
+    codes = difference_column(map_columns(escape_map), map_columns(other))["difference"][0]
+    expected = [class_of_difference(*pair) for pair in zip(escape_map.fate.ravel(), other.fate.ravel(), strict=True)]
+    np.testing.assert_array_equal(codes.ravel(), expected)
+    assert set(codes.ravel()) >= {len(OUTCOMES) + k for k in range(len(DIFFERENCES))}
+
+
+def test_a_part_of_a_view_is_compared_with_the_pixels_at_its_place(escape_map: EscapeMap) -> None:
+    columns = map_columns(escape_map)
+    fate = columns["fate"][0]
+    part = {
+        "fate": [fate[1:31, 2:43]],
+        "x": [-1.0 + 2 * 2.4 / 81],
+        "y": [-0.8 + 1.6 / 61],
+        "dw": [41 * 2.4 / 81],
+        "dh": [30 * 1.6 / 61],
+    }
+    codes = difference_column(columns | part, columns)["difference"][0]
+    assert codes.shape == (30, 41)
+    assert not np.isin(codes, [len(OUTCOMES) + 1, len(OUTCOMES) + 2]).any()
+    beyond = difference_column(columns, columns | part)["difference"][0]
+    assert (beyond[31:] == list(OUTCOMES).index(Fate.NOT_COMPUTED)).all()
+    assert map_columns(escape_map)["difference"] is NO_LAYER

@@ -10,7 +10,9 @@ import pytest
 from matplotlib import ft2font
 from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont
+from matplotlib.text import Text
 from PIL import Image, ImageColor
 
 from engine import (
@@ -26,13 +28,17 @@ from engine import (
     compute_trust,
     find_stable_manifolds,
 )
-from plots.figure_axes import label_axis, save_figure
+from plots.axis_labels import label_axis
+from plots.figure_axes import save_figure
+from plots.figure_style import CM_PER_INCH, FigureFormat, FigureStyle
 from plots.map_analyses import MapAnalyses
 from plots.map_figure import draw_map_figure, provenance_line
 from plots.map_images import TITLES, picture_pixels
 from plots.palette import DOUBT, PALETTES, PAPER, Palette
+from plots.time_scale import TimeScale
 
 SIDE = 240
+STYLE = FigureStyle(8.0, dpi=100.0)
 
 
 @pytest.fixture(scope="module")
@@ -41,9 +47,20 @@ def escape_map() -> EscapeMap:
     return compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.18, (40, 30), window=(-1.0, 1.4, -0.8, 0.4), t_max=200.0))
 
 
+def style_of(frame: EscapeMap, side: int) -> FigureStyle:
+    """The style in which the map of a figure of one picture has this side in pixels."""
+    dpi = 100.0
+    labels = STYLE.inches * dpi - side_of(draw_map_figure(frame, ["basins"], PAPER, STYLE))
+    return FigureStyle((side + labels + 0.5) / dpi * CM_PER_INCH, dpi)
+
+
+def side_of(figure: Figure) -> float:
+    return float(figure.axes[0].get_window_extent().width)
+
+
 def draw(frame: EscapeMap, picture: str, palette: Palette, side: int, **options: Any) -> Image.Image:
-    data = save_figure(draw_map_figure(frame, [picture], palette, side, **options), "png", {}, crop=True)
-    return Image.open(BytesIO(data)).convert("RGB")
+    figure = draw_map_figure(frame, [picture], palette, style_of(frame, side), **options)
+    return Image.open(BytesIO(save_figure(figure, FigureFormat.PNG, {}))).convert("RGB")
 
 
 def rgba(colour: str) -> tuple[int, ...]:
@@ -131,34 +148,47 @@ def test_the_map_fills_its_frame_on_white(escape_map: EscapeMap, picture: str, p
     assert np.all(np.asarray(image)[0] == 255)
 
 
-def test_pictures_side_by_side_have_their_maps_at_equal_distances_in_the_same_rows(escape_map: EscapeMap) -> None:
-    figure = draw_map_figure(escape_map, list(TITLES), PAPER, SIDE)
-    panels = [axes for axes in figure.axes if axes.get_title(loc="left") in TITLES.values()]
-    boxes = np.array([axes.get_window_extent().extents for axes in panels])
-    np.testing.assert_allclose(boxes[:, 2:] - boxes[:, :2], SIDE, rtol=1e-12)
-    np.testing.assert_allclose(boxes[:, 0], np.round(boxes[:, 0]), atol=1e-9)
-    np.testing.assert_allclose(np.diff(boxes[:, 0]), boxes[1, 0] - boxes[0, 0], rtol=1e-12)
-    assert np.all(boxes[:, 1] == 0.0)
+@pytest.mark.parametrize("columns", [1, 2, 3])
+def test_maps_of_equal_size_wrap_into_rows(columns: int, escape_map: EscapeMap) -> None:
+    style = FigureStyle(width=5.5 * columns, dpi=100.0)
+    assert style.columns(len(TITLES)) == columns
+    figure = draw_map_figure(escape_map, list(TITLES), PAPER, style)
+    boxes = np.array([axes.get_window_extent().extents for axes in figure.axes])
+    np.testing.assert_allclose(boxes[:, 2:] - boxes[:, :2], side_of(figure), rtol=1e-9)
+    np.testing.assert_allclose(boxes, np.round(boxes), atol=1e-6)
+    assert len(np.unique(boxes[:, 0].round())) == columns
+    assert len(np.unique(boxes[:, 1].round())) == len(TITLES) / columns
 
 
-@pytest.mark.parametrize("side", [99, 4001, 0, float("nan")])
-def test_an_invalid_side_is_rejected(escape_map: EscapeMap, side: int) -> None:
-    with pytest.raises(ValueError, match=f"side={side}: must be from 100 to 4000"):
-        draw_map_figure(escape_map, ["basins"], PAPER, side)
+@pytest.mark.parametrize(
+    "style", [FigureStyle(4.0, font_size=6.0), FigureStyle(6.0), FigureStyle(17.0, 150.0, 11.0), FigureStyle(12.0, titles=False)]
+)
+def test_everything_is_inside_the_figure_and_nothing_overlaps(style: FigureStyle, escape_map: EscapeMap) -> None:
+    figure = draw_map_figure(escape_map, list(TITLES), PAPER, style, starts=[(0.8, 0.1)])
+    assert figure.get_size_inches()[0] == pytest.approx(style.width / CM_PER_INCH)
+    page, boxes = figure.bbox, [axes.get_tightbbox() for axes in figure.axes]
+    boxes += [text.get_window_extent() for text in figure.texts]
+    for number, box in enumerate(boxes):
+        assert page.x0 <= box.x0 < box.x1 <= page.x1 + 1
+        assert page.y0 <= box.y0 < box.y1 <= page.y1 + 1
+        assert not any(box.overlaps(other) for other in boxes[:number])
+
+
+def test_a_figure_without_titles_has_no_provenance_either(escape_map: EscapeMap) -> None:
+    figure = draw_map_figure(escape_map, ["basins"], PAPER, FigureStyle(titles=False))
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [""]
+    assert not figure.texts
+
+
+def test_letters_have_the_given_size(escape_map: EscapeMap) -> None:
+    figure = draw_map_figure(escape_map, ["basins"], PAPER, FigureStyle(font_size=7.0))
+    assert figure.axes[0].xaxis.label.get_fontsize() == 7.0
+    assert max(text.get_fontsize() for text in figure.findobj(Text) if text.get_text()) == 7.0
 
 
 def test_an_unknown_picture_is_rejected(escape_map: EscapeMap) -> None:
     with pytest.raises(ValueError, match=f"picture='orbits': must be one of {', '.join(TITLES)}"):
         picture_pixels(escape_map, "orbits", PAPER)
-
-
-@pytest.mark.parametrize("side", [100, 700])
-def test_the_map_of_a_picture_has_the_given_side(escape_map: EscapeMap, side: int) -> None:
-    image = draw(escape_map, "times", PAPER, side)
-    square = map_pixels(image, side)
-    assert square.shape == (side, side, 3)
-    assert len(np.unique(square.reshape(-1, 3), axis=0)) > 20
-    assert side < image.width < side + 400
 
 
 def test_a_start_is_marked_in_the_colour_of_its_orbit(escape_map: EscapeMap) -> None:
@@ -249,10 +279,11 @@ def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> Non
 
 
 def test_a_long_legend_wraps(escape_map: EscapeMap) -> None:
-    small, large = (draw(escape_map, "crossings", PAPER, side) for side in (100, 600))
-    below = [image.height - corner(image, side)[1] - side for image, side in ((small, 100), (large, 600))]
-    assert below[0] > below[1]
-    assert np.all(np.asarray(small)[:, -1] == 255)
+    legends = [
+        draw_map_figure(escape_map, ["crossings"], PAPER, FigureStyle(width)).axes[0].get_legend() for width in (6.0, 16.0)
+    ]
+    narrow, wide = (legend.get_window_extent() for legend in legends if legend is not None)
+    assert narrow.height > wide.height
 
 
 def test_doubtful_pixels_are_marked() -> None:
@@ -275,7 +306,7 @@ def test_manifolds_are_drawn_over_exits_basins_and_crossings(picture: str, drawn
 def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.3, (60, 60), t_max=100.0))
     found = MapAnalyses(manifolds=find_stable_manifolds(CASES["II"], 0.3, images=1))
-    figure = draw_map_figure(whole, ["crossings"], PAPER, SIDE, analyses=found)
+    figure = draw_map_figure(whole, ["crossings"], PAPER, STYLE, analyses=found)
     colours = [to_hex(curve.get_edgecolor()[0]) for curve in figure.axes[0].collections if isinstance(curve, LineCollection)]
     assert set(PAPER.channels[:3]) <= set(colours)
     legend = figure.axes[0].get_legend()
@@ -288,16 +319,17 @@ def test_manifolds_have_the_colours_of_their_channels_and_an_entry_for_each() ->
 def test_doubtful_pixels_have_an_entry() -> None:
     whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), t_max=500.0))
     legend = (
-        draw_map_figure(whole, ["basins"], PAPER, SIDE, analyses=MapAnalyses(trust=compute_trust(whole))).axes[0].get_legend()
+        draw_map_figure(whole, ["basins"], PAPER, STYLE, analyses=MapAnalyses(trust=compute_trust(whole))).axes[0].get_legend()
     )
     assert legend is not None
     assert "doubtful" in [text.get_text() for text in legend.get_texts()]
 
 
 def test_locked_limits_are_used_for_the_pixels_and_the_colour_bar(escape_map: EscapeMap) -> None:
-    figure = draw_map_figure(escape_map, ["times"], PAPER, SIDE, longest=5000.0)
+    figure = draw_map_figure(escape_map, ["times"], PAPER, STYLE, times=TimeScale(2.5, 5000.0))
     np.testing.assert_array_equal(
-        figure.axes[0].images[0].get_array(), picture_pixels(escape_map, "times", PAPER, longest=5000.0)
+        figure.axes[0].images[0].get_array(), picture_pixels(escape_map, "times", PAPER, times=TimeScale(2.5, 5000.0))
     )
     bar = figure.axes[0].child_axes[0]
-    assert [tick.get_text() for tick in bar.get_xticklabels()][-1] == "≥ 5000"
+    labels = [tick.get_text() for tick in bar.get_xticklabels()]
+    assert labels == ["≤ 2.5", "10", "100", "1000", "≥ 5000"]

@@ -59,8 +59,8 @@ ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.75), (1, 1, -0.123456), (3, 0, 1.0
 
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_the_formula_is_that_of_the_potential(name: str) -> None:
-    (formula,) = rows(POTENTIALS[name].potential)["Potential"]
-    assert sympy.expand(after_last_equals(formula) - potential_of(POTENTIALS[name].potential)) == 0
+    (formula,) = rows(POTENTIALS[name])["Potential"]
+    assert sympy.expand(after_last_equals(formula) - potential_of(POTENTIALS[name])) == 0
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -119,3 +119,13 @@ def test_every_formula_has_text_for_screen_readers(case: str) -> None:
 def test_a_typed_formula_has_fractions_and_powers() -> None:
     formula = ElementTree.fromstring(potential_formula(parse_formula("x²/2 - y")))
     assert formula.get("aria-label") == "V ( x , y ) equals minus y plus 1/2 x squared"
+
+
+def test_functions_are_fractions_roots_and_powers() -> None:
+    potential = parse_formula("½r² − 2x²y exp(−y²)/√(1 + x²)")
+    page = potential_formula(potential)
+    words = "x squared y exp ( minus y squared )"
+    assert words in page
+    assert "square root of ( x squared plus 1 )" in page
+    assert "<mfrac>" in page
+    assert {"Potential", "Equations of motion"} <= set(rows(potential))

@@ -11,7 +11,6 @@ from plots.orbit_curves import (
     TRAIL,
     OrbitCurves,
     compute_orbit_curves,
-    envelope,
     moment,
     restrict_curves,
 )
@@ -56,7 +55,7 @@ def test_the_density_image_has_the_colour_of_the_orbit(long: OrbitCurves) -> Non
 def test_an_interval_of_a_long_orbit_has_every_sample(long: OrbitCurves) -> None:
     part = restrict_curves(long, 1000.0, 1030.0)
     inside = (long.orbit.t >= 1000.0) & (long.orbit.t <= 1030.0)
-    times, values = part.r2
+    times, values = part.r2.line
     np.testing.assert_array_equal(times, long.orbit.t[inside])
     np.testing.assert_array_equal(values, long.orbit.r2[inside])
     assert part.visits is None
@@ -65,13 +64,14 @@ def test_an_interval_of_a_long_orbit_has_every_sample(long: OrbitCurves) -> None
 
 def test_an_interval_at_the_start_has_no_logarithm_of_zero(long: OrbitCurves) -> None:
     part = restrict_curves(long, 0.0, 10.0)
-    assert part.sali[0][0] > 0.0
-    assert part.exponent[0][0] > 0.0
+    assert part.sali.line[0][0] > 0.0
+    assert part.exponent.line[0][0] > 0.0
+    assert part.r2.line[0][0] > 0.0
 
 
 def test_an_interval_after_the_end_is_empty(short: OrbitCurves) -> None:
     part = restrict_curves(short, 1e6, 2e6)
-    assert [history[0].size for history in (part.sali, part.exponent, part.r2, part.path)] == [0, 0, 0, 0]
+    assert [times.size for times in (part.sali.line[0], part.exponent.line[0], part.r2.line[0], part.path[0])] == [0, 0, 0, 0]
 
 
 def test_an_interval_can_be_chosen_within_another(long: OrbitCurves) -> None:
@@ -97,19 +97,3 @@ def test_an_orbit_outside_with_less_energy_than_the_well_is_shown_with_the_whole
     curves = compute_orbit_curves(potential, integrate_orbit(potential, state, 10.0))
     assert curves.orbit.energy == pytest.approx(-0.4)
     assert curves.window == default_window(potential, Plane.X_Y, potential.escape_energy)
-
-
-def test_an_envelope_keeps_every_extreme() -> None:
-    t = np.linspace(0.0, 100.0, 50_000)
-    values = np.sin(t * 37.0)
-    values[31_234] = 5.0
-    thin_t, thin = envelope(t, values, logarithmic=False)
-    assert thin.size < 3000
-    assert thin.max() == 5.0
-    assert (thin_t[0], thin_t[-1]) == (0.0, 100.0)
-    assert np.all(np.diff(thin_t) > 0)
-
-
-def test_a_short_history_is_not_changed() -> None:
-    t = np.linspace(0.0, 1.0, 500)
-    assert envelope(t, t, logarithmic=False)[0] is t

@@ -12,14 +12,14 @@ from PIL import Image
 
 from engine import (
     CASES,
-    EnergyCurvesSpec,
+    CurvesSpec,
     MapSpec,
     Orbit,
     Plane,
     Result,
     compute_basin_entropy,
     compute_birkhoff_digits,
-    compute_energy_curves,
+    compute_curves,
     compute_map,
     compute_origin_fates,
     compute_regularity,
@@ -56,9 +56,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "decay": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), SPEC.t_max),
     "wada": lambda: compute_wada_test(*exit_labels(compute_map(SPEC).fate, bounded=False)),
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
-    "curves": lambda: compute_energy_curves(
-        EnergyCurvesSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), 100.0, exponent=False)
-    ),
+    "curves": lambda: compute_curves(CurvesSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), 100.0, exponent=False)),
     "shares": lambda: fit_escape_shares([0.3, 0.35, 0.4, 0.45, 0.5], [20, 45, 60, 80, 85], [100] * 5),
     "separation": lambda: compute_separation(POTENTIAL, STATE, (0.1, 0.0, 0.05, 0.60001), 20.0),
     "envelope": lambda: compute_radius_envelope(POTENTIAL, STATE, 20.0),
@@ -124,6 +122,14 @@ def test_each_picture_of_an_orbit_is_drawn(show: str) -> None:
     integrate_orbit(POTENTIAL, STATE, t_max=20.0).plot(figure.subplots(), show=show)
     drawn = [line for axes in (*figure.axes, *figure.axes[0].child_axes) for line in (*axes.lines, *axes.collections)]
     assert drawn
+
+
+def test_notebook_shows_words_instead_of_codes_and_a_legend() -> None:
+    assert "<th>fate</th><td>bounded</td>" in integrate_orbit(POTENTIAL, STATE, t_max=20.0)._repr_html_()
+    axes = compute_map(SPEC).plot(Figure().subplots())
+    legend = axes.child_axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()][:4] == [f"channel {k}" for k in (1, 2, 3, 4)]
 
 
 def test_invalid_options_are_named() -> None:

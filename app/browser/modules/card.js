@@ -9,8 +9,8 @@ import {Integrator} from "./integrator.js"
 import {Interior} from "./interior.js"
 import {exitCurves} from "./exits.js"
 import {cover, frames, strokeLine, wellFrame} from "./pictures.js"
-import {Potential} from "./potential.js"
-import {SPACE, Starts, unitOf} from "./slice.js"
+import {makePotential} from "./potential.js"
+import {energyUnit, space, Starts} from "./slice.js"
 import {windowAt} from "./system.js"
 import {traceOrbit} from "./trace.js"
 
@@ -18,6 +18,8 @@ import {traceOrbit} from "./trace.js"
 const LONGEST = 200
 /** A finger that rests for this long, in ms, and moves by less than this, in pixels, shows orbits instead of moving the picture. */
 const [PRESS_MS, PRESS_PIXELS] = [350, 8]
+/** Distance from a click within which the card stays away. */
+const CLICK_PIXELS = 12
 /** Side of the card if only a map is shown, as a share of it. */
 const ALONE = 0.55
 /** Of the text, in pixels. */
@@ -78,18 +80,20 @@ export class Card {
   #limits = new LimitingCurves()
   /** @type {import("./system.js").System | null} */
   #system = null
-  /** @type {{integrator: Integrator, interior: Interior, potential: Potential} | null} */
+  /** @type {{integrator: Integrator, interior: Interior, potential: import("./potential.js").Potential} | null} */
   #engine = null
   /** @type {{timer: ReturnType<typeof setTimeout>, x: number, y: number} | null} */
   #finger = null
   #pressed = false
+  /** Where the mouse was pressed last, until it moves away. @type {{x: number, y: number} | null} */
+  #clicked = null
 
   /**
    * @param {import("./system.js").System} system
    * @param {WebAssembly.Module} module
    */
   setSystem(system, module) {
-    const potential = new Potential(system.terms)
+    const potential = makePotential(system.formula)
     this.#system = system
     this.#engine = {integrator: new Integrator(system, module), interior: new Interior(potential), potential}
   }
@@ -98,7 +102,13 @@ export class Card {
   #press(event) {
     this.#lift()
     const picture = this.#viewAt(event)
-    if (event.pointerType !== "touch" || !picture) return
+    if (event.pointerType !== "touch") {
+      // The click chooses an orbit, which is drawn where the card is.
+      this.#clicked = {x: event.clientX, y: event.clientY}
+      this.#hide()
+      return
+    }
+    if (!picture) return
     const timer = setTimeout(() => {
       this.#pressed = true
       this.#show(picture, event)
@@ -122,6 +132,8 @@ export class Card {
       else if (finger && Math.hypot(event.clientX - finger.x, event.clientY - finger.y) > PRESS_PIXELS) this.#lift()
       if (!this.#pressed) return
     }
+    if (this.#clicked && Math.hypot(event.clientX - this.#clicked.x, event.clientY - this.#clicked.y) < CLICK_PIXELS) return
+    this.#clicked = null
     // While the energy or the window is dragged with a mouse, the pictures are being watched.
     const dragged = event.buttons && event.pointerType !== "touch"
     this.#show(dragged ? undefined : this.#viewAt(event), event)
@@ -149,8 +161,8 @@ export class Card {
       return
     }
     const {potential, integrator, interior} = engine
-    const units = wish.slice.axes.map(axis => unitOf(system.units, axis))
-    const starts = new Starts(wish.slice, potential, wish.energy / unitOf(system.units, "h"))
+    const {units} = wish.slice
+    const starts = new Starts(wish.slice, potential, wish.energy / energyUnit(system.units))
     const {found} = starts
     const exists = starts.find(place[0] / units[0], place[1] / units[1])
     if (!exists || interior.isOutside(exitCurves(system.exits, found.h), found.h, found.x, found.y)) {
@@ -197,7 +209,7 @@ export class Card {
     const [system, engine, context] = [this.#system, this.#engine, this.#canvas.getContext("2d")]
     if (!system || !engine || !context) return
     const box = placeFor(over, pointer)
-    const h = energy * unitOf(system.units, "h")
+    const h = energy * energyUnit(system.units)
     const window = windowAt(system.windows.x_y, h)
     if (!window) return this.#hide()
     cover(this.#canvas, box)
@@ -209,7 +221,7 @@ export class Card {
       /** @type {string} */ colour,
       /** @type {number} */ width,
     ) => strokeLine(context, window, box, line, colour, width)
-    const limit = this.#limits.trace(system, engine.potential, {slice: SPACE, window, energy: h})
+    const limit = this.#limits.trace(system, engine.potential, {slice: space(system.units), window, energy: h})
     for (const line of limit) draw(line, ink, 1.5)
     const colours = this.#colours()
     for (const {channel, xs, ys} of exitLines(system, h)) draw({xs, ys}, colours[channel - 1], 3)

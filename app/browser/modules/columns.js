@@ -6,6 +6,8 @@
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes
  * @property {number} first  code of the first class
  * @property {number[]} leastCrossings  fewest crossings of each class
+ * @property {number} undecided  code of pixels that are not decided
+ * @property {number[]} withoutOrbit  codes of pixels without an orbit
  *
  * @typedef {Record<string, any[]>} Columns  of a data source of Bokeh
  */
@@ -19,9 +21,11 @@ import {energyAxis} from "./slice.js"
  * @param {import("./pixels.js").View} view
  * @param {import("./pixels.js").Pixels} pixels
  * @param {Columns} like  columns from the server, for the types of their images
+ * @param {Columns | null} compared  columns of the view with which this one is compared pixel by pixel; null for none
  * @returns {Columns}
  */
-export function pixelColumns({outcomes, first, leastCrossings}, view, pixels, like) {
+export function pixelColumns(coding, view, pixels, like, compared) {
+  const {outcomes, first, leastCrossings} = coding
   const {window, columns, rows} = view
   const codes = new Map(outcomes)
   const count = columns * rows
@@ -42,6 +46,7 @@ export function pixelColumns({outcomes, first, leastCrossings}, view, pixels, li
     escape_time: [new Floats(pixels.time.buffer, shape)],
     character: [none],
     passage: [none],
+    difference: [compared ? new Bytes(differences(coding, view, fate, compared).buffer, shape) : none],
     x: [window.xLow],
     y: [window.ordinateLow],
     dw: [window.xHigh - window.xLow],
@@ -49,6 +54,32 @@ export function pixelColumns({outcomes, first, leastCrossings}, view, pixels, li
     energy: [view.energy],
     complete: [false],
   }
+}
+
+/**
+ * Codes of the pixels that end otherwise in another view, as `difference_column` of the server gives them.
+ *
+ * @param {Coding} coding
+ * @param {import("./pixels.js").View} view
+ * @param {Uint8Array} fate  codes of its pixels
+ * @param {Columns} compared
+ */
+function differences({first, undecided, withoutOrbit}, {window, columns, rows}, fate, compared) {
+  const [image, x, y, dw, dh] = ["fate", "x", "y", "dw", "dh"].map(name => compared[name][0])
+  const [rowsThere, columnsThere] = image.shape
+  const lacks = (/** @type {number} */ code) => withoutOrbit.includes(code)
+  const places = (/** @type {number} */ low, /** @type {number} */ high, /** @type {number} */ count) =>
+    Array.from({length: count}, (_, k) => low + ((high - low) * (k + 0.5)) / count)
+  const across = places(window.xLow, window.xHigh, columns).map(place => Math.floor(((place - x) / dw) * columnsThere))
+  const up = places(window.ordinateLow, window.ordinateHigh, rows).map(place => Math.floor(((place - y) / dh) * rowsThere))
+  return fate.map((code, pixel) => {
+    const [row, column] = [up[Math.floor(pixel / columns)], across[pixel % columns]]
+    const isInside = row >= 0 && row < rowsThere && column >= 0 && column < columnsThere
+    const other = isInside ? image[row * columnsThere + column] : undecided
+    if (code === undecided || other === undecided) return undecided
+    if (lacks(code) && lacks(other)) return code
+    return first + (lacks(code) !== lacks(other) ? 2 : Number(code !== other))
+  })
 }
 
 /** Edges of windows closer than this, as a share of its side, are the same. */

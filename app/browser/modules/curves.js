@@ -3,7 +3,7 @@
 
 import {exitCurves, exitPoint} from "./exits.js"
 import {sampleGrid, levelLines} from "./contours.js"
-import {energyAxis, Starts, unitOf} from "./slice.js"
+import {energyAxis, energyUnit, Starts} from "./slice.js"
 
 /** Points along an exit. */
 const EXIT_POINTS = 41
@@ -25,11 +25,11 @@ export class LimitingCurves {
     const key = JSON.stringify([system.key, slice, window])
     if (key !== this.#key || !this.#grid) {
       const starts = new Starts(slice, potential, 0)
-      const [unitX, unitOrdinate] = slice.axes.map(axis => unitOf(system.units, axis))
+      const [unitX, unitOrdinate] = slice.units
       this.#grid = sampleGrid(window, (x, ordinate) => starts.requiredEnergy(x / unitX, ordinate / unitOrdinate))
       this.#key = key
     }
-    return levelLines(this.#grid, energyAxis(slice) >= 0 ? 0 : energy / unitOf(system.units, "h"))
+    return levelLines(this.#grid, energyAxis(slice) >= 0 ? 0 : energy / energyUnit(system.units))
   }
 }
 
@@ -41,7 +41,7 @@ export class LimitingCurves {
  * @returns {{channel: number, xs: number[], ys: number[], label: [number, number]}[]}
  */
 export function exitLines({exits, units}, energy) {
-  const lines = exitCurves(exits, energy / unitOf(units, "h")).map((curve, k) => {
+  const lines = exitCurves(exits, energy / energyUnit(units)).map((curve, k) => {
     const points = Array.from({length: EXIT_POINTS}, (_, i) => exitPoint(curve, (2 * i) / (EXIT_POINTS - 1) - 1))
     const [xs, ys] = [0, 1].map(axis => points.map(point => point[axis] * units.length))
     const middle = EXIT_POINTS >> 1

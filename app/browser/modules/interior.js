@@ -22,11 +22,11 @@ export class Interior {
   /** @param {import("./potential.js").Potential} potential */
   constructor(potential) {
     this.#potential = potential
-    this.#bernstein = bernsteinMatrix(potential.degree)
+    this.#bottom = potential.bottom
   }
 
   #potential
-  #bernstein
+  #bottom
 
   /**
    * Whether a point is beyond an exit; false in the forbidden region.
@@ -45,10 +45,10 @@ export class Interior {
       const value = potential.expand(x, y)
       const {slopeX, slopeY} = potential
       const slope = Math.hypot(slopeX, slopeY)
-      if (value < potential.ray[0]) break
+      if (value < this.#bottom) break
       // A saddle of this energy belongs to the well.
       if (slope < NO_SLOPE && value >= level) return false
-      if (this.#isBelow(level)) return odd !== crossesExits(curves, x, y, 0, 0)
+      if (potential.staysBelow(level)) return odd !== crossesExits(curves, x, y, 0, 0)
       const directionX = -(COS * slopeX - SIN * slopeY) / slope
       const directionY = -(SIN * slopeX + COS * slopeY) / slope
       step = Math.min(2 * step, LONGEST_STEP)
@@ -63,35 +63,6 @@ export class Interior {
     }
     return !odd
   }
-
-  /**
-   * Whether all Bernstein coefficients of V on the line to the origin, and with them V there, are at most a level.
-   *
-   * @param {number} level
-   */
-  #isBelow(level) {
-    const {ray} = this.#potential
-    for (const row of this.#bernstein) {
-      let b = 0
-      for (let k = 0; k < row.length; k++) b += row[k] * ray[k]
-      if (b > level) return false
-    }
-    return true
-  }
-}
-
-/**
- * From the coefficients of a power series on [0, 1] to those of Bernstein polynomials; row i has the first i + 1 columns.
- *
- * @param {number} degree
- */
-function bernsteinMatrix(degree) {
-  const choose = (/** @type {number} */ n, /** @type {number} */ k) => {
-    let value = 1
-    for (let i = 0; i < k; i++) value = (value * (n - i)) / (i + 1)
-    return value
-  }
-  return Array.from({length: degree + 1}, (_, i) => Array.from({length: i + 1}, (_, k) => choose(i, k) / choose(degree, k)))
 }
 
 /**

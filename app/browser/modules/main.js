@@ -3,9 +3,11 @@
 
 import {Card} from "./card.js"
 import {Frames} from "./frames.js"
+import {lightPixels} from "./legend.js"
 import {Overlay} from "./overlay.js"
 import {Player} from "./player.js"
 import {Pool, workerCount} from "./pool.js"
+import {setPresent} from "./present.js"
 import {Preview} from "./preview.js"
 
 /** The smallest module with an instruction on vectors. */
@@ -20,6 +22,7 @@ const SIMD = Uint8Array.of(
  * @param {HTMLElement} el
  */
 export function start(model, el) {
+  lightPixels()
   if (!WebAssembly.validate(SIMD)) {
     // Without vectors the last map stays until the next one comes, and there is nothing to play.
     const refuse = () => model.command.name === "play" && model.send_msg({energy: model.command.energy})
@@ -57,7 +60,17 @@ export function start(model, el) {
   )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
-  const takeView = () => model.view.system && preview.setView(model.view)
+  /** @type {{system: import("./system.js").System, module: WebAssembly.Module} | null} */
+  let taken = null
+  const tellPresent = () => {
+    const colours = () => model.view.colours ?? []
+    setPresent(taken && model.view.system === taken.system.key ? {...taken, wish: () => preview.wish, colours, host: el} : null)
+  }
+  const takeView = () => {
+    if (!model.view.system) return
+    preview.setView(model.view)
+    tellPresent()
+  }
   const takeSystem = async () => {
     if (!model.system.key) return
     const {key} = model.system
@@ -65,6 +78,8 @@ export function start(model, el) {
     if (model.system.key !== key) return
     const {module: _, ...system} = model.system
     for (const user of [card, preview]) user.setSystem(system, module)
+    taken = {system, module}
+    tellPresent()
   }
   const obey = () => {
     const {name, energy, low, high} = model.command

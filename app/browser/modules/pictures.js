@@ -1,7 +1,7 @@
 // @ts-check
 /** The pictures on the screen: the well, and the maps. */
 
-const NAMES = ["basins", "times", "crossings", "characters", "origins"]
+const NAMES = ["basins", "times", "crossings", "characters", "origins", "differences"]
 
 /**
  * A picture: its view of Bokeh, and the box of its frame on the screen.

@@ -3,7 +3,7 @@
 
 import {exitCurves} from "./exits.js"
 import {propagate} from "./propagate.js"
-import {energyAxis, pixelCentres, Starts, unitOf} from "./slice.js"
+import {energyAxis, energyUnit, pixelCentres, Starts} from "./slice.js"
 
 /**
  * What a picture shows: a part of a slice at an energy, in units of the page.
@@ -42,9 +42,9 @@ const LARGEST_TOLERANCE = 1e-9
  * @param {import("./system.js").System} system
  * @param {View} view
  */
-export function toleranceFor({units, layout}, {slice, window, columns, rows}) {
-  const width = (window.xHigh - window.xLow) / columns / unitOf(units, slice.axes[0])
-  const height = (window.ordinateHigh - window.ordinateLow) / rows / unitOf(units, slice.axes[1])
+export function toleranceFor({layout}, {slice, window, columns, rows}) {
+  const width = (window.xHigh - window.xLow) / columns / slice.units[0]
+  const height = (window.ordinateHigh - window.ordinateLow) / rows / slice.units[1]
   return Math.min(Math.max(ERROR_IN_PIXELS * Math.min(width, height), layout.tolerance), LARGEST_TOLERANCE)
 }
 
@@ -60,10 +60,10 @@ export function computePixels(integrator, interior, potential, view, part) {
   const {system} = integrator
   const {fates} = system.layout
   const {slice, window} = view
-  const [unitX, unitOrdinate] = slice.axes.map(axis => unitOf(system.units, axis))
+  const [unitX, unitOrdinate] = slice.units
   const x = pixelCentres(window.xLow / unitX, window.xHigh / unitX, view.columns)
   const ordinate = pixelCentres(window.ordinateLow / unitOrdinate, window.ordinateHigh / unitOrdinate, view.rows)
-  const energy = view.energy / unitOf(system.units, "h")
+  const energy = view.energy / energyUnit(system.units)
   const count = part.rows.length * part.columns
   const orbits = {
     state: new Float64Array(4 * count),

@@ -7,9 +7,9 @@
 import {pixelColumns, sameEnergy, showsWish} from "./columns.js"
 import {exitLines, LimitingCurves} from "./curves.js"
 import {Local, LocalWhenPresent} from "./local.js"
-import {Potential} from "./potential.js"
+import {makePotential} from "./potential.js"
 import {Outlines} from "./outlines.js"
-import {energyAxis, SPACE, unitOf} from "./slice.js"
+import {energyAxis, energyUnit, showsPositions, space} from "./slice.js"
 import {LEAST_SIDE} from "./frames.js"
 import {coversEnergy, windowAt} from "./system.js"
 
@@ -55,6 +55,7 @@ export class Preview {
    */
   constructor(find, findSource, frames, overlay) {
     this.#overlay = overlay
+    this.#find = find
     const ranges = find("basins")
     this.#frames = frames
     this.#maps = new Local(find("maps"), ["data"], () => this.#follow())
@@ -67,6 +68,7 @@ export class Preview {
     this.#status = new LocalWhenPresent(findStatus, ["text"])
   }
 
+  #find
   #frames
   #overlay
   #maps
@@ -80,7 +82,7 @@ export class Preview {
   #wellCurves = new LimitingCurves()
   /** @type {import("./system.js").System | null} */
   #system = null
-  /** @type {Potential | null} */
+  /** @type {import("./potential.js").Potential | null} */
   #potential = null
   /** @type {ServerView | null} */
   #view = null
@@ -101,7 +103,7 @@ export class Preview {
    */
   setSystem(system, module) {
     this.#system = system
-    this.#potential = new Potential(system.terms)
+    this.#potential = makePotential(system.formula)
     this.#frames.setSystem(system, module)
     if (this.#held && this.#energy !== null) this.showEnergy(this.#energy)
     else this.#follow()
@@ -144,7 +146,7 @@ export class Preview {
     if (!(window.xLow < window.xHigh && window.ordinateLow < window.ordinateHigh)) return null
     const energy = this.#energy ?? view.energy
     const highest = [window.xHigh, window.ordinateHigh][energyAxis(view.slice)] ?? energy
-    return coversEnergy(system, highest / unitOf(system.units, "h"))
+    return coversEnergy(system, highest / energyUnit(system.units))
       ? {slice: view.slice, energy, window, most: view.resolution}
       : null
   }
@@ -153,6 +155,12 @@ export class Preview {
   get #present() {
     const [x, y] = this.#ranges()
     return this.#window ?? {xLow: x.start, xHigh: x.end, ordinateLow: y.start, ordinateHigh: y.end}
+  }
+
+  /** Columns of the view with which this one is compared pixel by pixel, as the server does; null for none. */
+  get #compared() {
+    const isCompared = this.#maps.server.data.difference?.[0].length > 1
+    return isCompared ? (this.#find("compared_map")?.data ?? null) : null
   }
 
   /** A range changes: its other end and the pixels from the server may follow at once. */
@@ -193,10 +201,10 @@ export class Preview {
     const [system, potential, server] = [this.#system, this.#potential, this.#view]
     if (!system || !potential || !server) return
     this.#shown = view
-    const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data)
+    const columns = pixelColumns(server.coding, view, pixels, this.#maps.server.data, this.#compared)
     const limit = this.#curves.trace(system, potential, view)
     const coloured = exitLines(system, view.energy).map(exit => ({...exit, colour: server.colours[exit.channel - 1]}))
-    const exits = view.slice.axes.join() === SPACE.axes.join() ? coloured : []
+    const exits = showsPositions(view.slice) ? coloured : []
     const well = this.#traceWell(system, potential, view)
     // Each change of a range repaints all pictures: together with the pixels, or seldom.
     if (this.#window) {
@@ -224,12 +232,12 @@ export class Preview {
    * The window of the well and its zero-velocity curve; null where the energy is an axis, and the well stays as it is.
    *
    * @param {import("./system.js").System} system
-   * @param {Potential} potential
+   * @param {import("./potential.js").Potential} potential
    * @param {import("./pixels.js").View} view
    */
   #traceWell(system, potential, {slice, energy}) {
     const window = energyAxis(slice) < 0 ? windowAt(system.windows.x_y, energy) : null
-    return window && {window, limit: this.#wellCurves.trace(system, potential, {slice: SPACE, window, energy})}
+    return window && {window, limit: this.#wellCurves.trace(system, potential, {slice: space(system.units), window, energy})}
   }
 
   /** Show what the server shows. */

@@ -11,22 +11,35 @@
  * @property {number} ordinateHigh
  */
 
-/** The plane of the positions. @type {import("./system.js").Slice} */
-export const SPACE = {axes: ["x", "y"], fixed: {px: 0}, decided: "py", sign: 1}
-
-/** Coordinates that change their sign under x → −x. */
-const ODD = ["x", "px"]
-
 /**
- * The number by which a coordinate is divided for units of the well.
+ * The plane of the positions.
  *
  * @param {{length: number, time: number}} units
- * @param {import("./system.js").Coordinate} coordinate
+ * @returns {import("./system.js").Slice}
  */
-export function unitOf({length, time}, coordinate) {
-  const momentum = length / time
-  return {x: length, y: length, px: momentum, py: momentum, h: momentum * momentum}[coordinate]
-}
+export const space = ({length}) => ({
+  axes: ["x", "y"],
+  units: [length, length],
+  moves: [{x: 1}, {y: 1}],
+  fixed: {},
+  decided: "py",
+  sign: 1,
+  mirrored: [true, false],
+})
+
+/**
+ * Whether a slice shows positions.
+ *
+ * @param {Pick<import("./system.js").Slice, "axes">} slice
+ */
+export const showsPositions = ({axes}) => axes[0] === "x" && axes[1] === "y"
+
+/**
+ * The energy by which one is divided for units of the well.
+ *
+ * @param {{length: number, time: number}} units
+ */
+export const energyUnit = ({length, time}) => (length / time) ** 2
 
 /**
  * Centres of the pixels along an axis; exactly symmetric if the edges are.
@@ -49,22 +62,25 @@ export const energyAxis = ({axes}) => axes.indexOf("h")
 /** The starts of the points of a slice. */
 export class Starts {
   /**
-   * @param {import("./system.js").Slice} slice
+   * @param {Pick<import("./system.js").Slice, "axes" | "moves" | "fixed" | "decided" | "sign">} slice
    * @param {import("./potential.js").Potential} potential
    * @param {number} energy  used unless h is an axis
    */
-  constructor({axes, fixed, decided, sign}, potential, energy) {
-    /** The start that was found last, and its energy. */
-    this.found = {x: 0, y: 0, px: 0, py: 0, h: energy, ...fixed}
-    this.#axes = axes
+  constructor({axes, moves, fixed, decided, sign}, potential, energy) {
     this.#energyAxis = energyAxis({axes})
+    const moved = Object.fromEntries(moves.flatMap(Object.keys).map(coordinate => [coordinate, 0]))
+    this.#base = {x: 0, y: 0, px: 0, py: 0, theta: 0, ...moved, ...fixed, h: this.#energyAxis < 0 ? energy : 0}
+    /** The start that was found last, and its energy. @type {import("./system.js").Start} */
+    this.found = {...this.#base}
+    this.#moves = moves.map(move => /** @type {[import("./system.js").Coordinate, number][]} */ (Object.entries(move)))
     this.#decided = decided
     this.#sign = sign
     this.#potential = potential
   }
 
-  #axes
   #energyAxis
+  #base
+  #moves
   #decided
   #sign
   #potential
@@ -77,8 +93,11 @@ export class Starts {
    */
   find(abscissa, ordinate) {
     this.#place(abscissa, ordinate)
-    const doubled = 2 * (this.found.h - this.#restEnergy())
-    this.found[this.#decided] = this.#sign * Math.sqrt(Math.max(doubled, 0))
+    const {found} = this
+    const doubled = 2 * (found.h - this.#restEnergy())
+    const decided = this.#sign * Math.sqrt(Math.max(doubled, 0))
+    if (this.#decided === "v") this.#launch(decided)
+    else found[this.#decided] = decided
     return doubled >= 0
   }
 
@@ -98,15 +117,35 @@ export class Starts {
    * @param {number} ordinate
    */
   #place(abscissa, ordinate) {
-    this.found[this.#axes[0]] = abscissa
-    this.found[this.#axes[1]] = ordinate
+    Object.assign(this.found, this.#base)
+    for (const [coordinate, component] of this.#moves[0]) this.found[coordinate] += component * abscissa
+    for (const [coordinate, component] of this.#moves[1]) this.found[coordinate] += component * ordinate
   }
 
   /** The energy without the momentum that is decided. */
   #restEnergy() {
     const {x, y, px, py} = this.found
-    const other = this.#decided === "py" ? px : py
+    const other = {px: py, py: px, v: 0}[this.#decided]
     return 0.5 * other * other + this.#potential.value(x, y)
+  }
+
+  /**
+   * The momenta of a speed: θ is the angle from the +x axis, β that from the direction away from the origin.
+   *
+   * @param {number} speed
+   */
+  #launch(speed) {
+    const {found} = this
+    const {x, y, beta} = found
+    if (beta === undefined) {
+      found.px = speed * Math.cos(found.theta)
+      found.py = speed * Math.sin(found.theta)
+      return
+    }
+    const radius = Math.hypot(x, y)
+    const [awayX, awayY] = radius > 0 ? [x / radius, y / radius] : [1, 0]
+    found.px = speed * (Math.cos(beta) * awayX - Math.sin(beta) * awayY)
+    found.py = speed * (Math.cos(beta) * awayY + Math.sin(beta) * awayX)
   }
 }
 
@@ -114,14 +153,12 @@ export class Starts {
  * Which axes of a view change their direction under x → −x; null if the view is not its own mirror image.
  *
  * @param {import("./system.js").System} system
- * @param {import("./system.js").Slice} slice
+ * @param {Pick<import("./system.js").Slice, "mirrored">} slice
  * @param {Window} window
  * @returns {[boolean, boolean] | null}
  */
-export function mirroredAxes(system, {axes, fixed, decided}, {xLow, xHigh, ordinateLow, ordinateHigh}) {
-  const flips = /** @type {[boolean, boolean]} */ (axes.map(axis => ODD.includes(axis)))
-  const moved = Object.entries(fixed).some(([name, value]) => ODD.includes(name) && value !== 0)
-  if (!system.mirror || moved || ODD.includes(decided) || !(flips[0] || flips[1])) return null
-  const symmetric = (!flips[0] || xLow === -xHigh) && (!flips[1] || ordinateLow === -ordinateHigh)
-  return symmetric ? flips : null
+export function mirroredAxes(system, {mirrored}, {xLow, xHigh, ordinateLow, ordinateHigh}) {
+  if (!system.mirror || !mirrored || !(mirrored[0] || mirrored[1])) return null
+  const symmetric = (!mirrored[0] || xLow === -xHigh) && (!mirrored[1] || ordinateLow === -ordinateHigh)
+  return symmetric ? mirrored : null
 }

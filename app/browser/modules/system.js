@@ -8,11 +8,14 @@
  * @property {string[]} constants  names of the numbers that are the same for all lanes, in the order in which step takes them
  * @property {Layout} layout
  * @property {number[]} table  coefficients in the form that step and jets take
- * @property {[number, number, number][]} terms  [i, j, c] of V = Σ c x^i y^j
+ * @property {Formula} formula  of V
  * @property {ExitTable[]} exits  one for each channel
  * @property {number[] | null} mirror  image of each channel number under x → −x; null without this symmetry
  * @property {{length: number, time: number}} units
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
+ *
+ * @typedef {{terms: [number, number, number][]} | {graph: import("./expression.js").Graph}} Formula  [i, j, c] of V = Σ c x^i y^j,
+ *   or the operations of an expression
  *
  * @typedef {object} Layout
  * @property {number} lanes  length of a row of lanes
@@ -36,16 +39,27 @@
  */
 
 /**
- * Which starts a picture holds: two of the coordinates x, y, px, py and h are its axes, others are fixed, and the energy decides
- * the last one, which has the given sign. h is that of the view if it is no axis.
+ * Which starts a picture holds, in units of the well: they move along two axes, other coordinates are fixed, and the energy decides
+ * a momentum, which has the given sign, or the speed v. h is that of the view if it is no axis.
  *
- * @typedef {"x" | "y" | "px" | "py" | "h"} Coordinate
+ * @typedef {"x" | "y" | "px" | "py" | "theta" | "beta" | "h"} Coordinate
  *
  * @typedef {object} Slice
- * @property {[Coordinate, Coordinate]} axes
+ * @property {[string, string]} axes  names
+ * @property {[number, number]} units  the numbers by which those of the page are divided
+ * @property {[Move, Move]} moves
  * @property {Partial<Record<Coordinate, number>>} fixed
- * @property {"px" | "py"} decided
+ * @property {"px" | "py" | "v"} decided
  * @property {1 | -1} sign
+ * @property {[boolean, boolean] | null} mirrored  whether each axis changes its direction under x → −x; null without this symmetry
+ *
+ * How far a start moves along each coordinate where an axis rises by 1.
+ *
+ * @typedef {Partial<Record<Coordinate, number>>} Move
+ *
+ * A start with its energy, and with an angle that decides its momenta.
+ *
+ * @typedef {{x: number, y: number, px: number, py: number, h: number, theta: number, beta?: any}} Start
  */
 
 /**

@@ -4,7 +4,7 @@
 import {Integrator} from "./integrator.js"
 import {Interior} from "./interior.js"
 import {computePixels} from "./pixels.js"
-import {Potential} from "./potential.js"
+import {makePotential} from "./potential.js"
 
 /**
  * @typedef {{system: import("./system.js").System, module: WebAssembly.Module}} SystemMessage
@@ -17,7 +17,7 @@ let compute
 /** @param {MessageEvent<SystemMessage | PartMessage>} event */
 onmessage = ({data}) => {
   if ("system" in data) {
-    const potential = new Potential(data.system.terms)
+    const potential = makePotential(data.system.formula)
     const [integrator, interior] = [new Integrator(data.system, data.module), new Interior(potential)]
     compute = (view, part) => computePixels(integrator, interior, potential, view, part)
     return

@@ -11,11 +11,13 @@ import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d, Scatter, Segment, Step
 from bokeh.plotting import figure
 
+from app.state.glossary import with_terms
 from app.views.components.chart_hover import chart_hover
+from app.views.components.copy_button import copy_button, number_rows
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
-from app.views.components.widgets import button
-from engine import DecayLaws, UncertaintyExponent
+from app.views.components.widgets import COUNT_WHOLE, button
+from engine import DecayLaws, EscapeFlux, Result, UncertaintyExponent, Window
 from engine.service import BasinMeasures, LawFit
 from plots.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
@@ -26,16 +28,31 @@ _PAIRS_TEXT = (
 )
 _SURVIVAL_TEXT = "<b>@share{custom}</b> of the starts are still inside<br>at t = @t{custom}"
 _NO_PAIRS: dict[str, list[Any]] = {name: [] for name in ("separation", "share", "low", "high", "colour", "note")}
+# Measures that do not count the starts of a box.
+_NOT_OF_BOX = ("Uncertainty exponent", "Flux")
 _MEASURING = "Comparing pairs of starts …"
 
 
 class BasinMeasuresView:
-    """Texts, the uncertain share against separation, and the survival; `on_exponent` is called to measure the exponent."""
+    """Texts, the uncertain share against separation, and the survival.
 
-    def __init__(self, on_exponent: Callable[[], None]) -> None:
+    Parameters
+    ----------
+    on_exponent
+        Called to measure the exponent.
+    on_copy
+        Called with the numbers as tab-separated text.
+    on_whole
+        Called to remove the box.
+    """
+
+    def __init__(self, on_exponent: Callable[[], None], on_copy: Callable[[str], None], on_whole: Callable[[], None]) -> None:
         self.button = button("Measure the uncertainty exponent", on_exponent)
+        self.whole = button(COUNT_WHOLE, on_whole, visible=False)
         self.text = pn.pane.HTML("", name="measures", sizing_mode="stretch_width")
+        self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
+        self._results: dict[str, Result] = {}
         self._separations, self._uncertain = Range1d(1e-10, 1.0), Range1d(1e-3, 1.0)
         self._times, self._survivors = Range1d(1.0, 100.0), Range1d(1e-3, 1.0)
         self.pairs = ColumnDataSource(_NO_PAIRS, name="pairs")
@@ -49,17 +66,30 @@ class BasinMeasuresView:
     def begin(self) -> None:
         """Remove the measures of the previous map."""
         if self._sentences:
-            self._sentences = {}
+            self._sentences, self._results = {}, {}
             self.show_exponent(None)
             self._write()
 
+    def show_box(self, box: Window | None) -> None:
+        """Say that the measures are those of a box; None is the whole view."""
+        self.whole.visible = box is not None
+        self._write()
+
     def show_basins(self, measures: BasinMeasures) -> None:
         """Show the measures that follow from the pixels."""
+        self._results |= {"Basin entropy": measures.entropy, "Wada": measures.merging}
         self._sentences |= {"Basin entropy": measures.entropy.describe(), "Wada": measures.merging.describe()}
+        self._write()
+
+    def show_flux(self, flux: EscapeFlux) -> None:
+        """Show the decay rate that motion inside would have if it were mixed."""
+        self._results["Flux"] = flux
+        self._sentences["Flux"] = flux.describe()
         self._write()
 
     def show_laws(self, laws: DecayLaws) -> None:
         """Show S(t) with the fitted laws."""
+        self._results["Escape law"] = laws
         self._sentences["Escape law"] = laws.describe()
         self.steps.data = {"t": laws.times, "share": laws.survival}
         self._survival.visible = laws.times.size > 0
@@ -82,6 +112,7 @@ class BasinMeasuresView:
         """Show the shares and the fit; None removes them."""
         self.button.disabled = False
         self._sentences.pop("Uncertainty exponent", None)
+        self._results.pop("Uncertainty exponent", None)
         self._uncertainty.visible = found is not None
         if found is None:
             self.pairs.data, self._line.data = _NO_PAIRS, {"separation": [], "share": []}
@@ -101,6 +132,7 @@ class BasinMeasuresView:
         set_range(self._separations, 0.5 * float(found.separations.min()), 2.0 * float(found.separations.max()))
         if positive.any():
             set_decades(self._uncertain, float(shares[positive].min()), float(shares.max()))
+        self._results["Uncertainty exponent"] = found
         self._sentences["Uncertainty exponent"] = found.describe()
         self._write()
 
@@ -114,7 +146,7 @@ class BasinMeasuresView:
         """Make the content of the section."""
         self._survival.objects = [pn.pane.Bokeh(self._draw_survival(), margin=0), self._law_legend()]
         self._uncertainty.objects = [pn.pane.Bokeh(self._draw_uncertainty(), margin=0)]
-        return [pn.Column(self.text, self.button, margin=0), self._survival, self._uncertainty]
+        return [pn.Column(self.text, self.whole, self.copy, self.button, margin=0), self._survival, self._uncertainty]
 
     def _draw_uncertainty(self) -> figure:
         plot = square_figure(
@@ -146,8 +178,16 @@ class BasinMeasuresView:
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
         return pn.pane.HTML(legend(entries), margin=(0, 10))
 
+    def _rows(self) -> list[tuple[str, str, str]]:
+        """The numbers of all measures, at full precision."""
+        return [row for title, result in self._results.items() for row in number_rows(title, result.numbers())]
+
     def _write(self) -> None:
-        self.text.object = "".join(f"<p><b>{name}.</b> {escape(text)}</p>" for name, text in self._sentences.items())
+        regions = dict.fromkeys(self._sentences, "in the whole view") | {"Flux": "through all exits"}
+        if self.whole.visible:
+            regions |= {name: "in the box drawn on the maps" for name in regions if name not in _NOT_OF_BOX}
+        texts = (f"<p><b>{name}</b> {regions[name]}. {escape(text)}</p>" for name, text in self._sentences.items())
+        self.text.object = with_terms("".join(texts))
 
 
 def _law_line(fit: LawFit | None) -> dict[str, np.ndarray]:

@@ -2,29 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import replace
+from functools import partial
 from html import escape
-from typing import Any
+from typing import Protocol
 
 import panel as pn
 
+from app.browser.formula_box import FormulaBox
+from app.browser.parameter_slider import ParameterSlider
 from app.state.system_review import SystemReview
-from app.views.components.collapsible_section import CollapsibleSection
-from app.views.components.widgets import Slider, button
-from engine import POTENTIALS, PotentialReview, write_formula
-from engine.service import FREQUENCIES, LONGEST_TEXT, PARAMETERS, SHOWN_DIGITS, TYPED, System
+from app.views.components.flex_row import flex_row
+from app.views.components.widgets import StatusPane, button
+from engine import PotentialReview, System, write_formula
+from engine.service import (
+    CATALOGUE,
+    LARGEST_VALUE,
+    LONGEST_TEXT,
+    PARAMETER_RANGES,
+    PARAMETERS,
+    SHOWN_DIGITS,
+    TYPED,
+    formula_letters,
+)
 from plots.mathml import potential_formula
+from plots.palette import MOST_CHANNELS
 
-# Ends of the sliders; links and the command line allow wider ranges.
-_SLIDER = (max(FREQUENCIES[0], 0.2), 2.0)
-_STEP = 0.01
-# A box that cut a longer text at the limit would not say so.
-_MOST_TYPED = 200 * LONGEST_TEXT
+# Ends of the sliders; their boxes, links and the command line allow wider ranges.
+_LOW, _HIGH = 0.2, 2.0
+# Ends of the slider of a letter, unless its value lies beyond their halves.
+_LETTER_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
-    f"Numbers, x, y, r² and + − * / ^ ( ), at most {LONGEST_TEXT} characters, for example 0.5(x^2+y^2) - x^2 y. Enter applies it."
+    f"Numbers, x, y, r², letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
+    "for example 0.5(x^2+y^2) - a x^2 y."
 )
+NEW_INTEGRATOR = (
+    "Press Enter to use it: an integrator for its powers of x and y and its channels is compiled first, which takes some seconds."
+)
+"""What is said of a text that the maps do not follow while it is typed."""
+
+
+class Propose(Protocol):
+    """Called with the system of the widgets."""
+
+    def __call__(self, system: System, *, done: bool) -> None:
+        """`done` is False while the visitor is typing or dragging."""
 
 
 class PotentialPanel:
@@ -34,151 +57,182 @@ class PotentialPanel:
     ----------
     used
         The system of the maps.
-    review
-        Called with the system that is being typed.
-    apply
-        Called with the system that is chosen.
+    propose
+        Called with each system that is chosen, typed, or set by a slider.
     """
 
-    def __init__(self, used: SystemReview, review: Callable[[System], None], apply: Callable[[System], None]) -> None:
-        self._review, self._apply = review, apply
-        self._used = used
+    def __init__(self, used: SystemReview, propose: Propose) -> None:
+        self._propose = propose
         self._moved: str | None = None
-        self._filling = False
+        self.used = used
+        """The system of the maps."""
         self.shown = used.system
         """The system of the widgets; that of the maps may be another one."""
-        known = {f"{entry.title}: {entry.description}": name for name, entry in POTENTIALS.items()}
+        known = {f"{entry.title}: {entry.description}": name for name, entry in CATALOGUE.items()}
         self.known = pn.widgets.Select(
-            label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width"
+            label="Potential", options={**known, "Typed": TYPED}, value="I", sizing_mode="stretch_width", margin=(5, 0)
         )
-        self.formula = pn.widgets.TextInput(
-            label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", max_length=_MOST_TYPED
+        self.formula = FormulaBox(
+            self._take_text, label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", margin=(5, 0)
         )
-        self.sliders = {
-            name: Slider(
-                label=label, start=_SLIDER[0], end=_SLIDER[1], step=_STEP, value=1.0, format="0.00", sizing_mode="stretch_width"
-            )
-            for name, label in PARAMETERS.items()
-        }
-        self.reset = button("Reset to 1", lambda: self._choose(System(self.shown.case, self.shown.formula)))
-        self.message = pn.pane.HTML("", name="potential-message", sizing_mode="stretch_width")
-        self.move = button("Use this well, moved to the origin", self._move, visible=False)
-        self.facts = pn.pane.HTML("", name="potential-facts", sizing_mode="stretch_width")
-        self.section = CollapsibleSection(self._build, "potential")
-        self._connect()
+        self.typeset = pn.pane.HTML("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
+        self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
+        self.move = button("Use this well, moved to the origin", self._move, visible=False, margin=(8, 0))
+        self.sliders = {name: self._make_slider(name) for name in PARAMETERS}
+        self.letter_sliders: dict[str, ParameterSlider] = {}
+        self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.reset = button("Reset to 1", lambda: self._choose(System(self.shown.case, self.shown.formula)), margin=(8, 0))
+        self.facts = pn.pane.HTML("", sizing_mode="stretch_width", margin=0)
+        self._show(used.system)
+        self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
-    def _build(self) -> list[pn.viewable.Viewable]:
-        hint = pn.pane.HTML(f"<span class='quiet'>{_HINT}</span>", margin=(0, 10), sizing_mode="stretch_width")
-        parameters = pn.pane.HTML("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 10, 0, 10), sizing_mode="stretch_width")
-        text = [self.known, self.formula, hint, self.message, self.move]
-        return [*text, parameters, *self.sliders.values(), self.reset, self.facts]
+    def build(self) -> list[pn.viewable.Viewable]:
+        """Parts of a column, those of fixed height first, so that none moves while the formula is typed."""
+        parameters = pn.pane.HTML("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 0), sizing_mode="stretch_width")
+        buttons = flex_row(self.reset, self.move, gap="8px")
+        return [
+            self.known,
+            self.formula,
+            self.typeset,
+            self.message,
+            self.letters,
+            parameters,
+            *self.sliders.values(),
+            buttons,
+            self.facts,
+        ]
+
+    def _make_slider(self, name: str) -> ParameterSlider:
+        (lowest, highest), label = PARAMETER_RANGES[name], PARAMETERS[name]
+        return ParameterSlider(
+            partial(self._slide, name), label=label, low=_LOW, high=_HIGH, lowest=lowest, highest=highest,
+            sizing_mode="stretch_width", margin=(2, 0),
+        )  # fmt: skip
+
+    def _make_letter_slider(self, name: str, value: float) -> ParameterSlider:
+        reach = max(_LETTER_REACH, 2.0 * abs(value))
+        return ParameterSlider(
+            partial(self._slide, name), label=name, low=-reach, high=reach, lowest=-LARGEST_VALUE, highest=LARGEST_VALUE,
+            sizing_mode="stretch_width", margin=(2, 0),
+        )  # fmt: skip
+
+    def _show_letters(self, system: System) -> None:
+        """Show a slider for each letter of the formula; one that stays keeps its range."""
+        letters = _letters(system.formula) if system.case == TYPED else ()
+        if letters != tuple(self.letter_sliders):
+            before = self.letter_sliders
+            self.letter_sliders = {
+                name: before.get(name) or self._make_letter_slider(name, system.parameters.get(name, 1.0)) for name in letters
+            }
+            self.letters.objects = list(self.letter_sliders.values())
+        for name, slider in self.letter_sliders.items():
+            slider.show(system.parameters.get(name, 1.0))
 
     def follow(self, used: SystemReview) -> None:
         """Show the system of the maps."""
-        self._used = used
+        self.used = used
         self._show(used.system)
+        self.show(used)
 
-    def show(self, review: PotentialReview, problem: str | None) -> None:
-        """Show the properties of the potential of the widgets, and why it cannot be used."""
-        self._write(_alert(problem) if problem else self._is_draft("Press Enter to use this potential."))
-        self._offer(review.moved_formula if problem else None)
-        self.facts.object = _summary(review) + _points(review) + _remarks(review)
+    def show(self, reviewed: SystemReview, note: str = _HINT) -> None:
+        """Show the properties of the system of the widgets, and a note or the reason why the maps cannot show it."""
+        review = reviewed.review
+        self.typeset.object = potential_formula(review.potential)
+        passed = f"<p>{_channels(review)}</p><p class='quiet'>{escape(note)}</p>"
+        self._write(_alert(reviewed.problem) if reviewed.problem else passed)
+        self._offer(review.moved_formula if reviewed.problem else None)
+        self.facts.object = _points(review) + _remarks(review)
 
     def wait(self) -> None:
-        """The potential of the widgets is under review."""
+        """The system of the widgets is under review."""
         self._write("<p>Reviewing …</p>")
 
     def say(self, sentence: str) -> None:
-        """Show why the potential of the widgets has no properties."""
+        """Show why the system of the widgets has no properties."""
         self._write(_alert(sentence))
         self._offer(None)
-        self.facts.object = ""
+        self.typeset.object = self.facts.object = ""
 
     def _write(self, message: str) -> None:
-        """Show a message, and what the maps show if it is another potential."""
-        used = self._used
-        self.message.object = message + self._is_draft(f"The maps still show {used.system.title}: V = {used.formula_shown}")
-
-    def _is_draft(self, sentence: str) -> str:
-        """HTML of a sentence if the widgets do not show the potential of the maps, else empty."""
-        return f"<p>{escape(sentence)}</p>" if self.shown != self._used.system else ""
+        """Show a message, and what the maps show if it is another system."""
+        used = self.used
+        shows = f"The maps still show {used.system.title}: V = {used.formula_shown}"
+        draft = f"<p class='quiet'>{escape(shows)}</p>" if self.shown != used.system else ""
+        self.message.object = message + draft
 
     def _offer(self, moved: str | None) -> None:
         self._moved, self.move.visible = moved, moved is not None
 
-    def _connect(self) -> None:
-        self.known.param.watch(lambda event: self._take_known(event.new), "value")
-        self.formula.param.watch(lambda event: self._take_text(event.new, self._review), "value_input")
-        self.formula.param.watch(lambda event: self._take_text(event.new, self._apply), "value")
-        for name, slider in self.sliders.items():
-            slider.param.watch(lambda event, name=name: self._slide(name, event.new), "value_throttled")
-
     def _choose(self, system: System) -> None:
         """Show a system in all widgets, and use it."""
         self._show(system)
-        self._apply(system)
+        self._propose(system, done=True)
 
     def _show(self, system: System) -> None:
-        self.shown = system
-        self._filling = True
-        try:
-            self.formula.param.update(value=_text(system), value_input=_text(system))
-        finally:
-            self._filling = False
-        self._show_around_text()
+        self.formula.show(_text(system))
+        self._show_around_text(system)
 
-    def _show_around_text(self) -> None:
+    def _show_around_text(self, system: System) -> None:
         """Update all widgets but the text, which is being typed."""
-        self.known.value = self.shown.case
+        self.shown = system
+        self.known.value = system.case
         for name, slider in self.sliders.items():
-            slider.value = _on_slider(getattr(self.shown, name))
-        self.reset.disabled = not self.shown.changed
+            slider.show(system.parameters.get(name, 1.0))
+        self.reset.disabled = not system.parameters
+        self._show_letters(system)
 
     def _take_known(self, case: str) -> None:
         if case == self.shown.case:
             return
-        if case == self._used.system.case:
-            self._choose(self._used.system)
+        if case == self.used.system.case:
+            self._choose(self.used.system)
         else:
             # A typed potential starts from the formula of the previous one.
             self._choose(System(case, write_formula(self.shown.potential, SHOWN_DIGITS) if case == TYPED else ""))
 
-    def _take_text(self, text: str, use: Callable[[System], None]) -> None:
-        """Review or use the text that the user typed."""
-        if self._filling:
-            return
-        self.shown = self._used.system if text == _text(self._used.system) else System(TYPED, text)
-        self._show_around_text()
-        use(self.shown)
+    def _take_text(self, text: str, done: bool) -> None:
+        """Propose the text that the visitor types."""
+        used = self.used.system
+        self._show_around_text(used if text == _text(used) else _typed(text, self.shown))
+        self._propose(self.shown, done=done)
 
     def _move(self) -> None:
         if self._moved is not None:
             self._choose(System(TYPED, self._moved))
 
-    def _slide(self, name: str, value: Any) -> None:
-        if value is not None and value != _on_slider(getattr(self.shown, name)):
-            self._choose(System(**(asdict(self.shown) | {name: float(value)})))
+    def _slide(self, name: str, number: float, done: bool) -> None:
+        """Propose the number of a slider."""
+        self._show_around_text(replace(self.shown, parameters={**self.shown.parameters, name: number}))
+        self._propose(self.shown, done=done)
 
 
 def _text(system: System) -> str:
     """The formula of a system without its parameters."""
-    return system.formula if system.case == TYPED else POTENTIALS[system.case].formula
+    return system.formula if system.case == TYPED else CATALOGUE[system.case].formula
 
 
-def _on_slider(value: float) -> float:
-    return min(max(value, _SLIDER[0]), _SLIDER[1])
+def _typed(text: str, before: System) -> System:
+    """A system of a formula, with the parameters of the previous one that it still has."""
+    kept = before.well_parameters | {name: value for name, value in before.parameters.items() if name in _letters(text)}
+    return System(TYPED, text, kept)
+
+
+def _letters(text: str) -> tuple[str, ...]:
+    """The letters of a formula; none while it is not understood."""
+    try:
+        return formula_letters(text)
+    except ValueError:
+        return ()
 
 
 def _alert(sentence: str) -> str:
-    return f"<div class='alert' role='alert'>{escape(sentence)}</div>"
+    return f"<div class='alert'>{escape(sentence)}</div>"
 
 
-def _summary(review: PotentialReview) -> str:
-    """The formula, and the number of channels."""
-    exits = (
-        f"{review.channels} channels above the escape energy h = {review.escape_energy:.6g}" if review.channels else "no channels"
-    )
-    return f"<div style='font-size:18px'>{potential_formula(review.potential)}</div><p>{exits}</p>"
+def _channels(review: PotentialReview) -> str:
+    if not review.channels:
+        return "no channels"
+    return f"{review.channels} channels above the escape energy h = {review.escape_energy:.6g}"
 
 
 def _points(review: PotentialReview) -> str:
@@ -186,7 +240,7 @@ def _points(review: PotentialReview) -> str:
     rows = "".join(
         f"<tr><td>{point.kind.value}</td><td>({point.x:.6g}, {point.y:.6g})</td>"
         f"<td>{point.energy:.6g}</td><td>{point.channel or ''}</td></tr>"
-        for point in review.critical_points
+        for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )
     names = ("critical point", "(x, y)", "V", "channel")
     head = "".join(f"<th scope=col>{name}</th>" for name in names)

@@ -12,15 +12,13 @@ from bokeh.models.dom import HTML
 
 from app.state.help_texts import title_with_help
 from app.views.components.chart_hover import chart_hover
+from app.views.components.copy_button import copy_button
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent, percent_range
-from app.views.components.widgets import button
+from app.views.components.widgets import COUNT_WHOLE, button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
 from plots.palette import PAPER, Palette
-
-BINS = 40
-MOST_CROSSINGS = 15
-"""The escape probability is shown up to this many crossings."""
+from plots.statistics_charts import BINS, MOST_CROSSINGS
 
 CROSSINGS, PROBABILITY = "n", "p"
 """Columns of the second chart."""
@@ -51,8 +49,8 @@ class StatisticsView:
         self._box: Window | None = None
         self._active = False
         self.table = pn.pane.HTML("", name="statistics", sizing_mode="stretch_width")
-        self.whole = button("Count the whole view", on_whole, visible=False)
-        self.copy = button("Copy table", lambda: on_copy(self._text()))
+        self.whole = button(COUNT_WHOLE, on_whole, visible=False)
+        self.copy = copy_button(self._rows, on_copy)
 
     def activate(self, active: bool) -> None:
         """Count while the section is on the page."""
@@ -126,18 +124,17 @@ class StatisticsView:
         caption = f"Interior starts in {place}, with 95 % intervals"
         return f"<table aria-label='statistics'><caption>{caption}</caption>{body}</table>"
 
-    def _text(self) -> str:
-        """The table as tab-separated text, with shares at full precision."""
+    def _rows(self) -> list[tuple[str, ...]]:
+        """The table, with shares at full precision."""
         if self._frame is None:
-            return ""
+            return []
         statistics = compute_statistics(self._frame, self._box)
         shares, intervals = statistics.shares, statistics.share_intervals
-        rows = [("fate", "share", "95 % low", "95 % high")]
+        rows: list[tuple[str, ...]] = [("fate", "share", "95 % low", "95 % high")]
         for name, _, code in self._shares(statistics):
             low, high = intervals[code]
             rows.append((name, repr(shares[code]), repr(low), repr(high)))
-        rows += [(name, value, "", "") for name, value in _facts(statistics).items()]
-        return "\n".join("\t".join(row) for row in rows)
+        return rows + [(name, value, "", "") for name, value in _facts(statistics).items()]
 
 
 def _facts(statistics: EscapeStatistics) -> dict[str, str]:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from html import escape
+
 import panel as pn
 
 from app.state.view_state import IMAGE_CHOICES, LAYERS, Analysis, ViewState
-from app.views.components.widgets import SegmentedControl, Switches, bind
+from app.views.components.widgets import SegmentedControl, Switches, bind, button
 
 LAYER_LABELS = {
     "judge": "Regular or chaotic",
@@ -22,7 +25,8 @@ ANALYSIS_LABELS = {
     Analysis.ORBIT: "Orbit",
     Analysis.STATISTICS: "Statistics",
     Analysis.MEASURES: "Measures",
-    Analysis.ENERGIES: "Energy",
+    Analysis.ENERGIES: "Against",
+    Analysis.WATCH: "Watch",
 }
 """Of the tabs beside the maps."""
 
@@ -62,10 +66,49 @@ class LayerSwitches:
             self._state.param.update({name: on})
 
 
+class ComparisonSwitch:
+    """A switch that compares what is shown later with the present view, and follows the view state.
+
+    Parameters
+    ----------
+    state
+        The view state.
+    compare
+        Called with whether the view is to be compared with the present one.
+    swap
+        Called to exchange the two views.
+    """
+
+    def __init__(self, state: ViewState, compare: Callable[[bool], None], swap: Callable[[], None]) -> None:
+        self._state, self._on = state, ["Compare with this view"]
+        self.switch = Switches(label="Comparison", options=self._on, value=self._value(), margin=(0, 10, 4, 10))
+        self.view = pn.pane.HTML("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
+        self.swap = button("Swap the views", swap, kind="light", margin=(2, 10))
+        self.switch.param.watch(lambda event: self._take(bool(event.new), compare), "value")
+        state.param.watch(lambda event: self._follow(), "compared")
+        self._follow()
+
+    def parts(self) -> list[pn.viewable.Viewable]:
+        """The switch and, while it is on, the other view and the button."""
+        return [self.switch, *([self.view, self.swap] if self._state.compared is not None else [])]
+
+    def _value(self) -> list[str]:
+        return self._on if self._state.compared is not None else []
+
+    def _take(self, on: bool, compare: Callable[[bool], None]) -> None:
+        if on != (self._state.compared is not None):
+            compare(on)
+
+    def _follow(self) -> None:
+        compared = self._state.compared
+        self.switch.value = self._value()
+        self.view.object = escape(compared.title) if compared is not None else ""
+
+
 class AnalysisTabs:
     """A segmented control that writes to the view state and follows it."""
 
     def __init__(self, state: ViewState) -> None:
         options = {label: analysis for analysis, label in ANALYSIS_LABELS.items()}
-        tabs = SegmentedControl(label="Analysis", options=options, margin=(5, 4), css_classes=["segmented", "narrow"])
+        tabs = SegmentedControl(label="Analysis", options=options, margin=(5, 4), css_classes=["segmented", "narrow", "tight"])
         self.tabs = bind(tabs, state, "analysis")

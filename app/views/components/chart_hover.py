@@ -7,14 +7,9 @@ from typing import Any
 
 from bokeh.models import CustomJSHover, GlyphRenderer, HoverTool
 
-FORMATS = {
-    "number": (
-        "const size = Math.abs(value)\n"
-        "return size > 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : String(Number(value.toPrecision(4)))"
-    ),
-    "count": "return String(value).replace(/\\B(?=(\\d{3})+$)/g, ' ')",
-    "percent": "return `${Number((100 * value).toPrecision(3))} %`",
-}
+from app.browser.callbacks import callback_code
+
+FORMATS = {name: callback_code("hover_texts.js", f"{name}(value)") for name in ("number", "count", "percent")}
 """JavaScript that writes a `value`: four digits, a whole number in groups of digits, a share."""
 
 
@@ -33,5 +28,5 @@ def chart_hover(text: str, formats: Mapping[str, str], renderers: Sequence[Glyph
         Of `bokeh.models.HoverTool`.
     """
     formatters = {value: CustomJSHover(code=FORMATS[kind]) for value, kind in formats.items()}
-    tooltips = f'<div style="font-size:11px;line-height:14px;color:#1b1b1b">{text}</div>'
+    tooltips = f'<div style="font-size:11px;line-height:14px;color:var(--ui-ink)">{text}</div>'
     return HoverTool(tooltips=tooltips, formatters=formatters, renderers=list(renderers), visible=False, **options)

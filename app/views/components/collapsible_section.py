@@ -98,12 +98,17 @@ class Drawers(Stack):
     Parameters
     ----------
     drawers
-        Label of the button, title and maker of each drawer, by name.
+        Label of the button, title and maker of each drawer, by name; an empty label for one that is opened elsewhere.
+    on_show
+        Called with whether a drawer is open, when one is opened or closed.
     """
 
-    def __init__(self, drawers: Mapping[str, tuple[str, str, Build]]) -> None:
+    def __init__(
+        self, drawers: Mapping[str, tuple[str, str, Build]], on_show: Callable[[bool], None] = lambda is_open: None
+    ) -> None:
+        self._on_show = on_show
         super().__init__({name: self._with_head(title, build) for name, (_, title, build) in drawers.items()}, "drawer")
-        options = {label: name for name, (label, _, _) in drawers.items()}
+        options = {label: name for name, (label, _, _) in drawers.items() if label}
         self.buttons = pn.widgets.CheckButtonGroup(
             options=options, color="light", margin=0, css_classes=["solid", "drawer-buttons"]
         )
@@ -111,15 +116,22 @@ class Drawers(Stack):
 
     def show(self, name: str | None) -> None:
         """Open a drawer and close the others; None closes all."""
+        before = self.shown
         # In one message: a button pressed between two would be added to the one that is still marked.
         with pn.io.hold():
             super().show(name)
-            self.buttons.value = [] if name is None else [name]
+            self.buttons.value = self._marked()
+            if name != before:
+                self._on_show(name is not None)
 
     def _press(self, event: Any) -> None:
         pressed = [name for name in event.new if name != self.shown]
-        if event.new != ([] if self.shown is None else [self.shown]):
+        if event.new != self._marked():
             self.show(pressed[-1] if pressed else None)
+
+    def _marked(self) -> list[str]:
+        """The buttons to mark: that of the open drawer, if it has one."""
+        return [name for name in self.buttons.options.values() if name == self.shown]
 
     def _with_head(self, title: str, build: Build) -> Build:
         def build_all() -> list[pn.viewable.Viewable]:

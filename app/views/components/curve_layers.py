@@ -77,7 +77,7 @@ class CurveLayers:
         # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
-        energies = [level * spec.potential.escape_energy for level in (1.0, *_LEVELS)] if h is not None else []
+        energies = [spec.potential.energy_at(level) for level in (1.0, *_LEVELS)] if h is not None else []
         critical, *others = trace_equipotentials(spec.potential, spec.plane, energies, window) if energies else [[]]
         self._critical.data = _lines(critical)
         self._levels.data = _lines([line for lines in others for line in lines])
@@ -99,17 +99,11 @@ class CurveLayers:
 
     def entries(self, spec: MapSpec) -> list[Entry]:
         """Legend entries of the curves shown on this plane."""
-        entries = [Entry(f"limiting curve {spec.plane.limiting_curve}", self._inks.limiting_curve)]
+        entries = [Entry(spec.plane.limiting_curve, self._inks.limiting_curve)]
         if spec.common_energy is not None:
-            entries += [Entry("the same at the escape energy", self._inks.critical_equipotential)]
-            entries += [Entry("at other energies", self._inks.equipotential)]
-        if spec.plane.shows_positions:
-            entries += [Entry(f"Lyapunov orbit {k}", self._palette.channels[k - 1]) for k in _open_channels(spec)]
+            entries += [Entry("escape energy", self._inks.critical_equipotential)]
+            entries += [Entry("others", self._inks.equipotential)]
         return entries
-
-
-def _open_channels(spec: MapSpec) -> tuple[int, ...]:
-    return () if spec.common_energy is None else spec.potential.open_channels(spec.common_energy)
 
 
 def _lines(pieces: list[np.ndarray]) -> dict[str, list[np.ndarray]]:

@@ -17,6 +17,12 @@ def legend_items(entries: Iterable[Entry]) -> str:
     return "".join(patch(entry.colour, entry.label) for entry in entries)
 
 
+def chips(entries: Iterable[Entry]) -> str:
+    """HTML of the entries of a legend where there is little room: a number or a word, which the whole label explains."""
+    parts = ((entry, entry.label.removeprefix("channel ").partition(":")[0]) for entry in entries)
+    return "".join(f"<span title='{entry.label}'>{patch(entry.colour, short)}</span>" for entry, short in parts)
+
+
 def legend(entries: Iterable[Entry]) -> str:
     """HTML of a legend that wraps."""
     return f"<div class='legend'>{legend_items(entries)}</div>"
@@ -34,4 +40,4 @@ def passage_legend(palette: Palette, channels: int) -> str:
         for origin in ends
     )
     caption = "<caption>Enters by (rows), leaves by (columns)</caption>"
-    return f"<table class='passages'>{caption}<tr><th></th>{head}</tr>{rows}</table>"
+    return f"<table class='passages'>{caption}<tr><td></td>{head}</tr>{rows}</table>"

@@ -38,7 +38,7 @@ export function render({model, el}) {
   // Enter after the number that was there before is no change.
   input.addEventListener("keydown", event => { if (event.key === "Enter") commit() })
   // The page shows another number, which the server does not know of yet.
-  const show = event => { if (!typing) input.value = String(event.detail) }
+  const show = event => { if (!typing) input.value = String(Number(event.detail.toPrecision(10))) }
   if (model.shown_event) document.addEventListener(model.shown_event, show)
   model.on("lifecycle:remove", () => document.removeEventListener(model.shown_event, show))
   model.on(["label", "step", "disabled", "shown"], follow)

@@ -8,9 +8,15 @@ from typing import Any
 import numpy as np
 from bokeh.models import ColumnDataSource, LinearColorMapper
 
+from plots.histories import ENVELOPE_ALPHA
 from plots.orbit_curves import OrbitCurves
+from plots.palette import MOST_ORBITS
+
+Curve = tuple[np.ndarray, np.ndarray]
+"""Abscissas and ordinates."""
 
 _OTHERS_ALPHA = 0.35
+_NO_AREA = np.full(1, np.nan), np.full(1, np.nan)
 
 
 def in_front(drawings: Sequence[OrbitCurves | None], chosen: int) -> list[tuple[int, OrbitCurves]]:
@@ -29,15 +35,35 @@ def line_style(mapper: LinearColorMapper) -> dict[str, Any]:
     return {"line_color": {"field": "slot", "transform": mapper}, "line_alpha": "alpha", "line_width": 1.5}
 
 
+def band_style(mapper: LinearColorMapper) -> dict[str, Any]:
+    """Style of the envelopes of orbits, each in its colour."""
+    return {"fill_color": {"field": "slot", "transform": mapper}, "fill_alpha": "alpha", "line_color": None}
+
+
 def lines(name: str) -> ColumnDataSource:
     """A source of lines of orbits."""
     return ColumnDataSource({"xs": [], "ys": [], "slot": [], "alpha": []}, name=name)
 
 
+def band_columns(
+    drawings: Sequence[tuple[int, OrbitCurves]], outlines: Sequence[Curve], alphas: Sequence[float]
+) -> dict[str, list[Any]]:
+    """The columns of a source of envelopes: always as many as there can be orbits, some of them without points.
+
+    Bokeh finds what is in view before it has indexed new data, and fails at an envelope that has gone.
+    """
+    missing = MOST_ORBITS - len(drawings)
+    shown = [outline if outline[0].size else _NO_AREA for outline in outlines] + [_NO_AREA] * missing
+    columns = line_columns(drawings, shown, [ENVELOPE_ALPHA * alpha for alpha in alphas])
+    return columns | {"slot": columns["slot"] + [0] * missing, "alpha": columns["alpha"] + [0.0] * missing}
+
+
 def line_columns(
-    drawings: Sequence[tuple[int, OrbitCurves]], curves: Sequence[tuple[np.ndarray, np.ndarray]], alphas: Sequence[float]
-) -> dict[str, list[object]]:
+    drawings: Sequence[tuple[int, OrbitCurves]], curves: Sequence[Curve], alphas: Sequence[float]
+) -> dict[str, list[Any]]:
     """The columns of a source of lines."""
-    slots: list[object] = [slot for slot, _ in drawings]
-    xs, ys = ([line[axis].astype(np.float32) for line in curves] for axis in (0, 1))
-    return {"xs": [*xs], "ys": [*ys], "slot": slots, "alpha": [*alphas]}
+    return {"xs": _axis(curves, 0), "ys": _axis(curves, 1), "slot": [slot for slot, _ in drawings], "alpha": [*alphas]}
+
+
+def _axis(curves: Sequence[Curve], axis: int) -> list[Any]:
+    return [curve[axis].astype(np.float32) for curve in curves]

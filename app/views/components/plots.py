@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from types import MappingProxyType
 from typing import Any
@@ -11,29 +11,71 @@ from typing import Any
 import panel as pn
 from bokeh.events import Event
 from bokeh.model import Model
-from bokeh.models import Range1d
+from bokeh.models import BasicTickFormatter, CustomJSTickFormatter, Range1d
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
+from app.browser.callbacks import callback_code
 from app.state.help_texts import title_with_help
+from engine import Window
+from plots.axis_labels import find_offset
+
+_OFFSET_LABEL = callback_code("offset_ticks.js", "offsetLabel(tick, base, unit)")
+
+HISTORY_ASPECT = 1.9
+"""Width over height of the figures against the time of orbits."""
 
 # Left and right, above and below of the frame together take the same space, so that a square figure has a square frame.
 _CHART_BORDERS = {"min_border_left": 58, "min_border_right": 10, "min_border_top": 28, "min_border_bottom": 40}
 
-# The title and the names of the axes of a map stand in its frame.
-_MAP_BORDERS = {"min_border_left": 40, "min_border_right": 4, "min_border_top": 16, "min_border_bottom": 28}
+# The title, the legend and the names of the axes of a picture stand in its frame.
+_PICTURE_BORDERS = {"min_border_left": 44, "min_border_right": 1, "min_border_top": 17, "min_border_bottom": 28}
+
+# Labels of two decimals fit into the left border; longer ones would make the frame narrower than it is high.
+_FINEST_LABEL = -2
+
+# A small picture has no axes.
+_THUMBNAIL_BORDERS = dict.fromkeys(_PICTURE_BORDERS, 2)
 
 
 def map_figure(name: str, title: str, x: Range1d, y: Range1d) -> figure:
-    """A square figure of a map, as `square_figure`; `name_axes` names its axes."""
-    return square_figure(name, title, x_range=x, y_range=y, **_MAP_BORDERS)
+    """A square figure of a picture, as `square_figure`; `annotate_picture` writes into its frame."""
+    # Frames that are aligned with those of larger pictures would not be square.
+    return square_figure(name, title, x_range=x, y_range=y, frame_align=False, **_PICTURE_BORDERS)
 
 
-def name_axes(plot: figure, title: str, names: tuple[str, str]) -> None:
-    """Write the title of a map and the names of its axes into its frame."""
-    html = f"{title_with_help(title, plot.name)}<i class='axis-names'>{names[1]} ↑ {names[0]} →</i>"
+def set_thumbnail(plot: figure, small: bool) -> None:
+    """Draw a picture without its axes, or with them again."""
+    for axis in (*plot.below, *plot.left):
+        axis.visible = not small
+    plot.update(**(_THUMBNAIL_BORDERS if small else _PICTURE_BORDERS))
+
+
+def annotate_picture(plot: figure, title: str, names: tuple[str, str], legend: str, notes: Sequence[str] = ()) -> None:
+    """Write the title of a picture, its legend (HTML) and notes into its frame, and the names of its axes above it."""
+    enlarge = f"Enlarge, or show all: {title}"
+    html = (
+        f"{title_with_help(title, plot.name)}"
+        f"<button type='button' class='enlarge' data-picture='{plot.name}' aria-label='{enlarge}' title='{enlarge}'></button>"
+        f"<i class='axis-names'>{names[1]} ↑ {names[0]} →</i><div class='foot' data-picture='{plot.name}'>{legend}"
+        f"{''.join(f'<span>{note}</span>' for note in notes)}</div>"
+    )
     if plot.elements[0].html != html:
         plot.elements = [HTML(html=html)]
+
+
+def label_axes(plots: Iterable[figure], names: tuple[str, str], window: Window) -> list[str]:
+    """Label the axes of pictures of a window; returns what the labels are where they are not plain numbers."""
+    edges = (window.x_low, window.x_high), (window.ordinate_low, window.ordinate_high)
+    offsets = [find_offset(low, high, _FINEST_LABEL) for low, high in edges]
+    for plot in plots:
+        for axis, offset in zip((plot.below[0], plot.left[0]), offsets, strict=True):
+            if offset is not None:
+                numbers = {"base": float(offset.base), "unit": 10.0**offset.exponent}
+                axis.formatter = CustomJSTickFormatter(args=numbers, code=_OFFSET_LABEL)
+            elif isinstance(axis.formatter, CustomJSTickFormatter):
+                axis.formatter = BasicTickFormatter()
+    return [f"Labels: {offset.describe(name)}" for name, offset in zip(names, offsets, strict=True) if offset is not None]
 
 
 def square_figure(name: str, title: str, **options: Any) -> figure:
@@ -54,7 +96,7 @@ def square_figure(name: str, title: str, **options: Any) -> figure:
     # `plot.axis` would search all models of the figure for each attribute.
     for axis in (*plot.below, *plot.left):
         axis.update(axis_label_text_font_size="12px", major_label_text_font_size="11px", axis_label_text_font_style="normal")
-        axis.update(major_tick_line_color=None, minor_tick_line_color=None)
+        axis.update(major_tick_line_color=None, major_tick_out=2, minor_tick_line_color=None, minor_tick_out=0)
     plot.background_fill_alpha = plot.border_fill_alpha = 0.0
     plot.css_classes = [name]
     plot.elements = [HTML(html=title_with_help(title, name))]

@@ -1,4 +1,4 @@
-"""Progress of the map: a bar, a line of text, and the button that stops or continues it."""
+"""Progress of the map: a bar, a line of text, and the button that stops or continues it, or offers to test its pixels."""
 
 from __future__ import annotations
 
@@ -9,13 +9,17 @@ from collections.abc import Callable
 import numpy as np
 import panel as pn
 
+from app.state.glossary import with_terms
+from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.components.numbers import grouped, percent
-from app.views.components.widgets import button
+from app.views.components.widgets import button, keep_place
 from engine import Certificate, EscapeMap, Fate
+from engine.service import format_number
 
-STOP, CONTINUE = "Stop", "Continue"
-# Styles: a change of `visible` would have the browser lay out the page, figures included, twice for each map.
-_SHOWN, _HIDDEN = {"visibility": "visible"}, {"visibility": "hidden"}
+STOP, CONTINUE, TEST = "Stop", "Continue", LAYER_LABELS["trust"]
+
+# Share of pixels lost to rounding from which the text says so.
+_NOTED_SHARE = 0.01
 
 
 class ProgressView:
@@ -25,16 +29,17 @@ class ProgressView:
     ----------
     on_cancel, on_resume
         Called when the button is pressed while the map is computed, and after it has been stopped.
+    on_test
+        Called when the button is pressed of a map that double precision does not support.
     """
 
-    def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None]) -> None:
-        self._on_cancel, self._on_resume = on_cancel, on_resume
-        self._running = False
+    def __init__(self, on_cancel: Callable[[], None], on_resume: Callable[[], None], on_test: Callable[[], None]) -> None:
+        self._actions = {STOP: on_cancel, CONTINUE: on_resume, TEST: on_test}
         # Time and undecided share at the beginning of the last stage.
         self._last_stage: tuple[float, float] | None = None
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
         self.text = pn.pane.HTML("", name="progress", margin=0, css_classes=["status"])
-        self.button = button(STOP, self._press, margin=0, styles=_HIDDEN)
+        self.button = button(STOP, self._press, margin=0, styles=keep_place(shown=False), css_classes=["solid", "stop"])
 
     def layout(self) -> list[pn.viewable.Viewable]:
         """The text and the button that stand in one line."""
@@ -56,24 +61,23 @@ class ProgressView:
 
     def show(self, frame: EscapeMap) -> None:
         """Show how far a frame is, and the shares of a complete map."""
-        text = _result(frame) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
-        self._set(running=not frame.complete, label=STOP, text=text)
+        text = with_terms(_result(frame)) if frame.complete else f"{_stage(frame)}{self._time_left(frame)}"
+        offers_test = _is_rounded(frame)
+        self._set(running=not frame.complete, label=TEST if offers_test else STOP, text=text)
+        self.button.styles = keep_place(shown=offers_test or not frame.complete)
         self.bar.value = int(100 * frame.progress)
 
     def stop(self) -> None:
         """The map is stopped and can be continued."""
         self._set(running=False, label=CONTINUE, text=f"Stopped: {self.text.object}")
-        self.button.styles = _SHOWN
+        self.button.styles = keep_place(shown=True)
 
     def fail(self) -> None:
         """There is no map; the last picture stays."""
         self._set(running=False, label=STOP, text="")
 
     def _press(self) -> None:
-        if self._running:
-            self._on_cancel()
-        else:
-            self._on_resume()
+        self._actions[self.button.label]()
 
     def _time_left(self, frame: EscapeMap) -> str:
         """Estimate from the share of pixels that the last stage, which takes most of the time, has decided so far."""
@@ -88,9 +92,8 @@ class ProgressView:
         return f", about {math.ceil(left)} s left"
 
     def _set(self, *, running: bool, label: str, text: str) -> None:
-        self._running = running
         self.bar.styles = {"opacity": "1" if running else "0"}
-        self.button.param.update(label=label, styles=_SHOWN if running else _HIDDEN)
+        self.button.param.update(label=label, styles=keep_place(shown=running))
         self.text.object = text
 
 
@@ -104,12 +107,26 @@ def _stage(frame: EscapeMap) -> str:
 def _result(frame: EscapeMap) -> str:
     """Shares and accuracy of a complete map."""
     shares = frame.fractions()
-    channels = (f"channel {k} {percent(shares[k])}" for k in range(1, frame.spec.potential.channels + 1))
-    bounded = f"bounded {percent(shares[Fate.BOUNDED])}{_certified(frame)}"
+    last = frame.spec.channels
+    # A share is not broken over two lines.
+    parts = [percent(shares[k]).replace(" ", "\N{NO-BREAK SPACE}") for k in (*range(1, last + 1), Fate.BOUNDED)]
+    escapes = f"channel{f's 1 to {last}' if last > 1 else ' 1'}: {', '.join(parts[:-1])}, " if last else ""
     return (
-        f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {', '.join((*channels, bounded))}. "
-        f"Largest energy error {frame.worst_energy_error:.1e}."
+        f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {escapes}bounded {parts[-1]}{_certified(frame)}. "
+        f"Energy error ≤ {format_number(frame.worst_energy_error, 2)}.{_rounding(frame)}"
     )
+
+
+def _is_rounded(frame: EscapeMap) -> bool:
+    return frame.rounded_share is not None and frame.rounded_share >= _NOTED_SHARE
+
+
+def _rounding(frame: EscapeMap) -> str:
+    """A warning of a deep zoom whose pixels double precision does not support."""
+    if not _is_rounded(frame):
+        return ""
+    assert frame.rounded_share is not None
+    return f" At the limit of double precision: about {percent(frame.rounded_share, 0)} of the pixels depend on rounding errors."
 
 
 def _certified(frame: EscapeMap) -> str:

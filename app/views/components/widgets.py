@@ -9,6 +9,9 @@ import panel as pn
 import param
 from bokeh.document import Document
 
+COUNT_WHOLE = "Count the whole view"
+"""Label of the buttons that remove the box."""
+
 
 class _NamedGroup:
     """Mixin: the widget's element gets a role and its label as accessible name, which Bokeh does not set."""
@@ -45,12 +48,11 @@ class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
         super().__init__(inline=True, css_classes=["switches"], **options)
 
 
-class Slider(_NamedGroup, pn.widgets.FloatSlider):
-    """A slider for a real number: `value` follows the thumb, `value_throttled` changes on release."""
+class StatusPane(pn.pane.HTML):
+    """Text whose changes screen readers read out when they have finished what they are reading."""
 
-
-class NamedPlayer(_NamedGroup, pn.widgets.Player):
-    """A player whose buttons are named by the stylesheet."""
+    def _get_properties(self, doc: Document | None) -> dict[str, Any]:
+        return {**super()._get_properties(doc), "html_attributes": {"role": "status"}}
 
 
 def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:
@@ -58,6 +60,11 @@ def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **
     widget = pn.widgets.Button(label=label, color=kind, **options)
     widget.on_click(lambda event: on_click())
     return widget
+
+
+def keep_place(*, shown: bool) -> dict[str, str]:
+    """Styles of a part that keeps its place while it is hidden: the browser does not lay out the page again."""
+    return {"visibility": "visible" if shown else "hidden"}
 
 
 def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, name: str) -> Bound:

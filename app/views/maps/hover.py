@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
+from app.browser.callbacks import callback_code
 from engine import Certificate, Fate, Regularity, Trust
 from engine.service import describe_certificate
 from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
@@ -23,42 +24,39 @@ CHARACTER = {
 }
 """What is known of a bounded orbit while the layer "Regular or chaotic" is on."""
 
-# Columns of layers that are off, and of maps that they are not computed for, have other sizes.
-_DETAILS = """
-const {flat_index} = special_vars.image_index
-const fates = source.data.fate[0]
-const known = image => image?.length === fates.length ? image[flat_index] : undefined
-const fate = fates[flat_index]
-if (fate < bounded) return ""
-const lines = []
-const time = source.data.escape_time[0][flat_index]
-const crossings = source.data.crossings[0][flat_index]
-if (Number.isFinite(time)) lines.push(`escape time ${time.toPrecision(5)}`)
-if (fate > bounded) lines.push(`${crossings} upward ${crossings == 1 ? "crossing" : "crossings"} of y = 0`)
-else lines.push(certificates[source.data.crossing_class[0][flat_index] - first_certificate])
-lines.push(characters[known(source.data.character[0]) - first])
-const passage = known(source.data.passage[0]) - first
-if (passage >= 0) {
-  const origin = Math.floor(passage / ends)
-  lines.push(origin > 0 ? `entered through channel ${origin}` : "never entered: inside since −t_max")
-}
-lines.push(trusts[known(doubts.data.trust[0])])
-return lines.filter(line => line).join("\\n")
-"""
+_COLUMNS = "{maps: maps.data, doubts: doubts.data, compared: compared.data}"
+_DETAILS = callback_code("hover_texts.js", f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
+_PLACE = callback_code("hover_texts.js", "coordinate(value, range)")
 
-# Enough decimals to distinguish neighbouring pixels.
-_PLACE = """
-const decimals = Math.min(Math.max(Math.ceil(3 - Math.log10(range.end - range.start)), 2), 17)
-return value.toFixed(decimals)
-"""
-
+_DETAILS_TEXT = '<div style="white-space:pre-line">@crossing_class{custom}</div>'
 _TEXT = (
-    '<div style="font-size:11px;line-height:14px;color:#1b1b1b"><b>@fate{custom}</b>'
-    '<div style="white-space:pre-line">@crossing_class{custom}</div>($x{custom}, $y{custom})</div>'
+    '<div style="font-size:12px;line-height:16px;color:var(--ui-ink)"><b>@fate{{custom}}</b>'
+    "{details}<div>($x{{custom}}, $y{{custom}})</div></div>"
 )
 
 
-def pixel_hover(source: ColumnDataSource, doubts: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
+_FATES = [*OUTCOMES.values(), *(f"escapes through channel {k + 1}" for k in range(len(PAPER.channels)))]
+
+
+def fate_hover(x: Range1d, ordinate: Range1d) -> HoverTool:
+    """A tool that says how the orbit under the mouse ends; the caller adds images of the codes of fates to its renderers."""
+    formatters = _fate_and_place(x, ordinate)
+    return HoverTool(
+        tooltips=_TEXT.format(details=""), formatters=formatters, attachment="vertical", show_arrow=False, renderers=[]
+    )
+
+
+def _fate_and_place(x: Range1d, ordinate: Range1d) -> dict[str, CustomJSHover]:
+    return {
+        "@fate": CustomJSHover(args={"names": _FATES}, code="return names[value] ?? names[0]"),
+        "$x": CustomJSHover(args={"range": x}, code=_PLACE),
+        "$y": CustomJSHover(args={"range": ordinate}, code=_PLACE),
+    }
+
+
+def pixel_hover(
+    source: ColumnDataSource, doubts: ColumnDataSource, compared: ColumnDataSource, x: Range1d, ordinate: Range1d
+) -> HoverTool:
     """A tool that describes the orbit under the mouse; the caller adds to its renderers.
 
     One formatter reads all columns, as Bokeh does not call formatters for NaN, the escape time of bounded orbits.
@@ -69,25 +67,24 @@ def pixel_hover(source: ColumnDataSource, doubts: ColumnDataSource, x: Range1d, 
         Columns of `plots.image_columns.map_columns`.
     doubts
         Column ``trust`` of `Trust` codes; empty while that layer is off.
+    compared
+        Pixels of the view with which this one is compared.
     x, ordinate
         Ranges of the pictures.
     """
-    names = [*OUTCOMES.values(), *(f"escapes through channel {k + 1}" for k in range(len(PAPER.channels)))]
-    arguments = {
-        "source": source,
-        "doubts": doubts,
+    codes = {
         "bounded": list(OUTCOMES).index(Fate.BOUNDED),
+        "first": len(OUTCOMES),
+        "firstCertificate": len(OUTCOMES) + len(CROSSING_CLASSES),
+        "ends": MOST_CHANNELS + 1,
+    }
+    words = {
         "certificates": [describe_certificate(code) for code in Certificate],
         "characters": [CHARACTER.get(code, "") for code in Regularity],
         "trusts": [TRUST.get(code, "") for code in Trust],
-        "first": len(OUTCOMES),
-        "first_certificate": len(OUTCOMES) + len(CROSSING_CLASSES),
-        "ends": MOST_CHANNELS + 1,
+        "fates": _FATES,
     }
-    formatters = {
-        "@fate": CustomJSHover(args={"names": names}, code="return names[value] ?? names[0]"),
-        "@crossing_class": CustomJSHover(args=arguments, code=_DETAILS),
-        "$x": CustomJSHover(args={"range": x}, code=_PLACE),
-        "$y": CustomJSHover(args={"range": ordinate}, code=_PLACE),
-    }
-    return HoverTool(tooltips=_TEXT, formatters=formatters, attachment="vertical", renderers=[])
+    arguments = {"maps": source, "doubts": doubts, "compared": compared, "codes": codes, "words": words}
+    formatters = _fate_and_place(x, ordinate) | {"@crossing_class": CustomJSHover(args=arguments, code=_DETAILS)}
+    text = _TEXT.format(details=_DETAILS_TEXT)
+    return HoverTool(tooltips=text, formatters=formatters, attachment="vertical", show_arrow=False, renderers=[])

@@ -1,76 +1,105 @@
-"""The legend of all maps."""
+"""The legend of each map, which stands in its frame."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
+from html import escape
 
-import panel as pn
-
-from app.views.components.legends import legend_items, passage_legend
+from app.views.components.legends import chips, legend_items, passage_legend
 from app.views.components.numbers import grouped
-from engine import Fate, MapSpec
-from plots.map_images import SHORTEST_TIME
+from engine import MapSpec
 from plots.palette import Entry, Palette
+from plots.time_scale import TimeScale
 
 _STEPS = 12
 
 
-class MapLegend:
-    """Groups of entries: exits, escape times, crossings, curves, and what the layers add."""
+@dataclass(frozen=True)
+class OtherView:
+    """The view with which a map is compared.
 
-    def __init__(self) -> None:
-        self.pane = pn.pane.HTML("", name="legend", sizing_mode="stretch_width", margin=(0, 10), css_classes=["map-legend"])
+    Attributes
+    ----------
+    title
+        The view in words.
+    channels
+        Number of its channels.
+    axes
+        Symbols of its axes.
+    """
 
-    def show(
-        self,
-        spec: MapSpec,
-        palette: Palette,
-        longest: float,
-        curves: Iterable[Entry],
-        *,
-        regularity: str | None = None,
-        origins: bool = False,
-        locked: bool = False,
-    ) -> None:
-        """Describe a map.
-
-        Parameters
-        ----------
-        spec
-            The map.
-        palette
-            Its colours.
-        longest
-            Escape time at the end of the colour scale; longer ones have the last colour.
-        curves
-            Entries of the curves and overlays.
-        regularity
-            Result of the analysis of bounded orbits; None while that picture is not shown.
-        origins
-            Whether the picture of origins and exits is shown.
-        locked
-            Whether the escape times keep their scale.
-        """
-        outcomes = palette.outcomes
-        groups = {
-            "Exit": legend_items([*palette.channel_entries(spec.potential.channels), outcomes[Fate.BOUNDED]]),
-            "Escape time": _colour_scale(palette, longest, locked=locked),
-            "Crossings": legend_items(palette.crossing_entries),
-            "Other starts": legend_items([outcomes[fate] for fate in (Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED)]),
-            "Curves": legend_items(curves),
-        }
-        if regularity is not None:
-            groups["Bounded orbits"] = f"{legend_items(palette.character_entries[1:])} <span>{regularity}</span>"
-        body = "".join(f"<div><b>{name}</b> {items}</div>" for name, items in groups.items() if items)
-        self.pane.object = f"<div class='legend'>{body}</div>" + (
-            passage_legend(palette, spec.potential.channels) if origins else ""
-        )
+    title: str
+    channels: int
+    axes: tuple[str, str]
 
 
-def _colour_scale(palette: Palette, longest: float, *, locked: bool) -> str:
+@dataclass(frozen=True)
+class Described:
+    """What the legends of a map depend on.
+
+    Attributes
+    ----------
+    spec
+        The map.
+    palette
+        Its colours.
+    times
+        Scale of the escape times.
+    locked
+        Whether the escape times keep their scale.
+    regularity
+        Result of the analysis of bounded orbits, in words.
+    fates
+        Outcomes that the map has.
+    other
+        The view with which it is compared; None for none.
+    """
+
+    spec: MapSpec
+    palette: Palette
+    times: TimeScale
+    locked: bool
+    regularity: str
+    fates: frozenset[int]
+    other: OtherView | None = None
+
+
+def map_legend(name: str, described: Described, overlays: Iterable[Entry]) -> str:
+    """HTML of the legend of a map, by the name of its picture, with the entries of what is drawn over it."""
+    palette, channels = described.palette, described.spec.channels
+    outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in described.fates]
+    items = {
+        "basins": lambda: chips([*palette.channel_entries(channels), *outcomes]),
+        "times": lambda: _colour_scale(palette, described.times, locked=described.locked),
+        "crossings": lambda: legend_items(palette.crossing_entries),
+        "characters": lambda: f"{legend_items(palette.character_entries[1:])} <span>{described.regularity}</span>",
+        "origins": lambda: passage_legend(palette, channels),
+        "compared": lambda: _other_legend(palette, described.other),
+        "differences": lambda: _difference_legend(described),
+    }[name]()
+    return f"<div class='legend'>{items}{legend_items(overlays)}</div>"
+
+
+def _other_legend(palette: Palette, other: OtherView | None) -> str:
+    """The channels of the other view, and its title."""
+    return f"{chips(palette.channel_entries(other.channels))} <span>{escape(other.title)}</span>" if other is not None else "…"
+
+
+def _difference_legend(described: Described) -> str:
+    """The classes of pixels, or why they are not compared."""
+    if described.other is not None and described.other.axes != described.spec.plane.axis_symbols:
+        return "<span>Other axes: pixels are not compared.</span>"
+    return legend_items(described.palette.difference_entries)
+
+
+def _colour_scale(palette: Palette, times: TimeScale, *, locked: bool) -> str:
     """The logarithmic scale of escape times; the colours at its ends stand for all shorter and all longer times."""
     colours = palette.escape_time
     stops = ",".join(colours[round(step * (len(colours) - 1) / _STEPS)] for step in range(_STEPS + 1))
     bar = f"<i class='scale' style='background:linear-gradient(90deg,{stops})'></i>"
-    kind = "logarithmic, locked" if locked else "logarithmic"
-    return f"<span>≤ {SHORTEST_TIME:g} {bar} ≥ {grouped(longest)}</span>({kind})"
+    return f"<span>≤ {_shown(times.low)} {bar} ≥ {_shown(times.high)}{' (locked)' if locked else ''}</span>"
+
+
+def _shown(time: float) -> str:
+    return grouped(time) if time == round(time) else f"{time:g}"

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import astuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.events import DoubleTap, Event, PinchEnd, PointEvent, RangesUpdate, SelectionGeometry, Tap
 from bokeh.models import (
     BoxSelectTool,
@@ -20,139 +19,120 @@ from bokeh.models import (
     LinearColorMapper,
     LogColorMapper,
     PanTool,
-    Range1d,
     Span,
     Toolbar,
     WheelZoomTool,
 )  # fmt: skip
 from bokeh.plotting import figure
 
+from app.state.view_state import PICTURES
 from app.views.components.curve_layers import CurveLayers
-from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.numbers import percent
-from app.views.components.plots import FigurePane, map_figure, name_axes
-from app.views.components.widgets import SegmentedControl
+from app.views.components.plots import FigurePane, annotate_picture, label_axes, map_figure
+from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
-from app.views.maps.map_legend import MapLegend
+from app.views.maps.map_legend import Described, map_legend
+from app.views.maps.map_ranges import MapRanges
 from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
+from app.views.maps.picture_grid import PictureGrid
 from app.views.maps.two_fingers import TwoFingers
 from app.views.maps.well import WellView
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
-from plots.image_columns import NO_LAYER, character_column, longest_typical_time, passage_column
-from plots.map_images import CROSSED_BY_MANIFOLDS, DOUBTED, ON_DEMAND, PAINTED, SHORTEST_TIME, TITLES
+from engine.service import format_number
+from plots.image_columns import NO_LAYER, character_column, passage_column
+from plots.map_images import COMPARISON_TITLES, CROSSED_BY_MANIFOLDS, DOUBTED, PAINTED, TITLES
 from plots.palette import PAPER, Palette
+from plots.time_scale import WITHOUT_ESCAPES, TimeScale, fitted_scale
 
-MAPS = tuple(name for name in TITLES if name != "curves")
-"""The pictures of starts; beside them stands the well."""
+MAPS = tuple(name for name in PICTURES if name != "well")
+"""The maps of starts; beside them stands the well."""
 
-SHORT_TITLES = {
-    "well": "Well",
-    "basins": "Basins",
-    "times": "Times",
-    "crossings": "Crossings",
-    "characters": "Chaos",
-    "origins": "Origins",
-}
-"""Titles of the pictures where there is little room."""
+PICTURES_ALONE = ("well", "basins", "times", "crossings")
+"""The pictures of a view without layers, in their order on the page."""
 
-GESTURE_PAUSE_MS = 500
-"""Drags and steps of the wheel that follow each other within this time are one entry of the browser's history."""
+PICTURES_COMPARED = ("basins", "compared", "well", "differences")
+"""Those of a view that is compared with another one."""
 
-REST_MS = 90
-"""A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
+_TITLES = TITLES | COMPARISON_TITLES
+
+
+# A window that is hardly smaller than the whole interior, such as that of a neighbouring energy, is not called enlarged.
+_LEAST_MAGNIFICATION = 1.5
+
+
+@dataclass(frozen=True)
+class MapActions:
+    """What a hand does on the maps.
+
+    Attributes
+    ----------
+    tap
+        Called with x and ordinate of the pixel clicked.
+    dive
+        Called with x and ordinate of a point clicked twice, after `tap`.
+    zoom
+        Called with the window when the ranges have stopped changing; None is the whole interior.
+    rest
+        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
+    box
+        Called with the box that is drawn to count in.
+    choose
+        Called with the name of the picture that is chosen to be shown large.
+    """
+
+    tap: Callable[[float, float], None]
+    dive: Callable[[float, float], None]
+    zoom: Callable[[Window | None], None]
+    rest: Callable[[], None]
+    box: Callable[[Window], None]
+    choose: Callable[[str], None]
 
 
 class MapsView:
-    """Draws frames of maps, and the marks over them.
+    """Draws frames of maps, and the marks over them; `alone` as of `PictureGrid`."""
 
-    Parameters
-    ----------
-    on_tap
-        Called with x and ordinate of the pixel clicked.
-    on_zoom
-        Called with the window when the ranges have stopped changing; None is the whole interior.
-    on_rest
-        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
-    on_box
-        Called with the box that is drawn to count in.
-    """
-
-    def __init__(
-        self,
-        on_tap: Callable[[float, float], None],
-        on_zoom: Callable[[Window | None], None],
-        on_rest: Callable[[], None],
-        on_box: Callable[[Window], None],
-    ) -> None:
+    def __init__(self, actions: MapActions, *, alone: bool = False) -> None:
+        self._actions = actions
         self.source = ColumnDataSource(_blank(), name="maps")
         self.well, self.outlines, self.overlays, self.marks = WellView(), CurveLayers(), Overlays(), Markers()
         self._palette = PAPER
-        self._time_mapper = LogColorMapper(low=SHORTEST_TIME, high=100.0, nan_color="rgba(0,0,0,0)")
-        # Upper ends of the scale of escape times: of the map in view, and the one that is kept instead.
-        self._typical_time: float = self._time_mapper.high
-        self._locked_time: float | None = None
+        self._time_mapper = LogColorMapper(nan_color="rgba(0,0,0,0)")
+        # Scales of the escape times: that of the map in view, and the one that is kept instead.
+        self._fitted_times = WITHOUT_ESCAPES
+        self._locked_times: TimeScale | None = None
         self._mappers = {name: LinearColorMapper() for name in MAPS}
         self._spec: MapSpec | None = None
         self._regularity_text = ""
-        self._home: Window | None = None
-        self._rest_timer: Any = None
-        self._gesture_timer: Any = None
-        self._following = False
-        self._on_zoom, self._on_rest = on_zoom, on_rest
-        self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
-        self._hover = pixel_hover(self.source, self.overlays.doubts, *self._ranges)
-        self._fingers = TwoFingers(*self._ranges)
+        self._fates: frozenset[int] = frozenset()
+        self.ranges = MapRanges(actions.zoom, actions.rest)
+        edges = self.ranges.x, self.ranges.ordinate
+        self.compared = ComparedMap(self.ranges)
+        self._hover = pixel_hover(self.source, self.overlays.doubts, self.compared.source, *edges)
+        self._fingers = TwoFingers(*edges)
         self._drags: dict[Drag, Any] = {Drag.PAN: PanTool()}
-        self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover)
-        self._on_tap, self._on_box = on_tap, on_box
+        self._toolbar = _toolbar(self._drags[Drag.PAN], self._hover, self.compared.hover)
+        self._last_tap: tuple[float, float] | None = None
         self.figures: dict[str, figure] = {}
-        self._panes: dict[str, pn.pane.Bokeh] = {}
-        for edges in self._ranges:
-            edges.on_change("start", self._moved)
-            edges.on_change("end", self._moved)
-        self.legend = MapLegend()
-        self.picker = SegmentedControl(label="Map", value="basins", css_classes=["segmented", "map-picker"], visible=False)
-        self.picker.param.watch(lambda event: self._pick(), "value")
-        self._grid = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["maps"])
+        self._panes: dict[str, FigurePane] = {"well": self.well.pane}
+        self.grid = PictureGrid(actions.choose, alone=alone)
         self.set_palette(PAPER)
 
-    def layout(self) -> list[pn.viewable.Viewable]:
-        """The pictures and their legend."""
-        return [self._grid, self.legend.pane]
-
-    def show_pictures(self, on_demand: frozenset[str]) -> None:
-        """Show some of the pictures `ON_DEMAND` beside the others."""
-        shown = [name for name in MAPS if name in on_demand or name not in ON_DEMAND]
-        for name in shown:
-            if name not in self.figures:
+    def show_pictures(self, names: Sequence[str]) -> None:
+        """Show some of `PICTURES`, in this order."""
+        for name in names:
+            if name not in self._panes:
                 self._build(name)
-        # Hidden pictures would still be painted with every frame.
-        self._grid.objects = [*self._picker(), self.well.pane, *(self._panes[name] for name in shown)]
-        self._set_class("many", len(shown) > 3)
-        offered = ["well", *shown]
-        picked = self.picker.value if self.picker.value in offered else "basins"
-        self.picker.param.update(options={SHORT_TITLES[name]: name for name in offered}, value=picked)
-        self._pick()
+        self.grid.show({name: self._panes[name] for name in names})
         self.describe()
 
-    def mark_stale(self, stale: bool) -> None:
-        """Grey the pictures out while they do not belong to the controls, or show them as they are."""
-        self._set_class("stale", stale)
-
-    def _set_class(self, name: str, on: bool) -> None:
-        """Set or remove a class of the grid in the stylesheet."""
-        others = [each for each in self._grid.css_classes if each != name]
-        self._grid.css_classes = [*others, name] if on else others
-
     def begin_touch(self) -> None:
-        """The page is used by touch: on a narrow screen one picture is shown, chosen with the picker."""
+        """The page is used by touch: two fingers zoom, and on a narrow screen one picture is shown."""
         # The wheel's tool would answer to two fingers, too.
         others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
         self._toolbar.update(tools=others, active_scroll=None)
-        self.picker.visible = True
-        self._grid.objects = [*self._picker(), *self._grid.objects]
+        self.grid.begin_touch()
 
     def set_drag(self, drag: Drag) -> None:
         """Choose what dragging over a picture does."""
@@ -164,27 +144,38 @@ class MapsView:
     def show(self, frame: EscapeMap, columns: dict[str, list[Any]]) -> None:
         """Paint a frame; the ranges follow a new window."""
         if frame.spec != self._spec:
-            self._follow(frame.spec)
+            self.ranges.follow(frame.spec.find_window())
             self._spec, self._regularity_text = frame.spec, ""
             self.describe()
         if frame.stride == 1:
-            self._typical_time = longest_typical_time(frame)
-            self._scale_times()
-        self.source.data = columns
+            self._fitted_times = fitted_scale(frame)
+        self._fates = frozenset(np.unique(frame.fate).tolist())
+        self._scale_times()
+        self.source.data = columns | self.compared.difference(columns, frame.spec.plane)
+
+    def show_compared(self, frame: EscapeMap | None, title: str = "") -> None:
+        """Show the map of another view with its title, or none."""
+        if frame is None:
+            self.compared.remove()
+        else:
+            self.compared.show(frame, title)
+        if self._spec is not None:
+            self.source.data = self.source.data | self.compared.difference(self.source.data, self._spec.plane)
+        self._show_legends()
 
     @property
-    def longest_time(self) -> float:
-        """Upper end of the scale of escape times."""
-        return float(self._time_mapper.high)
+    def times(self) -> TimeScale:
+        """Scale of the escape times."""
+        return self._locked_times or self._fitted_times
 
-    def lock_times(self, longest: float | None) -> None:
-        """Keep the upper end of the scale of escape times; None follows the maps again."""
-        self._locked_time = longest
+    def lock_times(self, times: TimeScale | None) -> None:
+        """Keep a scale of the escape times; None follows the maps again."""
+        self._locked_times = times
         self._scale_times()
 
     def _scale_times(self) -> None:
-        self._time_mapper.high = self._locked_time or self._typical_time
-        self._show_legend()
+        self._time_mapper.update(low=self.times.low, high=self.times.high)
+        self._show_legends()
 
     def show_origins(self, origins: OriginFateMap) -> None:
         """Paint through which channels orbits enter and leave."""
@@ -193,8 +184,10 @@ class MapsView:
     def show_regularity(self, frame: EscapeMap, regularity: RegularityMap) -> None:
         """Paint which bounded orbits are regular and which are chaotic, as far as known."""
         self.source.data = {**self.source.data, **character_column(frame, regularity)}
-        self._regularity_text = _describe_regularity(regularity, regularity.character[frame.fate == Fate.BOUNDED])
-        self._show_legend()
+        bounded = frame.fate == Fate.BOUNDED
+        self._regularity_text = _describe_regularity(regularity, regularity.character[bounded])
+        self.grid.mark_empty("characters", empty=not bounded.any())
+        self._show_legends()
 
     def remove_layer(self, column: str) -> None:
         """Remove the column of a layer, ``character`` or ``passage``, which the hover text would still describe."""
@@ -211,21 +204,16 @@ class MapsView:
             self._mappers[name].update(palette=codes, low=-0.5, high=len(codes) - 0.5)
         self.marks.set_palette(palette)
         self.outlines.set_palette(palette)
+        self.compared.set_palette(palette)
         self.well.set_palette(palette)
         self.describe()
 
     def set_dark(self, dark: bool) -> None:
         """Use the line colours of the dark or the light theme."""
         self.outlines.set_dark(dark)
+        self.compared.set_dark(dark)
         self.well.outlines.set_dark(dark)
         self.describe()
-
-    def set_home(self, window: Window) -> None:
-        """Set the window of the whole interior, where the reset tool leads."""
-        self._home = window
-        x, y = self._ranges
-        x.update(reset_start=window.x_low, reset_end=window.x_high)
-        y.update(reset_start=window.ordinate_low, reset_end=window.ordinate_high)
 
     def snapped(self, x: float, ordinate: float) -> tuple[float, float]:
         """The centre of the pixel at a point, so that its orbit is the one whose colour is shown."""
@@ -235,127 +223,83 @@ class MapsView:
         columns, rows = self._spec.pixel_centres()
         return float(columns[pixel[1]]), float(rows[pixel[0]])
 
-    def _follow(self, spec: MapSpec) -> None:
-        """Go to the window of a new map, unless the ranges are being moved."""
-        if self._rest_timer is None:
-            self._go_to(spec.find_window())
-
-    def _moved(self, _name: str, _old: float, _new: float) -> None:
-        """The ranges change: wait until they stop."""
-        document = self.source.document
-        if not self._following and document is not None:
-            self._stop_waiting()
-            if self._gesture_timer is not None:
-                document.remove_timeout_callback(self._gesture_timer)
-                self._gesture_timer = None
-            self._rest_timer = document.add_timeout_callback(self._waited, REST_MS)
-
-    def _stop_waiting(self) -> None:
-        if self._rest_timer is not None:
-            self.source.document.remove_timeout_callback(self._rest_timer)
-            self._rest_timer = None
-
-    def _waited(self) -> None:
-        # A timeout callback that runs is already removed.
-        self._rest_timer = None
-        self._rested()
-
-    def _rested(self) -> None:
-        """The ranges have stopped: report the window."""
-        self._stop_waiting()
-        x, y = self._ranges
-        # The page and its browser can change a range at once.
-        if not (x.start < x.end and y.start < y.end):
-            return
-        window = Window(x.start, x.end, y.start, y.end)
-        if self._spec is None or _is_near(window, self._spec.find_window()):
-            return
-        self._on_zoom(None if self._home is not None and _is_near(window, self._home) else window)
-
-    def _end_gesture(self) -> None:
-        """The end of a drag, or a step of the wheel, which has no end: the next one may follow."""
-        self._rested()
-        document = self.source.document
-        if document is not None and self._gesture_timer is None:
-            self._gesture_timer = document.add_timeout_callback(self._finish_gesture, GESTURE_PAUSE_MS)
-
-    def _finish_gesture(self) -> None:
-        self._gesture_timer = None
-        self._on_rest()
-
     def _tapped(self, event: PointEvent) -> None:
-        self._on_tap(*self.snapped(event.x, event.y))
+        self._last_tap = self.snapped(event.x, event.y)
+        self._actions.tap(*self._last_tap)
+
+    def _tapped_again(self, event: PointEvent) -> None:
+        """Two quick clicks, even at two places, are one tap and one double tap."""
+        if self.snapped(event.x, event.y) == self._last_tap:
+            self._last_tap = None
+            self._actions.dive(event.x, event.y)
+        else:
+            self._tapped(event)
 
     def _boxed(self, event: SelectionGeometry) -> None:
         edges = event.geometry
         if event.final and edges["x0"] < edges["x1"] and edges["y0"] < edges["y1"]:
-            self._on_box(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
-
-    def _go_to(self, window: Window) -> None:
-        x, y = self._ranges
-        self._following = True
-        x.update(start=window.x_low, end=window.x_high)
-        y.update(start=window.ordinate_low, end=window.ordinate_high)
-        self._following = False
+            self._actions.box(Window(edges["x0"], edges["x1"], edges["y0"], edges["y1"]))
 
     def describe(self) -> None:
-        """Update axis names, outlines and the legend."""
+        """Update axes, outlines and legends."""
         spec = self._spec
         if spec is None:
             return
-        for name, plot in self.figures.items():
-            name_axes(plot, TITLES[name], spec.plane.axis_names)
         self.outlines.show(spec)
         self.well.show_map(spec)
-        self._show_legend()
+        self._show_legends()
 
-    def _show_legend(self) -> None:
+    def _show_legends(self) -> None:
+        """Write title, legend and names of the axes into each picture."""
         spec = self._spec
         if spec is None:
             return
-        shown = [name for name, pane in self._panes.items() if pane in self._grid.objects]
-        self.legend.show(
+        notes = label_axes(self.figures.values(), spec.plane.axis_symbols, spec.find_window())
+        if self.ranges.magnification > _LEAST_MAGNIFICATION:
+            notes.append(f"{format_number(float(f'{self.ranges.magnification:.2g}'))} times enlarged")
+        described = Described(
             spec,
             self._palette,
-            self.longest_time,
-            [*self.well.outlines.entries(spec), *self.overlays.entries()],
-            regularity=self._regularity_text if "characters" in shown else None,
-            origins="origins" in shown,
-            locked=self._locked_time is not None,
+            self.times,
+            self._locked_times is not None,
+            self._regularity_text,
+            self._fates,
+            self.compared.other,
         )
-
-    def _picker(self) -> list[pn.viewable.Viewable]:
-        return [self.picker] if self.picker.visible else []
-
-    def _pick(self) -> None:
-        """Mark the picture that narrow screens show."""
-        # The classes of a pane of Bokeh cannot be changed once it is on the page.
-        with pn.io.hold():
-            for name, plot in {"well": self.well.plot, **self.figures}.items():
-                kind = "well" if name == "well" else "map"
-                plot.css_classes = [kind, "picked"] if name == self.picker.value else [kind]
+        overlays = self.overlays.entries()
+        for name in self.grid.shown:
+            if name == "well":
+                self.well.describe()
+            else:
+                shown = overlays if name in DOUBTED else []
+                other = self.compared.other if name == "compared" else None
+                axes = spec.plane.axis_symbols if other is None else other.axes
+                annotate_picture(self.figures[name], _TITLES[name], axes, map_legend(name, described, shown), notes)
 
     def _build(self, name: str) -> None:
         """Make a picture with its title and help text."""
-        plot = self.figures[name] = map_figure(name, TITLES[name], *self._ranges)
+        plot = self.figures[name] = map_figure(name, _TITLES[name], self.ranges.x, self.ranges.ordinate)
         plot.toolbar = self._toolbar
         self._paint(name)
         self._fingers.follow_on(plot)
-        # Two quick clicks, even at two places, are one tap and one double tap.
         events: dict[type[Event], Callable[[Any], None]] = {
             Tap: self._tapped,
-            DoubleTap: self._tapped,
+            DoubleTap: self._tapped_again,
             SelectionGeometry: self._boxed,
-            PinchEnd: lambda event: self._end_gesture(),
+            PinchEnd: lambda event: self.ranges.end_gesture(),
         }
         if name == "basins":
             # The end of a drag; after a step of the wheel it comes half a second late. One of the linked pictures is enough.
-            events[RangesUpdate] = lambda event: self._end_gesture()
+            events[RangesUpdate] = lambda event: self.ranges.end_gesture()
         self._panes[name] = FigurePane(plot, events)
 
     def _paint(self, name: str) -> None:
         """Add the images and lines of a picture, from back to front."""
         plot, (column, _) = self.figures[name], PAINTED[name]
+        if name == "compared":
+            self.compared.draw(plot, self._mappers[name])
+            self.marks.draw(plot, sections=False)
+            return
         image = plot.add_glyph(self.source, Image(image=column, dw="dw", dh="dh", color_mapper=self._mappers[name]))
         if name == "times":
             image = plot.add_glyph(self.source, Image(image="escape_time", dw="dw", dh="dh", color_mapper=self._time_mapper))
@@ -369,11 +313,11 @@ class MapsView:
 _BOX_TOOLS = {Drag.ZOOM: partial(BoxZoomTool, match_aspect=True), Drag.COUNT: partial(BoxSelectTool, renderers=[])}
 
 
-def _toolbar(pan: PanTool, hover: HoverTool) -> Toolbar:
+def _toolbar(pan: PanTool, *hovers: HoverTool) -> Toolbar:
     """The tools of all pictures."""
     wheel = WheelZoomTool()
     spans = [Span(dimension=dimension, line_alpha=0.35) for dimension in ("width", "height")]
-    return Toolbar(tools=[pan, wheel, CrosshairTool(overlay=spans), hover], active_drag=pan, active_scroll=wheel)
+    return Toolbar(tools=[pan, wheel, CrosshairTool(overlay=spans), *hovers], active_drag=pan, active_scroll=wheel)
 
 
 def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:
@@ -386,16 +330,10 @@ def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:
     return f"{percent(np.mean(bounded == Regularity.NOT_JUDGED))} of the bounded orbits left …"
 
 
-def _is_near(one: Window, other: Window) -> bool:
-    """Whether two windows are equal up to rounding in the browser."""
-    width, height = other.x_high - other.x_low, other.ordinate_high - other.ordinate_low
-    apart = np.abs(np.subtract(astuple(one), astuple(other)))
-    return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))
-
-
 def _blank() -> dict[str, list[Any]]:
     """A picture of one undecided pixel."""
     codes = np.zeros((1, 1), np.uint8)
-    columns: dict[str, list[Any]] = {name: [codes] for name in ("fate", "crossing_class", "crossings", "character", "passage")}
+    images = ("fate", "crossing_class", "crossings", "character", "passage", "difference")
+    columns: dict[str, list[Any]] = {name: [codes] for name in images}
     columns |= {"escape_time": [np.full((1, 1), np.nan, np.float32)]}
     return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "energy": [np.nan], "complete": [False]}

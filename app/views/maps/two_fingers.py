@@ -6,20 +6,9 @@ from bokeh.events import Pinch, PinchStart
 from bokeh.models import CustomJS, Range1d
 from bokeh.plotting import figure
 
-# `held` keeps, for each axis, the point of the plane between the fingers and the side of the window when they began.
-_FOLLOW = """
-const middle = [cb_obj.x, cb_obj.y]
-ranges.forEach((range, axis) => {
-  const {start, end} = range
-  if (cb_obj.event_name === "pinchstart") {
-    held[axis] = {point: middle[axis], side: end - start}
-    return
-  }
-  const side = held[axis].side / cb_obj.scale
-  const low = held[axis].point - side * (middle[axis] - start) / (end - start)
-  range.setv({start: low, end: low + side})
-})
-"""
+from app.browser.callbacks import callback_code
+
+_FOLLOW = callback_code("two_fingers.js", "followFingers(cb_obj, ranges, held)")
 
 
 class TwoFingers:

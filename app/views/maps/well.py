@@ -8,9 +8,10 @@ import numpy as np
 from bokeh.models import ColumnDataSource, ImageRGBA, LinearColorMapper, MultiLine, Range1d, Scatter
 
 from app.views.components.curve_layers import CurveLayers
+from app.views.components.legends import legend
 from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities
-from app.views.components.plots import FigurePane, batched_additions, map_figure, set_range
-from engine import MapSpec, Potential, Window
+from app.views.components.plots import FigurePane, annotate_picture, batched_additions, map_figure, set_range
+from engine import MapSpec, Window
 from engine.service import SPACE, highest_energy
 from plots.orbit_curves import OrbitCurves, find_well_window, moment
 from plots.palette import LIGHT, MARK_EDGE, PAPER, Palette
@@ -27,7 +28,7 @@ class WellView:
         self._ranges = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
         self._mapper = LinearColorMapper(palette=list(PAPER.orbits), low=-0.5, high=len(PAPER.orbits) - 0.5)
         self._paths, self._trails = lines("paths"), lines("trails")
-        self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")}, name="shades")
+        self._shades = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh", "alpha")}, name="shades")
         self._points = ColumnDataSource({"x": [], "y": [], "slot": []}, name="points")
         self.outlines = CurveLayers()
         self._palette = PAPER
@@ -36,7 +37,7 @@ class WellView:
         self._time: float | None = None
         self._has_orbits = False
         # What the outlines are drawn for, as maps of other windows and several orbits share them.
-        self._outlined: tuple[Potential, float, Palette] | None = None
+        self._outlined: tuple[MapSpec, Palette] | None = None
         self.plot = map_figure("well", TITLE, *self._ranges)
         self.outlines.draw(self.plot, full=True)
         self.pane = FigurePane(self.plot)
@@ -45,7 +46,7 @@ class WellView:
         """Add the paths, trails and points to the figure, when there is an orbit."""
         style = line_style(self._mapper)
         with batched_additions([self.plot]):
-            self.plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh"))
+            self.plot.add_glyph(self._shades, ImageRGBA(dw="dw", dh="dh", global_alpha="alpha"))
             self.plot.add_glyph(self._paths, MultiLine(**style))
             self.plot.add_glyph(self._trails, MultiLine(line_color=LIGHT.halo, line_width=5, line_alpha=0.7))
             self.plot.add_glyph(self._trails, MultiLine(**style | {"line_width": 2.5}))
@@ -65,7 +66,10 @@ class WellView:
         self._outline()
 
     def show_orbits(self, drawings: Sequence[OrbitCurves | None], chosen: int) -> None:
-        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet."""
+        """Draw orbits, highlighting the chosen one; None for orbits that are not known yet. Those of other wells are left out."""
+        if chosen < len(drawings) and (shown := drawings[chosen]) is not None:
+            well = shown.orbit.potential
+            drawings = [each if each is not None and each.orbit.potential == well else None for each in drawings]
         if not any(drawings) and not self._drawings:
             return
         if not self._has_orbits:
@@ -82,6 +86,7 @@ class WellView:
             "y": [one.window.ordinate_low for _, one in long],
             "dw": [one.window.x_high - one.window.x_low for _, one in long],
             "dh": [one.window.ordinate_high - one.window.ordinate_low for _, one in long],
+            "alpha": opacities(long, chosen),
         }
         self._outline()
         self.set_time(self._time)
@@ -95,18 +100,29 @@ class WellView:
         trails = {"xs": [now.x for _, now in moments], "ys": [now.y for _, now in moments]}
         self._trails.data = {**trails, "slot": slots, "alpha": [1.0] * len(slots)}
 
+    def describe(self) -> None:
+        """Write title, legend and names of the axes into the picture."""
+        if self._outlined is not None:
+            spec = self._outlined[0]
+            annotate_picture(self.plot, TITLE, spec.plane.axis_symbols, legend(self.outlines.entries(spec)))
+
     def _outline(self) -> None:
         """Draw the curves of the well, unless they are there already."""
         spec, chosen = self._spec, self._drawings[-1][1] if self._drawings else None
         if spec is None:
             return
-        energy = chosen.orbit.energy if spec.common_energy is None and chosen is not None else highest_energy(spec.energy)
-        if (spec.potential, energy, self._palette) == self._outlined:
+        potential, energy = spec.potential, highest_energy(spec.energy)
+        if chosen is not None and (spec.common_energy is None or spec.plane.parameter is not None):
+            # Along an axis h or a parameter, the well is that of the chosen orbit.
+            potential, energy = chosen.orbit.potential or potential, chosen.orbit.energy
+        window = find_well_window(potential, energy)
+        outlined = MapSpec(potential, SPACE, energy, window=window), self._palette
+        if outlined == self._outlined:
             return
-        self._outlined = (spec.potential, energy, self._palette)
-        window = find_well_window(spec.potential, energy)
-        self.outlines.show(MapSpec(spec.potential, SPACE, energy, window=window))
+        self._outlined = outlined
+        self.outlines.show(outlined[0])
         self._go_to(window)
+        self.describe()
 
     def _go_to(self, window: Window) -> None:
         x, y = self._ranges

@@ -1,4 +1,4 @@
-"""The inspector of the orbits: built for the first orbit, shown while there are orbits."""
+"""The inspector of the orbits: built for the first orbit, shown while there are orbits; each part has its place."""
 
 from __future__ import annotations
 
@@ -18,8 +18,7 @@ class Inspector:
         self._controls, self._playback, self._plots, self._separation = controls, playback, plots, separation
         self._head: list[pn.viewable.Viewable] = []
         self._details: list[pn.viewable.Viewable] = []
-        self._single: list[pn.viewable.Viewable] = []
-        self._pair: list[pn.viewable.Viewable] = []
+        self._plotted: list[pn.viewable.Viewable] = []
         self._grid = pn.Column(
             *controls.entry(), sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["inspector"]
         )
@@ -32,12 +31,9 @@ class Inspector:
     def follow(self, starts: int, orbits: int) -> None:
         """Show what a number of starts needs, of which some may have no orbit."""
         if starts >= 1 and not self._head:
-            self._head, self._details = [self._controls.head(self._playback.layout())], [self._controls.details()]
-        if orbits >= 1 and not self._single:
-            self._single = self._plots.build()
-        if orbits >= 2 and not self._pair:
-            self._pair = [self._separation.build()]
-        plots = [*(self._single if orbits >= 1 else []), *(self._pair if orbits >= 2 else [])]
-        parts = [*self._entry, *([*self._head, *plots, *self._details] if starts >= 1 else [])]
+            self._head, self._details = [self._controls.head(self._playback.layout())], self._controls.details()
+        if orbits >= 1 and not self._plotted:
+            self._plotted = [*self._plots.build(), self._separation.build()]
+        parts = [*self._entry, *([*self._head, *(self._plotted if orbits >= 1 else []), *self._details] if starts >= 1 else [])]
         if parts != self._grid.objects:
             self._grid.objects = parts

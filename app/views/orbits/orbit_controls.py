@@ -10,12 +10,15 @@ from html import escape
 import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.state.glossary import with_terms
 from app.views.components.collapsible_section import Fold
+from app.views.components.copy_button import copy_button, number_rows
 from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.numbers import grouped
 from app.views.components.widgets import OrbitList, button
-from engine import Orbit, Plane
-from engine.service import IndicatorVerdict
+from engine import Coordinate, IndicatorVerdict, Orbit, Slice
+from engine.service import SECTION
+from plots.orbit_curves import initial_state
 from plots.palette import Palette
 
 HINT = "Click a map to see the orbit of the pixel, its SALI and R²; up to five orbits."
@@ -34,6 +37,7 @@ class OrbitActions:
     find_divergent_start: Callable[[], None]
     open_plane: Callable[[], None]
     show_all_times: Callable[[], None]
+    copy: Callable[[str], None]
 
 
 class OrbitControls:
@@ -46,46 +50,51 @@ class OrbitControls:
         self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
-        self.choice = OrbitList(label="Orbits", options=[])
+        # On the page from the start: a list that changes while Bokeh is still building its view fails in the browser.
+        self.choice = OrbitList(label="Orbits", options=[], visible=False)
         self.divergent_start = button("Find its twin", actions.find_divergent_start, margin=0)
         self.remove = button("Remove", actions.remove, margin=0)
         self.clear = button("Clear all", actions.clear, margin=0)
-        self.open_plane = button("Open (x, px) at this h", actions.open_plane, margin=0)
-        self.interval = pn.pane.HTML("", name="interval", margin=(8, 0))
-        self._all_times = button("Whole orbit", actions.show_all_times, margin=(4, 8))
-        self._interval_row = flex_row(self.interval, self._all_times, align="center")
-        self._interval_row.param.update(margin=(0, 10), visible=False)
+        self.open_plane = button("", actions.open_plane, margin=0)
+        self.interval = pn.pane.HTML("", name="interval", margin=0, css_classes=["quiet"])
+        self._all_times = button("Whole orbit", actions.show_all_times, margin=0, visible=False)
+        self._interval_row = flex_row(self.interval, self._all_times, justify="space-between", align="center")
+        self._interval_row.param.update(margin=(0, 10), css_classes=["interval"])
         self.note = pn.pane.HTML(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
-        self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10))
+        self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10), css_classes=["verdict"])
         self.values = pn.pane.HTML("", name="values", sizing_mode="stretch_width", margin=(0, 10))
         self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
+        self._verdicts: Sequence[IndicatorVerdict] = ()
+        self.copy = copy_button(self._rows, actions.copy)
         self.choice.param.watch(lambda event: self._choose(event.new), "value")
         for box in (self.x, self.ordinate):
             box.param.watch(lambda event: self._submit(), "enter_pressed")
-        self._enable()
 
     def entry(self) -> list[pn.viewable.Viewable]:
-        """The hint or message, and the boxes to type a start."""
+        """The hint or message, the boxes to type a start, and the list of the orbits."""
         boxes = Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")])
-        return [self.note, *boxes.parts()]
+        return [self.note, *boxes.parts(), self.choice]
 
     def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
-        """The list of orbits, buttons, the fate of the chosen one in a line, and the player."""
+        """Buttons, the fate of the chosen one in a line, and the player."""
         buttons = flex_row(self.divergent_start, self.remove, self.clear, self.open_plane, gap="6px")
         buttons.margin = (5, 4)
         return pn.Column(
-            self.choice, buttons, self.text, playback, self._interval_row,
+            buttons, self.text, playback, self._interval_row,
             sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT,
         )  # fmt: skip
 
-    def details(self) -> pn.viewable.Viewable:
-        """The verdicts on the chosen orbit, and its values."""
-        return pn.Column(self.indicators, self.values, sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT)
+    def details(self) -> list[pn.viewable.Viewable]:
+        """The values of the chosen orbit, to unfold, and the verdicts on it."""
+        return [*Fold("Values", lambda: [self.values, self.copy]).parts(), self.indicators]
 
-    def follow_plane(self, plane: Plane) -> None:
+    def follow_plane(self, plane: Slice) -> None:
         """Label the boxes with the axes of the plane."""
-        self.x.label, self.ordinate.label = plane.axis_names
-        self.open_plane.visible = plane.energy_axis is not None
+        self.x.label, self.ordinate.label = plane.axis_symbols
+        decided = [axis for axis in plane.axes if axis is Coordinate.H or axis is plane.parameter]
+        self.open_plane.visible = bool(decided)
+        if decided:
+            self.open_plane.label = f"Open {SECTION.plane.title} at this {' and '.join(axis.symbol for axis in decided)}"
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
@@ -93,44 +102,52 @@ class OrbitControls:
 
     def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
         """Show which part of the duration is in view; None is the whole duration."""
-        self._interval_row.visible = interval is not None
-        if interval is not None:
-            begin, end = interval
-            self.interval.object = f"Shown: t = {begin:.6g} to {end:.6g} of {duration:.6g}"
+        self._all_times.visible = interval is not None
+        begin, end = interval or (0.0, duration)
+        self.interval.object = f"Shown: t = {begin:.6g} to {end:.6g} of {duration:.6g}" if duration else ""
 
     def say(self, sentence: str) -> None:
         """Show a message about the orbits."""
-        self.note.object = f"<p>{escape(sentence)}</p>"
+        self.note.object = escape(sentence)
+
+    def end_message(self, *, has_orbits: bool) -> None:
+        """Remove a message about what is shown no longer."""
+        self.note.object = "" if has_orbits else HINT
 
     def show_indicators(self, verdicts: Sequence[IndicatorVerdict]) -> None:
         """Show the verdict of each chaos indicator on the chosen orbit."""
+        self._verdicts = verdicts
         rows = "".join(
             f"<tr><th scope=row>{one.name}<br>{_value(one.value)}</th>"
             f"<td><b>{one.conclusion or 'no verdict'}</b><br>{escape(one.sentence)}</td></tr>"
             for one in verdicts
         )
-        self.indicators.object = f"<table aria-label='chaos indicators'>{rows}</table>" if rows else ""
+        self.indicators.object = with_terms(f"<table aria-label='chaos indicators'>{rows}</table>") if rows else ""
 
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
         """Show the list of orbits, and the values and verdict of the chosen one."""
-        starts = [one.start for one in orbits], chosen
-        if starts != ([one.start for one in self._shown[0]], self._shown[1]):
-            self.note.object = "" if orbits else HINT
         self._shown = (tuple(orbits), chosen)
         self.choice.param.update(
-            options={_row(orbits, place): place for place in range(len(orbits))}, value=chosen if orbits else None
+            options={_row(orbits, place): place for place in range(len(orbits))},
+            value=chosen if orbits else None,
+            visible=bool(orbits),
         )
-        self._enable()
         if not orbits:
             return
         one = orbits[chosen]
         self.x.value, self.ordinate.value = (f"{number!r}" for number in one.start)
-        self.text.object = f"<p><b>{escape(one.describe())}</b></p>"
+        self.text.object = escape(one.describe())
         self.values.object = _values(one.orbit)
 
-    def _enable(self) -> None:
-        for one in (self.divergent_start, self.remove, self.clear, self.open_plane):
-            one.disabled = not self._shown[0]
+    def _rows(self) -> list[tuple[str, str, str]]:
+        """Values of the chosen orbit at full precision, and the value and verdict of each indicator."""
+        orbits, chosen = self._shown
+        orbit = orbits[chosen].orbit if orbits else None
+        if orbit is None:
+            return []
+        start = dict(zip(("x", "y", "px", "py"), initial_state(orbit), strict=True))
+        verdicts = [(one.name, repr(one.value), str(one.conclusion or "no verdict")) for one in self._verdicts]
+        return [*number_rows("start", start), *number_rows("orbit", orbit.numbers()), *verdicts]
 
     def _choose(self, place: int | None) -> None:
         if place is not None and place != self._shown[1]:
@@ -150,9 +167,9 @@ class OrbitControls:
 def _row(orbits: Sequence[ChosenOrbit], place: int) -> str:
     """An orbit in the list; a start that looks like an earlier one is shown by the difference."""
     x, ordinate = orbits[place].start
-    text = f"{x:.6g}, {ordinate:.6g}"
+    text = f"{x:.4g}, {ordinate:.4g}"
     for other, one in enumerate(orbits[:place]):
-        if text == f"{one.start[0]:.6g}, {one.start[1]:.6g}":
+        if text == f"{one.start[0]:.4g}, {one.start[1]:.4g}":
             text = f"orbit {other + 1} + ({x - one.start[0]:.2g}, {ordinate - one.start[1]:.2g})"
     return f"{place + 1}: {text}: {_fate(orbits[place])}"
 

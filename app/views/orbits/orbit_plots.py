@@ -8,19 +8,21 @@ from typing import Any
 import numpy as np
 from bokeh.events import DoubleTap, SelectionGeometry
 from bokeh.models import (
-    BasicTickFormatter,
     BoxSelectTool,
+    FixedTicker,
     LinearColorMapper,
     MultiLine,
+    Patches,
     Range1d,
     Span,
 )
 from bokeh.plotting import figure
 
-from app.views.components.orbit_lines import in_front, line_columns, line_style, lines, opacities
-from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
+from app.views.components.orbit_lines import band_columns, band_style, in_front, line_columns, line_style, lines, opacities
+from app.views.components.plots import HISTORY_ASPECT, FigurePane, set_decades, set_range, square_figure
 from engine import CASES, CHAOS_THRESHOLD, integrate_orbit, start_states
 from engine.service import SECTION, format_number
+from plots.histories import History
 from plots.orbit_curves import LEAST_SALI, OrbitCurves, compute_orbit_curves
 from plots.palette import MARK_EDGE, PAPER, THRESHOLD, Palette
 
@@ -29,9 +31,8 @@ TITLES = {
     "r2": "R² = x² + y²",
     "exponent": "Lyapunov exponent until t",
 }
-# Wide, so that two of them stand beside the maps.
-_ASPECT = 1.9
 _HISTORIES = ("sali", "exponent", "r2")
+_SALI_TICKS = (1e-16, 1e-12, 1e-8, 1e-4, 1.0)
 
 
 class OrbitPlots:
@@ -46,10 +47,11 @@ class OrbitPlots:
     def __init__(self, on_brush: Callable[[tuple[float, float] | None], None]) -> None:
         self._on_brush = on_brush
         self._by_touch = False
-        self._times, self._sali, self._exponents = Range1d(0.1, 10.0), Range1d(LEAST_SALI, 10.0), Range1d(1e-4, 10.0)
-        self._r2_times, self._r2 = Range1d(0.0, 10.0), Range1d(0.0, 1.0)
+        self._times, self._sali = Range1d(0.1, 10.0), Range1d(LEAST_SALI, 10.0)
+        self._exponents, self._r2 = Range1d(1e-4, 10.0), Range1d(0.0, 1.0)
         self._mapper = LinearColorMapper(low=-0.5, high=len(PAPER.orbits) - 0.5)
         self._histories = {name: lines(f"{name}_histories") for name in _HISTORIES}
+        self._bands = {name: lines(f"{name}_bands") for name in _HISTORIES}
         self._now = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted", visible=False)
         self._drawings: list[tuple[int, OrbitCurves]] = []
         self.set_palette(PAPER)
@@ -71,9 +73,10 @@ class OrbitPlots:
         self._drawings = in_front(drawings, chosen)
         alphas = opacities(self._drawings, chosen)
         for name in _HISTORIES:
-            curves = [getattr(drawing, name) for _, drawing in self._drawings]
-            self._histories[name].data = line_columns(self._drawings, curves, alphas)
-        self._scale_times(interval)
+            histories: list[History] = [getattr(drawing, name) for _, drawing in self._drawings]
+            self._histories[name].data = line_columns(self._drawings, [history.line for history in histories], alphas)
+            self._bands[name].data = band_columns(self._drawings, [history.outline for history in histories], alphas)
+        self._scale(interval)
 
     def set_time(self, t: float | None) -> None:
         """Mark a time on all histories; None removes the mark."""
@@ -84,23 +87,23 @@ class OrbitPlots:
         self._mapper.palette = list(palette.orbits)
 
     def _draw_histories(self) -> list[figure]:
-        log: dict[str, Any] = {"x_axis_type": "log", "y_axis_type": "log", "x_range": self._times}
         axes: dict[str, dict[str, Any]] = {
-            "sali": {"y_axis_label": "SALI", "y_range": self._sali, **log},
-            "r2": {"y_axis_label": "R²", "x_range": self._r2_times, "y_range": self._r2},
-            "exponent": {"y_axis_label": "(1/t) ln|w|", "y_range": self._exponents, **log},
+            "sali": {"y_axis_label": "SALI", "y_range": self._sali, "y_axis_type": "log"},
+            "exponent": {"y_axis_label": "(1/t) ln|w|", "y_range": self._exponents, "y_axis_type": "log"},
+            "r2": {"y_axis_label": "R²", "y_range": self._r2},
         }
+        time: dict[str, Any] = {"x_axis_label": "t", "x_axis_type": "log", "x_range": self._times}
         plots = {
-            name: square_figure(name, TITLES[name], x_axis_label="t", tools=[_brush()], aspect_ratio=_ASPECT, **options)
+            name: square_figure(name, TITLES[name], tools=[_brush()], aspect_ratio=HISTORY_ASPECT, **time, **options)
             for name, options in axes.items()
         }
         for name, plot in plots.items():
             plot.toolbar.active_drag = None if self._by_touch else plot.toolbar.tools[0]
+            plot.add_glyph(self._bands[name], Patches(**band_style(self._mapper)))
             plot.add_glyph(self._histories[name], MultiLine(**line_style(self._mapper)))
             plot.add_layout(self._now)
-        plots["sali"].yaxis.ticker.desired_num_ticks = 3
-        plots["r2"].xaxis.formatter = BasicTickFormatter(use_scientific=False)
-        plots["r2"].xaxis.ticker.desired_num_ticks = 4
+        # A logarithmic ticker writes more labels than there is room for.
+        plots["sali"].yaxis.ticker = FixedTicker(ticks=list(_SALI_TICKS))
         threshold = Span(location=CHAOS_THRESHOLD, dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
         plots["sali"].add_layout(threshold)
         return list(plots.values())
@@ -110,24 +113,17 @@ class OrbitPlots:
         if event.final and begin < end:
             self._on_brush((max(begin, 0.0), end))
 
-    def _scale_times(self, interval: tuple[float, float] | None) -> None:
-        """Set the time axes: to the interval, or that of SALI by the longest orbit and that of R² by the chosen one."""
-        if not self._drawings:
+    def _scale(self, interval: tuple[float, float] | None) -> None:
+        """Set the axes: that of time to the interval, or to the longest orbit."""
+        everything = [drawing for _, drawing in self._drawings if drawing.sali.line[0].size]
+        if not everything:
             return
-        everything = [drawing for _, drawing in self._drawings]
-        latest = max(float(drawing.orbit.t[-1]) for drawing in everything)
-        earliest = min((float(drawing.sali[0][0]) for drawing in everything if drawing.sali[0].size), default=0.1)
-        widest = max((float(drawing.r2[1].max()) for drawing in everything if drawing.r2[1].size), default=1.0)
-        if latest > earliest:
-            set_range(self._times, earliest, latest)
-            ends = [drawing.exponent[1] for drawing in everything if drawing.exponent[1].size]
-            if ends:
-                set_decades(self._exponents, min(float(end[-1]) for end in ends), 1.0)
-        set_range(self._r2, 0.0, 1.05 * widest or 1.0)
-        begin, end = interval or (0.0, float(everything[-1].orbit.t[-1]) or 1.0)
-        set_range(self._r2_times, begin, end)
-        if interval is not None:
+        earliest = min(float(drawing.sali.line[0][0]) for drawing in everything)
+        begin, end = interval or (earliest, max(float(drawing.orbit.t[-1]) for drawing in everything))
+        if end > earliest:
             set_range(self._times, max(begin, earliest), end)
+        set_decades(self._exponents, min(float(drawing.exponent.line[1][-1]) for drawing in everything), 1.0)
+        set_range(self._r2, 0.0, 1.05 * max(drawing.r2.highest for drawing in everything))
 
 
 def prepare() -> None:

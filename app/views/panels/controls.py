@@ -12,15 +12,19 @@ import panel as pn
 from app.browser.energy_slider import SHOWN, EnergySlider
 from app.state.system_review import review_catalogue_entry
 from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed_t_max
-from app.views.components.analysis_choice import LayerSwitches
+from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.number_box import NumberBox
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
-from engine import CASES, Plane
+from engine import CASES, Plane, Slice
 from engine.service import EnergyRange
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
+AXES = "Axes …"
+# Those of the paper; others are chosen by their axes.
+_PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
+_ON_AXIS = {0: "Energy is the horizontal axis here", 1: "Energy is the vertical axis here"}
 PLAY, STOP = "▶ Play", "■ Stop"
 # Space beside the rail of a slider, half the width of its thumb, see theme.css.
 _THUMB = "9px"
@@ -40,12 +44,21 @@ class ControlActions:
         Starts or stops the animation over all energies.
     choose_potential
         Opens the choice of other potentials.
+    choose_slice
+        Opens the choice of other slices.
+    compare
+        Called with whether later views are compared with the present one.
+    swap
+        Exchanges the two views.
     lock_times
         Called with whether the scale of escape times keeps its limits.
     """
 
     play: Callable[[], None]
     choose_potential: Callable[[], None]
+    choose_slice: Callable[[], None]
+    compare: Callable[[bool], None]
+    swap: Callable[[], None]
     lock_times: Callable[[bool], None]
 
 
@@ -60,12 +73,17 @@ class Controls:
         )
         self.other = button("Other …", actions.choose_potential, kind="light", css_classes=["half"], margin=(0, 10, 0, 4))
         self.plane = SegmentedControl(
-            label="Plane", options={plane.title: plane for plane in Plane}, value=state.plane, margin=(8, 10),
-            css_classes=["segmented", "narrow"],
+            label="Plane", options={plane.title: plane for plane in _PLANES}, margin=(8, 0, 8, 10),
+            css_classes=["segmented", "narrow", "half"],
         )  # fmt: skip
+        # Panel chooses the first option in place of none when it makes a widget.
+        self.plane.value = self._plane()
+        self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half"], margin=(8, 10, 8, 4))
         self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
-        self.energy = EnergySlider(self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10))
-        self.play = button(PLAY, actions.play, width=84, css_classes=["half"], margin=(0, 10), align="end")
+        self.energy = EnergySlider(
+            self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
+        )
+        self.play = button(PLAY, actions.play, width=84, css_classes=["half", "play-energy"], margin=(0, 10), align="end")
         self.exact_energy = NumberBox(
             self._take_energy,
             state.energy,
@@ -77,15 +95,17 @@ class Controls:
         )
         self.facts = pn.pane.HTML(margin=(6, 10), sizing_mode="stretch_width")
         self.layers = LayerSwitches(state)
-        layers = Fold("Layers", self.layers.parts, is_open=True)
-        state.param.watch(lambda event: layers.rebuild(), "manifolds")
+        self.comparison = ComparisonSwitch(state, actions.compare, actions.swap)
+        layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)
+        state.param.watch(lambda *events: layers.rebuild(), ["manifolds", "compared"])
         self._folds = [Fold("Quality and colours", self._build_quality), layers]
         self._follow_system()
+        self._follow_plane()
         self._connect()
 
-    def layout(self, potential: pn.viewable.Viewable) -> list[pn.viewable.Viewable]:
-        """Parts of a column: the system with the choice of other potentials, plane, energy, quality and layers."""
-        system = [self.case, self.other, self.facts, potential, self.plane]
+    def layout(self) -> list[pn.viewable.Viewable]:
+        """Parts of a column: system, plane, energy, quality and layers."""
+        system = [self.case, self.other, self.facts, self.plane, self.axes]
         energy = [self.energy, self.ticks, self.exact_energy, self.play]
         return [*system, *energy, *(part for fold in self._folds for part in fold.parts())]
 
@@ -126,7 +146,7 @@ class Controls:
         self.plane.param.watch(lambda event: self._take_plane(event.new), "value")
         state.param.watch(lambda *events: self._follow_system(), list(SYSTEM))
         state.param.watch(lambda *events: self._follow_energy(), ["energy", "plane"])
-        state.param.watch(lambda event: self.plane.param.update(value=event.new), "plane")
+        state.param.watch(lambda event: self._follow_plane(), "plane")
 
     def show_playing(self, playing: bool) -> None:
         """Label the button with what it does next."""
@@ -142,10 +162,20 @@ class Controls:
         """The case of the system in view; None for other potentials."""
         return self.state.case if self.state.case in CASES else None
 
-    def _take_plane(self, plane: Plane) -> None:
-        if plane != self.state.plane:
+    def _follow_plane(self) -> None:
+        self.plane.value = self._plane()
+        self.axes.label = AXES if self.plane.value is not None else f"{self.state.plane.title} …"
+
+    def _plane(self) -> Slice | None:
+        """The slice in view if it is one of those to choose from; None for others."""
+        plane: Slice = self.state.plane
+        return next((each for each in _PLANES if each == plane), None)
+
+    def _take_plane(self, plane: Plane | None) -> None:
+        # None: the widget follows the state.
+        if plane is not None and plane != self.state.plane:
             with pn.io.hold():
-                self.state.param.update(plane=plane, window=None, starts=(), chosen=0)
+                self.state.show_slice(plane)
 
     def _take_energy(self, energy: float) -> None:
         # All that follows makes one message.
@@ -172,7 +202,7 @@ class Controls:
         on_h = state.plane.energy_axis is not None
         beyond = not state.energies.low <= state.energy <= state.energies.high
         note = f"h = {state.energy:.12g}, beyond the end of the slider" if beyond else ""
-        self.energy.param.update(energy=state.energy, disabled=on_h, note="Energy is the vertical axis here" if on_h else note)
+        self.energy.param.update(energy=state.energy, disabled=on_h, note=_ON_AXIS[state.plane.energy_axis] if on_h else note)
         self.exact_energy.disabled = on_h
         self.exact_energy.show(state.energy)
         self.play.disabled = on_h

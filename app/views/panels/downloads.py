@@ -1,4 +1,4 @@
-"""Sharing and downloads: the link, a picture, the maps, the orbits, and a Python script that computes them again."""
+"""Sharing and downloads: the link, figures, the maps, the orbits, and a Python script that computes them again."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from functools import partial
 import panel as pn
 
 from app.job_clients.orbit_requests import ChosenOrbit
+from app.runtime.process_state import process_state
 from app.state.view_state import ViewState
 from app.views.components.file_saver import FileSaver
 from app.views.components.widgets import button
-from engine import EnergyCurves, EscapeMap
-from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, png_bytes, python_lines
+from app.views.panels.embedding import NOT_ALLOWED
+from app.views.panels.figure_choices import Shown
+from app.views.panels.figure_form import FigureForm
+from engine import Curves, EscapeMap
+from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 from plots.map_analyses import MapAnalyses
-from plots.map_images import ON_DEMAND, TITLES
-
-SIDES = {"300 pixels": 300, "600 pixels": 600, "1200 pixels": 1200}
-"""Sides of each map in a saved picture."""
 
 File = tuple[str, Callable[[], bytes]]
 """Name and content of a file; the content is made by a call that may take seconds."""
@@ -30,16 +30,22 @@ _NO_CURVES = "There are no curves against energy yet."
 class Downloads:
     """Buttons that make their files when they are pressed."""
 
-    def __init__(self, state: ViewState, copy_link: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        state: ViewState,
+        copy_link: Callable[[], None],
+        copy_embed_code: Callable[[], None],
+        on_copied: Callable[[bool], None],
+    ) -> None:
         self._state = state
         self._frame: EscapeMap | None = None
         self._analyses = MapAnalyses()
         self._orbits: Sequence[ChosenOrbit] = ()
-        self._curves: EnergyCurves | None = None
+        self._curves: Curves | None = None
         self.saver = FileSaver()
         self.link = button("Copy link", copy_link)
-        self.side = pn.widgets.Select(label="Side of each map", options=SIDES, value=600, width=130)
-        self.picture = button("Picture (PNG)", self._saving(self.png_file))
+        self.embed = button("Copy embed code", copy_embed_code, disabled=not process_state().settings.frame_ancestors)
+        self.figure = FigureForm(state, self.saver, self._figure_name, on_copied)
         self.maps = button("Maps (NetCDF)", self._saving(self.netcdf_file))
         self.orbits = button("Orbits (CSV)", self._saving(self.csv_file))
         self.curves = button("Curves (CSV)", self._saving(self.curves_file))
@@ -48,7 +54,10 @@ class Downloads:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The buttons, in a column."""
-        return [self.link, self.side, self.picture, self.maps, self.orbits, self.curves, self.script, self.saver]
+        hint = pn.pane.HTML(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
+        files = [self.maps, self.orbits, self.curves, self.script]
+        titles = [pn.pane.HTML(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data")]
+        return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *files, self.saver]
 
     @property
     def escape_map(self) -> EscapeMap | None:
@@ -68,13 +77,14 @@ class Downloads:
     def show_analyses(self, analyses: MapAnalyses) -> None:
         """Set what is known of the map."""
         self._analyses = analyses
+        self._enable()
 
     def show_orbits(self, orbits: Sequence[ChosenOrbit]) -> None:
         """Set the orbits to download."""
         self._orbits = orbits
         self._enable()
 
-    def show_curves(self, curves: EnergyCurves | None) -> None:
+    def show_curves(self, curves: Curves | None) -> None:
         """Set the curves against energy to download; None without any."""
         self._curves = curves
         self._enable()
@@ -83,23 +93,6 @@ class Downloads:
         """Make a file in a thread, so that the event loop goes on, and send it to the browser."""
         name, make = file
         self.saver.save(name, await asyncio.to_thread(make))
-
-    def png_file(self) -> File:
-        """All maps in one picture, with their legends."""
-        available = {"characters": self._analyses.regularity, "origins": self._analyses.origins}
-        pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or available[name] is not None)]
-        starts = tuple(one.start for one in self._orbits)
-        make = partial(
-            png_bytes,
-            self._map(),
-            pictures,
-            self._state.colours,
-            self.side.value,
-            analyses=self._analyses,
-            starts=starts,
-            longest=self._state.lock_times,
-        )
-        return self._named(".png"), make
 
     def netcdf_file(self) -> File:
         """The map with its analyses."""
@@ -129,10 +122,14 @@ class Downloads:
         return lambda: pn.state.execute(partial(self.save, file()))
 
     def _enable(self) -> None:
-        for one in (self.picture, self.maps, self.script):
+        for one in (self.maps, self.script):
             one.disabled = self._frame is None
         self.curves.disabled = self._curves is None
         self.orbits.disabled = not any(one.orbit is not None for one in self._orbits)
+        self.figure.show(Shown(self._frame, self._analyses, self._orbits, self._curves))
+
+    def _figure_name(self, ending: str) -> str:
+        return f"escapes-{self._state.case}{ending}" if self._frame is None else self._named(ending)
 
     def _named(self, ending: str) -> str:
         return f"{file_stem(self._map().spec, self._state.case)}{ending}"
@@ -143,5 +140,5 @@ class Downloads:
         return self._frame
 
 
-def _encoded_csv(curves: EnergyCurves) -> bytes:
+def _encoded_csv(curves: Curves) -> bytes:
     return curves_csv(curves).encode()

@@ -1,8 +1,8 @@
 """Calls of generated functions by address, from kernels that are compiled once for all potentials.
 
 A kernel that calls a function by name contains a copy of it, and would have to be compiled again for every structure of a
-potential. Therefore kernels take the addresses of `step`, `fixed_step`, `jets`, `tangent` and `potential_value` as arguments, and
-only the types of these functions are compiled in.
+potential. Therefore kernels take the addresses of `step`, `fixed_step`, `jets`, `tangent`, `potential_value` and
+`potential_slopes` as arguments, and only the types of these functions are compiled in.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from numba import types
 from numba.core.typing.templates import Signature
 from numba.extending import intrinsic
 
+_slopes: Any = types.UniTuple(types.float64, 3)  # type: ignore[no-untyped-call]
 _table = types.Array(types.float64, 1, "C", readonly=True)
 _gates = types.Array(types.float64, 2, "C", readonly=True)
 _lanes = types.float64[::1]
@@ -25,6 +26,7 @@ SIGNATURES: dict[str, Signature] = {
     "jets": types.void(_table, types.int64, *[_lanes] * 4, _rows, _rows),
     "tangent": types.void(_table, types.int64, *[_lanes] * 9),
     "potential_value": types.float64(_table, types.float64, types.float64),
+    "potential_slopes": _slopes(_table, types.float64, types.float64),
 }
 """Types that each generated function is compiled for."""
 
@@ -55,4 +57,4 @@ def _caller(name: str) -> Any:
     return call
 
 
-call_step, call_fixed_step, call_jets, call_tangent, call_potential_value = map(_caller, SIGNATURES)
+call_step, call_fixed_step, call_jets, call_tangent, call_potential_value, call_potential_slopes = map(_caller, SIGNATURES)

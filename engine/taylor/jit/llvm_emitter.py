@@ -22,6 +22,7 @@ _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
 # As in `engine.taylor.jit.decorator`: a·b + c may become one multiply-add, nothing else.
 _FLAGS = ("contract",)
 _FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
+_INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
 _INT_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
 
 
@@ -99,19 +100,19 @@ def _constant(kind: Any, number: float) -> Any:
     return ir.Constant(kind, [number] * kind.count if isinstance(kind, ir.VectorType) else number)
 
 
-def _absolute(module: ir.Module, floats: Any) -> Any:
-    """The absolute value of a double or of vectors, which `declare_intrinsic` does not know."""
+def _intrinsic(name: str, module: ir.Module, floats: Any) -> Any:
+    """An intrinsic function of a double or of vectors, which `declare_intrinsic` does not know; one instruction, never a call."""
     if not isinstance(floats, ir.VectorType):
-        return module.declare_intrinsic("llvm.fabs", [floats])
-    name = f"llvm.fabs.v{floats.count}f64"
+        return module.declare_intrinsic(name, [floats])
+    name = f"{name}.v{floats.count}f64"
     return module.globals.get(name) or ir.Function(module, ir.FunctionType(floats, [floats]), name)
 
 
 def _operate(symbol: str, builder: ir.IRBuilder, floats: Any, ints: Any, operands: list[Any]) -> Any:
     is_float = operands[0].type == floats
     match symbol:
-        case "abs":
-            return builder.call(_absolute(builder.module, floats), operands)
+        case "abs" | "sqrt":
+            return builder.call(_intrinsic(_INTRINSICS[symbol], builder.module, floats), operands)
         case "bits_of":
             return builder.bitcast(*operands, ints)
         case "double_of":

@@ -11,7 +11,8 @@ from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.taylor.jit.decorator import kernel
 from engine.taylor.kernels.events import BOUNDED, CURVE_COLUMNS, NOT_COMPUTED, append_crossings
 from engine.taylor.kernels.propagate import VECTOR, Exits, Orbits
-from engine.taylor.source.recurrence import ORDER, TOLERANCE
+from engine.taylor.source.recurrence import TOLERANCE
+from engine.taylor.source.series import ORDER
 
 _CHUNK = 8192
 

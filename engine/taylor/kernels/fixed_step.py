@@ -13,7 +13,8 @@ import numpy as np
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_fixed_step, call_jets, call_tangent
 from engine.taylor.kernels.events import append_crossings
-from engine.taylor.source.recurrence import LANES, ORDER
+from engine.taylor.source.recurrence import LANES
+from engine.taylor.source.series import ORDER
 
 _STEPS_TO_RENORMALISATION = 8
 _STEPS_BETWEEN_CHECKS = 16

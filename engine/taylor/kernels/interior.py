@@ -3,6 +3,9 @@
 A path leads downhill from the point. As soon as the straight line to the origin is below the energy as well, it is complete,
 and the point is inside if the path crosses the exits an even number of times. A path to another minimum, or to a value of V below
 that at the origin, ends outside, and the point is inside if the path crosses the exits an odd number of times.
+
+The two kernels differ in how they evaluate V: polynomials from their terms, with a proof that V on a line is below a level;
+expressions by a generated function, with V on a line between neighbouring points replaced by the cubic of its values and slopes.
 """
 
 from __future__ import annotations
@@ -10,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
+from engine.taylor.jit.function_pointers import call_potential_slopes
 from engine.taylor.kernels.events import BEARING_X, BEARING_Y, OPEN, exit_distance, position_across
 
 # Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
@@ -23,11 +27,14 @@ _DECREASE = 0.25
 _ENERGY_MARGIN = 1e-12
 # Largest slope at a critical point.
 _NO_SLOPE = 1e-9
+# Parts of a line to the origin.
+_PIECES = 32
 
 
 @subroutine
-def _expand(powers, coefficients, x, y, work):
+def _polynomial_slopes(polynomial, x, y):
     """V, V_x and V_y; row 2 of `work` becomes the series of V(t x, t y) in t."""
+    powers, coefficients, _, work = polynomial
     x_power = 1.0
     y_power = 1.0
     for k in range(work.shape[1]):
@@ -53,13 +60,37 @@ def _expand(powers, coefficients, x, y, work):
 
 
 @subroutine
-def _is_below(work, bernstein, level):
-    """Whether all Bernstein coefficients of the series on [0, 1], and with them V on the line, are at most a level."""
+def _polynomial_is_below(polynomial, x, y, level):
+    """Whether all Bernstein coefficients of the series on [0, 1] at the last point expanded, (x, y), are at most a level."""
+    _, _, bernstein, work = polynomial
     for i in range(bernstein.shape[0]):
         b = 0.0
         for k in range(i + 1):
             b += bernstein[i, k] * work[2, k]
         if b > level:
+            return False
+    return True
+
+
+@subroutine
+def _expression_slopes(generated, x, y):
+    """V, V_x and V_y."""
+    address, coefficients = generated
+    return call_potential_slopes(address, coefficients, x, y)
+
+
+@subroutine
+def _expression_is_below(generated, x, y, level):
+    """Whether V on the line from the origin to (x, y) is at most a level: all Bernstein coefficients of a cubic on each part."""
+    value, slope_x, slope_y = _expression_slopes(generated, 0.0, 0.0)
+    end = value + (slope_x * x + slope_y * y) / (3.0 * _PIECES)
+    if not (value <= level and end <= level):
+        return False
+    for piece in range(1, _PIECES + 1):
+        t = piece / _PIECES
+        value, slope_x, slope_y = _expression_slopes(generated, t * x, t * y)
+        rise = (slope_x * x + slope_y * y) / (3.0 * _PIECES)
+        if not (value <= level and value - rise <= level and (piece == _PIECES or value + rise <= level)):
             return False
     return True
 
@@ -92,25 +123,26 @@ def _crosses_exits(x0, y0, x1, y1, curves):
 
 
 @subroutine
-def _is_outside(powers, coefficients, bernstein, x, y, energy, curves, work):
+def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
+    """Whether a point is outside; slopes, is_below: two of the functions above; potential: their first argument."""
     level = energy - _ENERGY_MARGIN
     odd = False
     step = _LONGEST_STEP
     for _ in range(_MOST_STEPS):
-        value, slope_x, slope_y = _expand(powers, coefficients, x, y, work)
+        value, slope_x, slope_y = slopes(potential, x, y)
         slope = np.sqrt(slope_x * slope_x + slope_y * slope_y)
-        if value < work[2, 0]:
+        if value < bottom:
             break
         if slope < _NO_SLOPE and value >= level:
             # A saddle of this energy belongs to the well.
             return False
-        if _is_below(work, bernstein, level):
+        if is_below(potential, x, y, level):
             return odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
         direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
         direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
         step = min(2.0 * step, _LONGEST_STEP)
         while step > _SHORTEST_STEP:
-            below, _, _ = _expand(powers, coefficients, x + step * direction_x, y + step * direction_y, work)
+            below, _, _ = slopes(potential, x + step * direction_x, y + step * direction_y)
             if below < value - _DECREASE * step * slope:
                 break
             step *= 0.5
@@ -122,20 +154,16 @@ def _is_outside(powers, coefficients, bernstein, x, y, energy, curves, work):
     return not odd
 
 
-@kernel
-def find_outside(powers, coefficients, bernstein, x, y, energy, curves, curve_row):
-    """(n,) the channel whose saddle is nearest in direction for each point outside, 0 inside and in the forbidden region.
-
-    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix from `bernstein_matrix`; x, y, energy (n,);
-    curves (rows, channels, columns); curve_row (n,).
-    """
-    work = np.zeros((3, bernstein.shape[0]))
+@subroutine
+def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row):
+    """(n,) the channel whose saddle is nearest in direction for each point outside, 0 inside and in the forbidden region."""
     channels = np.zeros(x.shape[0], np.int8)
+    bottom, _, _ = slopes(potential, 0.0, 0.0)
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
-        value, _, _ = _expand(powers, coefficients, x[i], y[i], work)
+        value, _, _ = slopes(potential, x[i], y[i])
         forbidden = not value <= energy[i] + _ENERGY_MARGIN
-        if forbidden or not _is_outside(powers, coefficients, bernstein, x[i], y[i], energy[i], row, work):
+        if forbidden or not _is_outside(slopes, is_below, potential, x[i], y[i], energy[i], row, bottom):
             continue
         largest = -np.inf
         for k in range(row.shape[0]):
@@ -144,3 +172,21 @@ def find_outside(powers, coefficients, bernstein, x, y, energy, curves, curve_ro
                 largest = towards
                 channels[i] = k + 1
     return channels
+
+
+@kernel
+def find_outside_polynomial(powers, coefficients, bernstein, x, y, energy, curves, curve_row):
+    """`_find_outside` for a polynomial.
+
+    powers (terms, 2), coefficients (terms,): of V; bernstein: matrix from `bernstein_matrix`; x, y, energy (n,);
+    curves (rows, channels, columns); curve_row (n,).
+    """
+    polynomial = (powers, coefficients, bernstein, np.zeros((3, bernstein.shape[0])))
+    return _find_outside(_polynomial_slopes, _polynomial_is_below, polynomial, x, y, energy, curves, curve_row)
+
+
+@kernel
+def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row):
+    """`_find_outside` for an expression."""
+    generated = (potential_slopes, coefficients)
+    return _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row)

@@ -10,7 +10,8 @@ import numpy as np
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_potential_value, call_step
 from engine.taylor.kernels.events import series_slope
-from engine.taylor.source.recurrence import LANES, ORDER
+from engine.taylor.source.recurrence import LANES
+from engine.taylor.source.series import ORDER
 
 _WALL_STRIDE = 0.02
 _FURTHEST_WALL = 20.0

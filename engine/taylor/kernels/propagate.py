@@ -26,7 +26,8 @@ from engine.taylor.kernels.events import (
     series_slope,
     series_value,
 )
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, ORDER, OVERSHOOT
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT
+from engine.taylor.source.series import ORDER
 
 VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""

@@ -90,10 +90,16 @@ def find_scales(plan: Sequence[Product]) -> dict[Monomial, float]:
 
 
 def find_difference(products: Sequence[Product], polynomials: Sequence[Polynomial]) -> tuple[Product, Product] | None:
-    """Two squares that enter all `polynomials` only as their difference, to rounding, so that one series replaces both."""
+    """Two squares that enter all `polynomials` only as their difference, to rounding, so that one series replaces both.
+
+    Their series have the same scale, as the difference is formed of the series.
+    """
+    scales = find_scales(products)
     factors = {monomial for p in products for monomial in (p.left, p.right)}
     squares = [p for p in products if p.left == p.right and p.monomial not in factors]
     for one, other in itertools.combinations(squares, 2):
+        if scales[one.monomial] != scales[other.monomial]:
+            continue
         pairs = [(polynomial.get(one.monomial, 0.0), -polynomial.get(other.monomial, 0.0)) for polynomial in polynomials]
         if all(math.isclose(a, b, rel_tol=_ROUNDING) for a, b in pairs):
             return one, other

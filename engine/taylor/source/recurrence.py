@@ -1,9 +1,10 @@
-"""From a polynomial potential to straight-line programs for its Taylor kernels.
+"""From a potential to straight-line programs for its Taylor kernels.
 
 Along an orbit every quantity is a power series in time, and the series of a product is a Cauchy product. With
 ẍ = −V_x, ÿ = −V_y and V a polynomial, coefficient k + 2 of x and y follows from coefficients 0 … k of the monomials in
 V_x and V_y (Jorba & Zou 2005, Experimental Mathematics 14, 99). Written as one assignment per coefficient inside
-one loop over orbits, this recurrence has neither branches nor calls, so the compiler vectorises all of it.
+one loop over orbits, this recurrence has neither branches nor calls, so the compiler vectorises all of it. Formulas with other
+functions have the recurrences of `engine.taylor.source.expression_recurrence`; the functions below are the same for both.
 
 For each potential there are four functions with a loop over lanes `i`, and one for a single point:
 
@@ -12,11 +13,11 @@ For each potential there are four functions with a loop over lanes `i`, and one 
 ``fixed_step``       one step of a given size, which also adds weighted x² and y² to sums;
 ``jets``             the coefficients of x and y: the dense output of a step;
 ``tangent``          propagates a deviation vector over a given time by the linearised recurrence;
-``potential_value``  V at one point.
+``potential_value``  V at one point; for expressions there is ``potential_slopes`` with V and its gradient, too.
 
-The code depends on the structure of V only, that is on its exponents and on a few facts about the coefficients
-that save work (`find_difference`, `crossings_can_hide`). The coefficients are passed at run time in a table, every
-function's first argument, so that potentials of the same structure share compiled code.
+The code depends on the structure of V only, that is on the graph of an expression, or on the exponents of a polynomial and on a
+few facts about the coefficients that save work (`find_difference`, `crossings_can_hide`). The numbers are passed at run time in a
+table, every function's first argument, so that potentials of the same structure share compiled code.
 """
 
 from __future__ import annotations
@@ -25,12 +26,13 @@ import functools
 import hashlib
 import math
 import operator
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from engine.expressions.nodes import Expression
 from engine.polynomials import derivative
 from engine.results.arrays import read_only
 from engine.taylor.source.cauchy_products import (
@@ -43,10 +45,9 @@ from engine.taylor.source.cauchy_products import (
     find_scales,
     plan_products,
 )
+from engine.taylor.source.expression_recurrence import structure_of_expression
+from engine.taylor.source.series import ORDER, Hessian, PointFunctions, Series, Structure, cauchy, half_square, total
 from engine.taylor.source.straight_line import TABLE, StraightLine, Value, where
-
-ORDER = 19
-"""Order of the series; with TOLERANCE the fastest tried that keeps the energy error well below 1e-11 over 1e5 time units."""
 
 TOLERANCE = 3e-15
 """Norm of the last coefficients of a step's series times the 16th power of the step size."""
@@ -74,6 +75,9 @@ _STRUCTURES = 32
 
 Terms = tuple[tuple[int, int, float], ...]
 
+Definition = Terms | Expression
+"""What V is: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
+
 Entry = tuple[Monomial, float, float]
 """(term, multiple, factor): an entry of the table with the value factor · multiple · (the coefficient of a term of V)."""
 
@@ -81,8 +85,8 @@ Entry = tuple[Monomial, float, float]
 _Derivative = Mapping[Monomial, tuple[Monomial, float]]
 
 # Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and in the variational equations too.
-_GRADIENT = ((0,), (1,))
-_GRADIENT_AND_HESSIAN = (*_GRADIENT, (0, 0), (0, 1), (1, 1))
+_GRADIENT, _HESSIAN = ((0,), (1,)), ((0, 0), (0, 1), (1, 1))
+_GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 
 
 class GeneratedFunction(NamedTuple):
@@ -107,11 +111,14 @@ class GeneratedCode:
         ``step``, ``fixed_step``, ``jets``, ``tangent`` and ``potential_value``. Besides the programs, their kernels refer to
         ``kernel`` and ``read_table``.
     entries
-        The entries of the table, see `Entry`.
+        The entries of the table, as its structure knows them.
+    structure
+        The structure of the potentials.
     """
 
     functions: tuple[GeneratedFunction, ...]
-    entries: tuple[Entry, ...]
+    entries: tuple[Any, ...]
+    structure: Structure
 
     @functools.cached_property
     def digest(self) -> str:
@@ -130,17 +137,15 @@ class GeneratedCode:
     def __hash__(self) -> int:
         return hash(self.digest)
 
-    def tabulate(self, terms: Terms) -> np.ndarray:
+    def tabulate(self, definition: Definition) -> np.ndarray:
         """(m,) the table of a potential, which every function takes as its first argument; read-only."""
-        polynomial = _sorted(terms)
-        table = [factor * (polynomial[term] * multiple) for term, multiple, factor in self.entries]
-        return read_only(np.array(table, dtype=float))
+        return read_only(np.array(self.structure.tabulate(definition, self.entries), dtype=float))
 
 
 _Difference = tuple[Product, Product] | None
 
 
-class _Structure(NamedTuple):
+class _PolynomialStructure(NamedTuple):
     """What generated code depends on; the differences are those of `_find_difference` without and with the Hessian."""
 
     monomials: tuple[Monomial, ...]
@@ -148,6 +153,42 @@ class _Structure(NamedTuple):
     can_hide: bool
     difference: _Difference
     tangent_difference: _Difference
+
+    @property
+    def caution(self) -> float:
+        """`TOLERANCE` is tuned to polynomials."""
+        return 1.0
+
+    def orbit(self, program: StraightLine) -> tuple[Series, Series]:
+        """The recurrence with the products for the equations of motion only."""
+        series = _recurrence(program, self.monomials, _plan(self.monomials, _GRADIENT), self.difference)
+        return series[X], series[Y]
+
+    def hessian(self, program: StraightLine) -> Hessian:
+        """Each entry from the products for the variational equations, too."""
+        products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
+        scales = find_scales(products)
+        series = _recurrence(program, self.monomials, products, self.tangent_difference)
+
+        def entry(axes: tuple[int, int]) -> Callable[[int], Value]:
+            derived = _formed_derivative(self.monomials, axes, self.tangent_difference)
+            return lambda k: _linear_combination(program, derived, series, scales, k, -1.0)
+
+        return {axes: (entry(axes), bool(_derivative(self.monomials, axes))) for axes in _HESSIAN}
+
+    def point_functions(self) -> PointFunctions:
+        """V alone."""
+        return {"potential_value": lambda program: {"value": self._value(program)}}
+
+    def _value(self, program: StraightLine) -> Value:
+        x, y = program.input("x"), program.input("y")
+        parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, 1.0))) for i, j in self.monomials)
+        return total(program, parts)
+
+    def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
+        """Multiples of the coefficients."""
+        polynomial = _sorted(terms)
+        return [factor * (polynomial[term] * multiple) for term, multiple, factor in entries]
 
 
 def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
@@ -171,38 +212,16 @@ def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...],
     return find_difference(_plan(tuple(polynomial), derivatives), values)
 
 
-_Series = Sequence[Value]
-
-
-def _total(program: StraightLine, parts: Iterator[Value]) -> Value:
-    """The sum from left to right, each part computed just before it is added; 0.0 for no parts."""
-    first = next(parts, None)
-    return program.constant(0.0) if first is None else functools.reduce(operator.add, parts, first)
-
-
-def _sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
-    """a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
-    return functools.reduce(operator.add, (left * right for left, right in pairs))
-
-
-def _cauchy(left: _Series, right: _Series, k: int) -> Value:
-    """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
-    if left is right:
-        return _sum_of_products(_half_square(left, k))
-    return _sum_of_products((left[j], right[k - j]) for j in sorted(range(k + 1), key=lambda j: max(j, k - j)))
-
-
-def _half_square(series: _Series, k: int) -> Iterator[tuple[Value, Value]]:
-    """The factors of the products whose sum is coefficient k of half the square of a series."""
-    if k % 2 == 0:
-        yield 0.5 * series[k // 2], series[k // 2]
-    yield from ((series[j], series[k - j]) for j in reversed(range((k + 1) // 2)))
+def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
+    """A derivative of V as a sum over the series that are formed: that of a difference stands for both squares."""
+    contained = difference[1].monomial if difference is not None else None
+    return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
 
 
 def _linear_combination(
     program: StraightLine,
     derived: _Derivative,
-    series: Mapping[Monomial, _Series],
+    series: Mapping[Monomial, Series],
     scales: Mapping[Monomial, float],
     k: int,
     factor: float,
@@ -217,7 +236,7 @@ def _linear_combination(
         entry = program.entry((term, multiple / scales[m], factor))
         return entry * series[m][k] if sum(m) > 0 else entry
 
-    return _total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
+    return total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
 
 
 def _recurrence(
@@ -229,46 +248,43 @@ def _recurrence(
         Y: [program.input("y0"), program.input("y1")],
         **{p.monomial: [] for p in products},
     }
-    forces = {X: _derivative(monomials, (0,)), Y: _derivative(monomials, (1,))}
+    forces = {axis: _formed_derivative(monomials, axes, difference) for axis, axes in zip((X, Y), _GRADIENT, strict=True)}
     scales = find_scales(products)
     if difference is not None:
         one, other = difference
         products = [p for p in products if p not in difference]
-        forces = {axis: {m: origin for m, origin in force.items() if m != other.monomial} for axis, force in forces.items()}
     for k in range(ORDER - 1):
         for p in products:
-            series[p.monomial].append(_cauchy(series[p.left], series[p.right], k))
+            series[p.monomial].append(cauchy(series[p.left], series[p.right], k))
         if difference is not None:
-            subtracted = (left * right for left, right in _half_square(series[other.left], k))
-            square = _cauchy(series[one.left], series[one.left], k)
+            subtracted = (left * right for left, right in half_square(series[other.left], k))
+            square = cauchy(series[one.left], series[one.left], k)
             series[one.monomial].append(functools.reduce(operator.sub, subtracted, square))
         for axis, force in forces.items():
             series[axis].append(_linear_combination(program, force, series, scales, k, -1.0 / ((k + 1) * (k + 2))))
     return series
 
 
-def _orbit(program: StraightLine, structure: _Structure) -> dict[Monomial, list[Value]]:
-    """The recurrence with the products for the equations of motion only."""
-    return _recurrence(program, structure.monomials, _plan(structure.monomials, _GRADIENT), structure.difference)
-
-
-def _step_size(program: StraightLine, x: _Series, y: _Series) -> Value:
+def _step_size(program: StraightLine, x: Series, y: Series, caution: float) -> Value:
     """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
 
     The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
     The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa, and a shift by four
-    divides that by 16: h is up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down.
+    divides that by 16: h is up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down. The norm is
+    multiplied by `caution`.
     """
     one = 1023 << 52
     last, before, earlier = (abs(x[k]) + abs(y[k]) for k in (ORDER, ORDER - 1, ORDER - 2))
     norm = last + before + _EARLIER_WEIGHT * earlier
+    if caution != 1.0:
+        norm = caution * norm
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
     h = program.apply("double_of", (one + one // 16) - (bits >> 4))
     h = where(h < LONGEST_STEP, h, LONGEST_STEP)
     return where(norm < _LARGEST_NORM, h, math.nan)
 
 
-def _horner(series: _Series, h: Value) -> tuple[Value, Value]:
+def _horner(series: Series, h: Value) -> tuple[Value, Value]:
     """The value and the time derivative of a series at h."""
     slope = series[ORDER]
     value = slope * h + series[ORDER - 1]
@@ -291,7 +307,7 @@ def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
     return bound >= (math.pi / LONGEST_STEP) ** 2
 
 
-def _hidden_crossings(y: _Series, end: Value, h: Value) -> Value:
+def _hidden_crossings(y: Series, end: Value, h: Value) -> Value:
     """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
 
     bound = ½ Σ_{k≥2} |y_k| (2h)^k is at least h · max|ẏ − ẏ(0)|, and at least twice the distance of y from its chord.
@@ -346,11 +362,10 @@ def _start_in(lanes: str) -> dict[str, str]:
     return {name: f"{lanes}[{row}, i]" for row, name in enumerate(_START)}
 
 
-def _step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_step", table)
-    series = _orbit(program, structure)
-    x, y = series[X], series[Y]
-    h = _step_size(program, x, y)
+    x, y = structure.orbit(program)
+    h = _step_size(program, x, y, structure.caution)
     x_end, px_end = _horner(x, h)
     y_end, py_end = _horner(y, h)
     hidden = _hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
@@ -370,12 +385,12 @@ def _step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
     return _lane_loop(program, arguments, {**_start_in("now"), "t0": "now[4, i]"}, writes, gates, rows=("now", "new"))
 
 
-def _fixed_step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_fixed_step", table)
-    series = _orbit(program, structure)
+    x, y = structure.orbit(program)
     h = program.input("h")
-    x_end, px_end = _horner(series[X], h)
-    y_end, py_end = _horner(series[Y], h)
+    x_end, px_end = _horner(x, h)
+    y_end, py_end = _horner(y, h)
     # The sums are left to the loop: within the program they make it up to a sixth slower.
     writes: dict[str, Value | str] = {
         "sums[0, i] +=": "weight*(x0*x0)",
@@ -385,28 +400,25 @@ def _fixed_step(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunc
     return _lane_loop(program, "h, weight, state, sums", _start_in("state"), writes, rows=("state", "sums"))
 
 
-def _jets(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+def _jets(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_jets", table)
-    series = _orbit(program, structure)
-    writes = {f"{name}_jet[{k}, i] =": series[axis][k] for name, axis in (("x", X), ("y", Y)) for k in range(ORDER + 1)}
+    orbit = zip("xy", structure.orbit(program), strict=True)
+    writes = {f"{name}_jet[{k}, i] =": series[k] for name, series in orbit for k in range(ORDER + 1)}
     return _lane_loop(program, "x, y, px, py, x_jet, y_jet", _START, writes)
 
 
-def _tangent(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
+def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     """Variational equations ẅ = −(Hessian of V along the orbit) w, with w = (δx, δy, δpx, δpy); eq. 4 of Zotos (2014)."""
     program = StraightLine("_tangent", table)
-    products = _plan(structure.monomials, _GRADIENT_AND_HESSIAN)
-    scales = find_scales(products)
-    series = _recurrence(program, structure.monomials, products, structure.tangent_difference)
-    hessian = {axes: _derivative(structure.monomials, axes) for axes in ((0, 0), (0, 1), (1, 1))}
+    hessian = structure.hessian(program)
     second: dict[tuple[int, int], list[Value]] = {axes: [] for axes in hessian}
     u, v = ([program.input(f"{name}{k}") for k in (0, 1)] for name in "uv")
     for k in range(ORDER - 1):
-        for axes, derived in hessian.items():
-            second[axes].append(_linear_combination(program, derived, series, scales, k, -1.0))
+        for axes, (coefficient, _) in hessian.items():
+            second[axes].append(coefficient(k))
         for w, row in ((u, ((0, 0), (0, 1))), (v, ((0, 1), (1, 1)))):
-            parts = (_cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes])
-            w.append(_total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
+            parts = (cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes][1])
+            w.append(total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
     h = program.input("h")
     (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
     reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
@@ -414,37 +426,51 @@ def _tangent(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunctio
     return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
 
 
-def _potential_value(structure: _Structure, table: dict[Entry, int]) -> GeneratedFunction:
-    """V at one point."""
-    program = StraightLine("_potential_value", table)
-    x, y = program.input("x"), program.input("y")
-    parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, 1.0))) for i, j in structure.monomials)
-    program.results = [_total(program, parts).index]
+def _point_function(name: str, append: Callable[[StraightLine], Mapping[str, Value]], table: dict[Any, int]) -> GeneratedFunction:
+    """A function of one point (x, y)."""
+    program = StraightLine(f"_{name}", table)
+    values = append(program)
+    program.results = [value.index for value in values.values()]
     lines = [
         "@kernel",
-        "def potential_value(coefficients, x, y):",
+        f"def {name}(coefficients, x, y):",
         f"    {TABLE} = read_table(coefficients)",
-        f"    (value,) = {program.name}({', '.join(program.parameters)})",
-        "    return value",
+        f"    ({', '.join(values)},) = {program.name}({', '.join(program.parameters)})",
+        f"    return {', '.join(values)}",
     ]
-    return GeneratedFunction("potential_value", program, "\n".join(lines) + "\n")
+    return GeneratedFunction(name, program, "\n".join(lines) + "\n")
 
 
-def generate_code(terms: Terms, channels: int, reach: float = REACH) -> GeneratedCode:
+def generate_code(definition: Definition, channels: int, reach: float = REACH) -> GeneratedCode:
     """The generated functions for a potential, the same object for all potentials of the same structure.
 
     Parameters
     ----------
-    terms
-        ((i, j, c), …) of V = Σ c x^i y^j, in any order.
+    definition
+        ((i, j, c), …) of V = Σ c x^i y^j, in any order, or an expression.
     channels
         How many gates ``step`` tests, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
     """
+    return _generate(_find_structure(definition, channels, reach))
+
+
+@functools.singledispatch
+def _find_structure(definition: Any, channels: int, reach: float) -> Structure:
+    raise TypeError(f"definition={definition!r}: must be terms or an expression")
+
+
+@_find_structure.register(tuple)
+def _of_polynomial(terms: Terms, channels: int, reach: float) -> Structure:
     polynomial = _sorted(terms)
     differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
-    return _generate(_Structure(tuple(polynomial), channels, crossings_can_hide(polynomial, reach), *differences))
+    return _PolynomialStructure(tuple(polynomial), channels, crossings_can_hide(polynomial, reach), *differences)
+
+
+@_find_structure.register(Expression)
+def _of_expression(expression: Expression, channels: int, _reach: float) -> Structure:
+    return structure_of_expression(expression, channels)
 
 
 def _sorted(terms: Terms) -> dict[Monomial, float]:
@@ -453,7 +479,10 @@ def _sorted(terms: Terms) -> dict[Monomial, float]:
 
 
 @functools.lru_cache(maxsize=_STRUCTURES)
-def _generate(structure: _Structure) -> GeneratedCode:
-    table: dict[Entry, int] = {}
-    functions = tuple(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent, _potential_value))
-    return GeneratedCode(functions, tuple(table))
+def _generate(structure: Structure) -> GeneratedCode:
+    table: dict[Any, int] = {}
+    functions = [
+        *(generate(structure, table) for generate in (_step, _fixed_step, _jets, _tangent)),
+        *(_point_function(name, append, table) for name, append in structure.point_functions().items()),
+    ]
+    return GeneratedCode(tuple(functions), tuple(table), structure)

@@ -23,8 +23,8 @@ class StraightLine:
     operations
         (symbol, operands): ``input`` with a name, ``constant`` with a number, ``entry`` with an index of the table, or an
         operation on the results with the given indices: + − · / on doubles, + − · >> on 64-bit integers, < <= > >= == on two
-        of a kind, & on booleans, ``abs``, ``where`` (condition, value, other value), ``bits_of`` and ``double_of``, which
-        reinterpret a double as an integer and back.
+        of a kind, & on booleans, ``abs`` and ``sqrt`` of doubles, ``where`` (condition, value, other value), ``bits_of`` and
+        ``double_of``, which reinterpret a double as an integer and back.
     results
         Indices of the results that are returned.
     """
@@ -81,7 +81,7 @@ class Value:
 
     __add__, __sub__, __mul__, __rshift__, __and__ = map(_binary, ("+", "-", "*", ">>", "&"))
     __lt__, __le__, __gt__, __ge__, equals = map(_binary, ("<", "<=", ">", ">=", "=="))
-    __rsub__, __rmul__, __rtruediv__ = (_binary(symbol, swapped=True) for symbol in "-*/")
+    __radd__, __rsub__, __rmul__, __rtruediv__ = (_binary(symbol, swapped=True) for symbol in "+-*/")
 
     def __abs__(self) -> Value:
         return self.program.apply("abs", self)

@@ -3,6 +3,7 @@ import assert from "node:assert/strict"
 import {test} from "node:test"
 
 import {pixelColumns, showsWish} from "../../../app/browser/modules/columns.js"
+import {X_PX as slice} from "./x_px.js"
 
 class Image {
   /** @param {ArrayBuffer} buffer @param {[number, number]} shape */
@@ -19,21 +20,28 @@ const coding = {
   ]),
   first: 5,
   leastCrossings: [0, 1, 2, 3, 11],
+  undecided: 0,
+  withoutOrbit: [2, 3],
 }
 const window = {xLow: -1, xHigh: 1, ordinateLow: -2, ordinateHigh: 2}
-/** @type {import("../../../app/browser/modules/system.js").Slice} */
-const slice = {axes: ["x", "px"], fixed: {y: 0}, decided: "py", sign: 1}
 const wish = {slice, energy: 0.3, window, most: 224}
 const view = {...wish, columns: 3, rows: 1, horizon: 30}
 const like = {fate: [new Image(new ArrayBuffer(1), [1, 1])], escape_time: [new Image(new ArrayBuffer(4), [1, 1])]}
 const pixels = {fate: Int8Array.of(-3, 1, 4), time: Float32Array.of(NaN, 2, 3), crossings: Uint16Array.of(9, 0, 12)}
 
 test("outcomes, channels and classes of crossings have the codes of the server", () => {
-  const columns = pixelColumns(coding, view, pixels, like)
+  const columns = pixelColumns(coding, view, pixels, like, null)
   assert.deepEqual([...new Uint8Array(columns.fate[0].buffer)], [0, 5, 8])
   assert.deepEqual([...new Uint8Array(columns.crossing_class[0].buffer)], [0, 5, 9])
   assert.deepEqual(columns.fate[0].shape, [1, 3])
   assert.deepEqual([columns.x, columns.y, columns.dw, columns.dh], [[-1], [-2], [2], [4]])
+})
+
+test("pixels are compared with those of the other view at the same place", () => {
+  const other = {fate: [Object.assign(Uint8Array.of(5, 5, 7, 3), {shape: [1, 4]})], x: [-1], y: [-2], dw: [8 / 3], dh: [4]}
+  const columns = pixelColumns(coding, view, pixels, like, other)
+  // Undecided here, the same channel, another channel.
+  assert.deepEqual([...new Uint8Array(columns.difference[0].buffer)], [0, 5, 6])
 })
 
 const server = (/** @type {Record<string, any>} */ changes) => ({

@@ -3,10 +3,9 @@ import assert from "node:assert/strict"
 import {mock, test} from "node:test"
 
 import {Frames, LEAST_SIDE, Picture} from "../../../app/browser/modules/frames.js"
+import {X_PX as slice} from "./x_px.js"
 
 const window = {xLow: -1, xHigh: 1, ordinateLow: -1, ordinateHigh: 1}
-/** @type {import("../../../app/browser/modules/system.js").Slice} */
-const slice = {axes: ["x", "px"], fixed: {y: 0}, decided: "py", sign: 1}
 const system = /** @type {any} */ ({mirror: [0, 2, 1]})
 const wish = (/** @type {number} */ energy) => ({slice, energy, window, most: 224})
 const view = {...wish(0.3), columns: 3, rows: 3, horizon: 30}

@@ -5,11 +5,11 @@ import {Picture} from "../../../app/browser/modules/frames.js"
 import {Integrator} from "../../../app/browser/modules/integrator.js"
 import {Interior} from "../../../app/browser/modules/interior.js"
 import {computePixels} from "../../../app/browser/modules/pixels.js"
-import {Potential} from "../../../app/browser/modules/potential.js"
+import {makePotential} from "../../../app/browser/modules/potential.js"
 import {input, module} from "./read_input.js"
 
 const {system, views} = input
-const potential = new Potential(system.terms)
+const potential = makePotential(system.formula)
 const [integrator, interior] = [new Integrator(system, module), new Interior(potential)]
 const pictures = views.map((/** @type {import("../../../app/browser/modules/pixels.js").View} */ view) => {
   const picture = new Picture(system, view)

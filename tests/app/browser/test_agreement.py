@@ -10,14 +10,43 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import Coordinate, EscapeMap, Fate, MapSpec, Plane, Slice, Trust, Window, compute_map, compute_trust, default_window
-from engine.service import TYPED, System, make_portable_system
+from engine import (
+    Coordinate,
+    Direction,
+    EscapeMap,
+    Fate,
+    MapSpec,
+    Plane,
+    Slice,
+    System,
+    Trust,
+    Window,
+    compute_map,
+    compute_trust,
+    default_window,
+)
+from engine.service import TYPED, make_portable_system
 from tests.node import needs_node, run_node
 
-SYSTEMS = (System("I"), System("II"), System("III"), System("C5"), System(TYPED, "½(x² + y²) − x²y² − x³/4"))
-SLICES = (*Plane, Slice(Coordinate.H, Coordinate.X), Slice(Coordinate.PX, Coordinate.Y, fixed=((Coordinate.X, 0.05),)))
+SYSTEMS = (
+    System("I"),
+    System("II"),
+    System("III"),
+    System("C5"),
+    System(TYPED, "½(x² + y²) − x²y² − x³/4"),
+    System(TYPED, "½r² − a x²y exp(−y²)", {"a": 2.0}),
+)
+SLICES = (
+    *Plane,
+    Slice(Coordinate.H, Coordinate.X),
+    Slice(Coordinate.PX, Coordinate.Y, fixed=((Coordinate.X, 0.05),)),
+    Slice(Coordinate.X, Coordinate.THETA, fixed=((Coordinate.Y, 0.05),)),
+    Slice(Coordinate.BETA, Coordinate.H, fixed=((Coordinate.X, 0.1),)),
+    Slice(Direction("u", x=1.0, y=0.5), Coordinate.PX),
+    Slice(Direction("u", y=1.0, py=-0.5), Direction("w", x=0.5, py=1.0)),
+)
 # Powers of ten.
-ZOOMS = (0, 2, 5, 9)
+ZOOMS = (0, 0, 2, 2, 5, 9)
 SIDE, COARSE, HORIZON = 30, 10, 30.0
 # Of all pixels, sensitive ones included.
 LEAST_SHARE = 0.995
@@ -53,7 +82,7 @@ def zoom_on_boundary(spec: MapSpec, chance: np.random.Generator) -> MapSpec:
 def as_view(spec: MapSpec) -> dict[str, Any]:
     window = dict(zip(("xLow", "xHigh", "ordinateLow", "ordinateHigh"), vars(spec.find_window()).values(), strict=True))
     shape = {"columns": SIDE, "rows": SIDE, "horizon": HORIZON}
-    return {"slice": spec.plane.to_dict(), "energy": spec.common_energy or 0.0, "window": window, **shape}
+    return {"slice": spec.plane.to_dict(spec.potential.units), "energy": spec.common_energy or 0.0, "window": window, **shape}
 
 
 def expected_fate(escape_map: EscapeMap) -> np.ndarray:

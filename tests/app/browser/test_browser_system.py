@@ -7,9 +7,8 @@ import threading
 import numpy as np
 
 from app.browser.browser_system import make_browser_system, system_key
-from engine import CASES, Plane, default_window
+from engine import CASES, Plane, System, default_window
 from engine.execution import Execution
-from engine.service import System
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:
@@ -22,5 +21,5 @@ def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None
 
 
 def test_each_potential_has_its_key() -> None:
-    systems = (System("I"), System("II"), System("I", epsilon=1.1), System("typed", "x²+y²-x²y²"))
+    systems = (System("I"), System("II"), System("I", parameters={"epsilon": 1.1}), System("typed", "x²+y²-x²y²"))
     assert len({system_key(system.potential) for system in systems}) == len(systems)

@@ -184,7 +184,7 @@ def test_an_invalid_energy_gives_a_message(session: Session) -> None:
     state.energy = 50.0
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.calls if what == "map failed")
-    assert "energy=50.0" in sentence
+    assert sentence.startswith("h = 50: ")
 
 
 def test_closing_cancels_all_jobs(session: Session) -> None:

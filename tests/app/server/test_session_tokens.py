@@ -114,6 +114,6 @@ def test_each_token_is_of_a_new_session(application: BokehTornado) -> None:
 
 
 def test_bokeh_takes_the_token_and_not_the_one_of_the_client(application: BokehTornado) -> None:
-    asked = request("/app?bokeh-token=mine")
+    asked = request("/app?bokeh-token=mine&bokeh-session-id=%ff")
     use_token(asked, "issued")
-    assert asked.arguments["bokeh-token"] == [b"issued"]
+    assert asked.arguments == {"bokeh-token": [b"issued"]}

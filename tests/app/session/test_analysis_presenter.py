@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 
 from app.job_clients.follow_up_requests import FollowUpRequests
-from app.session.analysis_presenter import SWEPT_ENERGIES, AnalysisPresenter
+from app.session.analysis_presenter import AnalysisPresenter
 from app.state.view_state import Analysis, ViewState
-from app.views.maps.map_plots import MapsView
-from engine import CASES, EscapeMap, MapSpec, Plane, Trust, Window, compute_map, compute_uncertainty_exponent
+from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES
+from engine import CASES, EscapeMap, MapSpec, Plane, System, Trust, Window, compute_map, compute_uncertainty_exponent
 from engine.service import Jobs
 from plots.map_analyses import MapAnalyses
+from tests.app.map_actions import make_maps
+from tests.app.session.session_lock import locked_by
 
 
 class Session:
@@ -28,17 +30,23 @@ class Session:
         self.analyses = MapAnalyses()
         self.problems: list[str] = []
         self.state, self.jobs = ViewState(case="II", energy=0.25, resolution=112, t_max=1e3, **chosen), jobs
-        self.maps = MapsView(lambda x, y: None, lambda window: None, lambda: None, lambda box: None)
-        self.presenter = AnalysisPresenter(self.state, self.jobs, self.maps, self.set_analyses, lambda curves: None, self.locked)
-        self.follow_ups = FollowUpRequests(self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, self.locked)
+        self.maps = make_maps()
+        self.presenter = AnalysisPresenter(
+            self.state,
+            self.jobs,
+            self.maps,
+            self.set_analyses,
+            lambda curves: None,
+            lambda text: None,
+            self.open_view,
+            locked_by(self.changed),
+        )
+        self.follow_ups = FollowUpRequests(
+            self.state, self.jobs, self.presenter.follow_ups(), self.problems.append, locked_by(self.changed)
+        )
 
-    def locked(self, function: Callable[..., None]) -> Callable[..., None]:
-        def call(*arguments: Any) -> None:
-            with self.changed:
-                function(*arguments)
-                self.changed.notify_all()
-
-        return call
+    def open_view(self, system: System, values: dict[str, Any]) -> None:
+        self.opened = system, values
 
     def set_analyses(self, analyses: MapAnalyses) -> None:
         self.analyses = analyses
@@ -64,7 +72,7 @@ def frame() -> EscapeMap:
 @pytest.fixture(autouse=True)
 def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Little work for each exponent of the curves against energy."""
-    monkeypatch.setattr("engine.sweeps.energy_curves._WORK", 1e6)
+    monkeypatch.setattr("engine.sweeps.curve_points._WORK", 1e6)
 
 
 @pytest.fixture
@@ -162,7 +170,7 @@ def test_origins_have_a_picture_while_they_are_switched_on(begin: Callable[..., 
     session.show(frame)
     session.wait_for(lambda: session.analyses.origins is not None)
     assert session.maps.source.data["passage"][0].shape == frame.fate.shape
-    grid, _ = session.maps.layout()
+    grid = session.maps.grid.layout()
     pictures = len(grid.objects)
     session.state.origins = False
     assert len(grid.objects) == pictures - 1
@@ -213,22 +221,22 @@ def test_curves_arrive_energy_by_energy_and_can_be_stopped(begin: Callable[..., 
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["h"]) >= 2)
+    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
     assert curves.running
     curves.button.clicks += 1
     assert not curves.running
     assert session.jobs.in_flight == 0
-    assert f"of {SWEPT_ENERGIES}" in curves.text.object
+    assert f"of {SWEPT_VALUES + REFINED_VALUES}" in curves.text.object
 
 
 def test_another_case_removes_the_curves(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["h"]) >= 1)
+    session.wait_for(lambda: len(curves.points.data["value"]) >= 1)
     session.state.param.update(case="III", energy=0.4)
     assert not curves.running
-    assert len(curves.points.data["h"]) == 0
+    assert len(curves.points.data["value"]) == 0
     curves.open_near(0.3)
     assert session.state.energy == 0.4
 
@@ -246,9 +254,24 @@ def test_a_click_on_a_curve_opens_the_nearest_energy(begin: Callable[..., Sessio
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["h"]) >= 2)
+    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
     curves.button.clicks += 1
-    energies = np.sort(curves.points.data["h"])
+    energies = np.sort(curves.points.data["value"])
     curves.open_near(float(energies[1]) + 1e-4)
     assert session.state.energy == energies[1]
     assert session.state.plane is Plane.X_PX
+
+
+@pytest.mark.slow
+def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable[..., Session]) -> None:
+    session = begin(analysis=Analysis.ENERGIES)
+    curves = session.presenter.curves
+    assert list(curves.against.options) == ["h", "ω1", "ω2", "ε"]
+    curves.against.value = "epsilon"
+    curves.button.clicks += 1
+    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
+    curves.button.clicks += 1
+    value = float(np.max(curves.points.data["value"]))
+    curves.open_near(value)
+    assert session.opened[0] == System("II", parameters={"epsilon": value})
+    assert session.opened[1]["energy"] == 0.25

@@ -22,10 +22,11 @@ from app.session.explorer import Explorer
 from app.session.page import explorer_page
 from app.state import system_review as review_module
 from app.state.system_review import review_system
-from engine import CASES, Plane, Window
+from engine import CASES, Plane, System, Window
+from engine.potentials import polynomial_form as polynomial_module
 from engine.potentials import potential as potential_module
 from engine.potentials import system as system_module
-from engine.service import TYPED, System
+from engine.service import TYPED
 from tests.app.other_loop import run_on_new_loop
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}
@@ -34,7 +35,7 @@ LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 SLOW = [
     (system_module, "parse_formula"),
     (review_module, "review_potential"),
-    (potential_module, "find_critical_points"),
+    (polynomial_module, "find_critical_points"),
     (potential_module, "leads_out_of_well"),
     (potential_module, "find_maxima_beside"),
 ]
@@ -49,9 +50,9 @@ def threads(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[int]]:
         review_module.review_catalogue_entry(case)
 
     def recording(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        def call(*arguments: Any) -> Any:
+        def call(*arguments: Any, **options: Any) -> Any:
             called.setdefault(name, set()).add(threading.get_ident())
-            return function(*arguments)
+            return function(*arguments, **options)
 
         return call
 
@@ -128,8 +129,7 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(threads: dict[str, 
         await wait_for(lambda: state.case == TYPED)
         assert (state.plane, state.energy, state.starts) == (Plane.X_Y, 0.4, ((0.1, 0.2),))
         assert state.window == Window(-1.0, 1.0, -0.5, 0.5)
-        assert explorer.potential.panel.section.is_open
-        assert not explorer.links.history.can_go_back
+        assert explorer.links.history.entry == 0
 
     loop = with_page(LEGAL | asked, check)
     assert all(loop not in found for found in threads.values())
@@ -137,7 +137,7 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(threads: dict[str, 
 
 def test_a_typed_potential_is_reviewed_on_another_thread(threads: dict[str, set[int]]) -> None:
     async def check(explorer: Explorer) -> None:
-        explorer.potential.panel.formula.value = "½(x² + y²) − 0.79x²y²"
+        explorer.potential.panel.formula._receive({"text": "½(x² + y²) − 0.79x²y²", "typed": 1, "done": True})
         await wait_for(lambda: explorer.state.case == TYPED)
         assert explorer.state.potential.channels == 4
 

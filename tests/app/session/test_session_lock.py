@@ -29,7 +29,7 @@ from tests.app.other_loop import run_on_new_loop
 
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
-    lambda explorer: explorer.orbits.playback.player.param.update(value=10),
+    lambda explorer: explorer.orbits.playback.player._on_step(10),
     lambda explorer: explorer.controls.exact_energy._receive({"number": 0.3, "typed": 1}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from app.state.help_texts import HELP_TEXTS, title_with_help
-from app.views.analysis.energy_curves import TITLES as CURVES
+from app.views.analysis.curves import TITLES as CURVES
 from app.views.maps.map_plots import MAPS
 from app.views.orbits.orbit_plots import TITLES as ORBITS
 

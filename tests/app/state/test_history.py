@@ -7,9 +7,9 @@ from app.state.history import History
 
 def test_each_action_is_an_entry() -> None:
     history = History()
-    assert (history.can_go_back, history.can_go_forward) == (False, False)
+    assert history.entry == 0
     assert [history.record(), history.record()] == [1, 2]
-    assert (history.can_go_back, history.can_go_forward) == (True, False)
+    assert history.entry == 2
 
 
 def test_all_changes_of_a_gesture_are_one_entry() -> None:
@@ -28,10 +28,9 @@ def test_back_and_forward_lead_through_the_entries() -> None:
     history = History()
     history.record()
     history.record()
-    history.move_to(1)
-    assert (history.can_go_back, history.can_go_forward) == (True, True)
-    history.move_to(0)
-    assert (history.can_go_back, history.can_go_forward) == (False, True)
+    for entry in (1, 0, 2):
+        history.move_to(entry)
+        assert history.entry == entry
 
 
 def test_an_action_after_going_back_drops_later_entries() -> None:
@@ -40,7 +39,8 @@ def test_an_action_after_going_back_drops_later_entries() -> None:
         history.record()
     history.move_to(1)
     assert history.record() == 2
-    assert not history.can_go_forward
+    history.move_to(3)
+    assert history.entry == 0
 
 
 def test_unknown_entries_count_as_the_first() -> None:

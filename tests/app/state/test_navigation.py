@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
 from app.state.navigation import PAN_SHARE, pan, window_moves, zoom
@@ -27,6 +29,13 @@ def test_a_zoom_keeps_the_centre() -> None:
     assert zoom(zoom(WINDOW, 2.0), 0.5) == WINDOW
 
 
+def test_a_zoom_about_a_point_keeps_its_place_in_the_window() -> None:
+    zoomed = zoom(WINDOW, 4.0, (0.0, 1.5))
+    assert zoomed == Window(-0.25, 0.75, 1.125, 1.625)
+    for low, high, was_low, was_high, at in ((-0.25, 0.75, -1.0, 3.0, 0.0), (1.125, 1.625, 0.0, 2.0, 1.5)):
+        assert (at - low) / (high - low) == pytest.approx((at - was_low) / (was_high - was_low))
+
+
 def test_a_zoom_beyond_double_precision_is_rejected() -> None:
     with pytest.raises(ValueError, match="window x range"):
         zoom(Window(1.0, 1.0 + 4e-16, 0.0, 1.0), 4.0)
@@ -35,13 +44,13 @@ def test_a_zoom_beyond_double_precision_is_rejected() -> None:
 def test_the_first_zoom_starts_from_the_whole_interior() -> None:
     state = ViewState(case="I", energy=0.2)
     whole = state.map_spec().find_window()
-    window_moves(state, lambda: whole)["+"]()
+    window_moves(partial(setattr, state, "window"), lambda: whole)["+"]()
     assert state.window == zoom(whole, 2.0)
 
 
 def test_keys_move_the_window_of_the_state() -> None:
     state = ViewState(case="I", energy=0.2, window=WINDOW)
-    moves = window_moves(state, lambda: state.window)
+    moves = window_moves(partial(setattr, state, "window"), lambda: state.window)
     moves["-"]()
     assert state.window == zoom(WINDOW, 0.5)
     moves["ArrowUp"]()

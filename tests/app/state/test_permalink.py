@@ -8,12 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.state.permalink import LONGEST_VALUE, linked_system, read_link, write_link
-from app.state.view_state import LAYERS, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
-from engine import CASES, Plane, Window
-from engine.service import TYPED, System
+from app.state.compared_view import ComparedView
+from app.state.permalink import LONGEST_VALUE, linked_system, read_link, without_system, write_link
+from app.state.view_state import LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
+from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
+from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window
+from engine.service import TYPED
 from plots.palette import MOST_ORBITS, PALETTES
 from tests.app.state.opened_link import open_link
+from tests.engine.slices.test_slice import slices
 
 numbers = st.floats(-1e3, 1e3, allow_nan=False)
 pairs = st.tuples(numbers, numbers).filter(lambda pair: pair[0] < pair[1])
@@ -27,7 +30,7 @@ def parameters(link: str) -> dict[str, str]:
 
 @given(
     st.sampled_from(list(CASES)),
-    st.sampled_from(list(Plane)),
+    st.sampled_from(list(Plane)) | slices(),
     st.floats(1e-3, 1e3),
     st.sampled_from(list(T_MAX_CHOICES.values())),
     st.sampled_from(list(RESOLUTION_CHOICES.values())),
@@ -53,10 +56,22 @@ def test_a_link_contains_the_view_state_at_full_precision(
     assert {name: getattr(again, name) for name in chosen} == chosen
 
 
+@pytest.mark.parametrize("focus", PICTURES)
+def test_an_embedded_picture_is_read_as_the_one_that_is_large(focus: str) -> None:
+    values, problems = read_link(parameters(write_link(ViewState(focus=focus), embedded=True)))
+    assert (values["focus"], problems) == (focus, [])
+
+
+def test_an_embedded_picture_of_a_layer_has_its_layer() -> None:
+    assert read_link({"embed": "characters"})[0] == {"focus": "characters", "judge": True}
+    assert read_link({"embed": "origins", "origins": "no"})[0] == {"focus": "origins", "origins": True}
+
+
 @pytest.mark.parametrize(
     ("name", "text"),
     [
         ("case", "IV"),
+        ("embed", "all"),
         ("case", "__class__"),
         ("plane", "(x, px)"),
         ("h", "nan"),
@@ -79,6 +94,9 @@ def test_a_link_contains_the_view_state_at_full_precision(
         ("palette", "neon"),
         ("look", "6"),
         ("judge", "maybe"),
+        ("plane", "x,z"),
+        ("plane", "x,epsilon=3:1"),
+        ("fix", "y=0.1"),
         ("analysis", "all"),
     ],
 )
@@ -173,3 +191,57 @@ def test_unknown_parameters_are_ignored() -> None:
 def test_any_text_is_accepted_or_ignored(hostile: dict[str, str]) -> None:
     values, _ = read_link(hostile)
     ViewState(**values)
+
+
+def test_a_slice_along_a_letter_belongs_to_the_system_of_the_link() -> None:
+    link = {"case": "typed", "V": "0.5(x^2+y^2) - a x y^2", "letters": "a:1.5", "plane": "x,a=1:2", "fix": "px=0.1"}
+    values, problems = read_link(link)
+    system = System("typed", link["V"], {"a": 1.5})
+    assert problems == []
+    axis = ParameterAxis("a", 1.0, 2.0, system)
+    assert values["plane"] == Slice(Coordinate.X, axis, fixed=((Coordinate.PX, 0.1),))
+    assert "plane" not in without_system(values)
+
+
+COMPARED = [
+    ComparedView(System("II", "", {"epsilon": 1.25}), Plane.X_PX, 0.1 + 0.2),
+    ComparedView(System(TYPED, "½(x²+y²) − a x y²", {"a": 1.5}), Slice(Coordinate.X, Coordinate.THETA), 0.2),
+    ComparedView(System("III", "", {}), Plane.X_H, (0.25, 0.7)),
+]
+
+
+@pytest.mark.parametrize("view", COMPARED, ids=lambda view: view.title)
+def test_a_link_contains_the_view_with_which_another_is_compared(view: ComparedView) -> None:
+    values, problems = read_link(parameters(write_link(ViewState(case="I", energy=0.2, compared=view))))
+    assert (values["compared"], problems) == (view, [])
+
+
+@pytest.mark.parametrize(
+    ("link", "message"),
+    [
+        ({"with_case": "II"}, "with_h"),
+        ({"with_case": "II", "with_h": "nan"}, "with_h"),
+        ({"with_case": "II", "with_plane": "x_h", "with_h": "0.2"}, "two for an axis h"),
+        ({"with_case": "II", "with_h": "1e300"}, "with_h"),
+        ({"with_case": "V", "with_h": "0.2"}, "case=V"),
+        ({"with_plane": "x,x", "with_h": "0.2"}, "plane=x,x"),
+    ],
+)
+def test_a_view_to_compare_with_that_is_not_understood_is_left_out(link: dict[str, str], message: str) -> None:
+    values, problems = read_link(link)
+    assert "compared" not in values
+    assert message in " ".join(problems)
+
+
+@given(st.sampled_from(StartsFrom), st.sampled_from(COUNTS), st.integers(0, 2**31 - 1), st.integers(-18, -2))
+def test_a_link_contains_the_starts_that_are_watched(where: StartsFrom, count: int, seed: int, radius: int) -> None:
+    watched = WatchedStarts(where, count, seed, radius / 2)
+    values, problems = read_link(parameters(write_link(ViewState(watched=watched))))
+    assert (values.get("watched", WatchedStarts()), problems) == (watched, [])
+
+
+@pytest.mark.parametrize("text", ["well", "moon,5000,1,-2", "well,7,1,-2", "well,5000,-1,-2", "well,5000,1,5", "well,5000,1,nan"])
+def test_starts_to_watch_that_are_not_understood_are_ignored(text: str) -> None:
+    values, problems = read_link({"watch": text})
+    assert "watched" not in values
+    assert len(problems) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,9 +15,21 @@ from PIL import Image
 import app
 from app.state.permalink import LINKED, read_link, write_link
 from app.state.presets import GROUPS, PRESETS, Preset
-from app.state.view_state import ViewState
+from app.state.view_state import Analysis, ViewState
 from app.views.panels.gallery import Gallery
-from engine import CASES, POTENTIALS, Fate, Orbit, Plane, classify_orbits, compute_map, integrate_orbit, start_states
+from engine import (
+    CASES,
+    POTENTIALS,
+    Fate,
+    Orbit,
+    Plane,
+    classify_orbits,
+    compute_flux,
+    compute_map,
+    integrate_orbit,
+    sample_starts,
+    start_states,
+)
 from plots.map_images import TITLES
 from plots.palette import MOST_ORBITS
 
@@ -31,16 +44,21 @@ def named(key: str) -> Preset:
 
 
 def start_of(preset: Preset, x: float, ordinate: float) -> np.ndarray:
-    return start_states(POTENTIALS[preset.case].potential, preset.plane, preset.energy, np.array([x]), np.array([ordinate]))[0]
+    return start_states(POTENTIALS[preset.case], preset.plane, preset.energy, np.array([x]), np.array([ordinate]))[0]
+
+
+def fate_of(preset: Preset, x: float, ordinate: float, t_max: float) -> int:
+    potential = preset.plane.potential_at(POTENTIALS[preset.case], x, ordinate)
+    energy = preset.plane.energies(preset.energy, x, ordinate)
+    return int(classify_orbits(potential, energy, start_of(preset, x, ordinate)[None], t_max).fate[0])
 
 
 def fates(preset: Preset) -> list[int]:
-    states = np.array([start_of(preset, *start) for start in preset.starts])
-    return [int(fate) for fate in classify_orbits(POTENTIALS[preset.case].potential, preset.energy, states, preset.t_max).fate]
+    return [fate_of(preset, *start, preset.t_max) for start in preset.starts]
 
 
 def integrate(preset: Preset) -> Orbit:
-    return integrate_orbit(POTENTIALS[preset.case].potential, start_of(preset, *preset.starts[0]), preset.t_max)
+    return integrate_orbit(POTENTIALS[preset.case], start_of(preset, *preset.starts[0]), preset.t_max)
 
 
 def test_keys_and_titles_are_unique() -> None:
@@ -52,7 +70,7 @@ def test_all_groups_cases_planes_and_pictures_occur() -> None:
     assert len(places) >= 12
     assert {preset.group for preset in PRESETS} == set(GROUPS)
     assert {preset.case for preset in places} == set(CASES)
-    assert {preset.plane for preset in PRESETS} == set(Plane)
+    assert {preset.plane for preset in PRESETS} >= set(Plane)
     assert {preset.picture for preset in PRESETS} == set(TITLES)
 
 
@@ -88,11 +106,12 @@ def test_every_thumbnail_has_a_preset() -> None:
 @each_preset
 def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
     spec = ViewState(**preset.values()).map_spec()
-    assert 1 <= len(set(preset.starts)) == len(preset.starts) <= MOST_ORBITS
+    # Many orbits are watched without any of them being chosen.
+    fewest = 0 if preset.analysis is Analysis.WATCH else 1
+    assert fewest <= len(set(preset.starts)) == len(preset.starts) <= MOST_ORBITS
     for x, ordinate in preset.starts:
-        energy = preset.plane.energies(preset.energy, x, ordinate)
         assert spec.pixel_at(x, ordinate) is not None
-        assert classify_orbits(spec.potential, energy, start_of(preset, x, ordinate)[None], 10.0).fate[0] >= Fate.BOUNDED
+        assert fate_of(preset, x, ordinate, 10.0) >= Fate.BOUNDED
 
 
 @pytest.mark.parametrize(
@@ -107,6 +126,9 @@ def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
         ("owl", [0, 0, 0, 0]),
         ("ajar", [1, 2, 3, 0]),
         ("section", [0, 0, 1, 2, 3]),
+        ("tangential", [1, 2, 3]),
+        ("launch", [1, 2, 3, 4, 0]),
+        ("strength", [0, 1, 2, 2]),
     ],
 )
 def test_fates_agree_with_the_caption(key: str, expected: list[int]) -> None:
@@ -150,3 +172,24 @@ def test_the_gallery_accepts_only_keys_of_presets() -> None:
     for message in messages:
         gallery._receive(message)
     assert opened == [named("owl")]
+
+
+def test_as_many_orbits_are_left_as_the_caption_of_the_draining_well_says() -> None:
+    times = classify_orbits(CASES["III"], 0.45, sample_starts(CASES["III"], 0.45, 5000, seed=1), t_max=50.0).escape_time
+    left = [float(np.mean(~(times <= t))) for t in (5.0, 50.0)]
+    assert left == [pytest.approx(0.42, abs=0.02), pytest.approx(1 / 7, abs=0.02)]
+    assert math.exp(-50.0 * compute_flux(CASES["III"], 0.45).decay_rate) == pytest.approx(1 / 4000, rel=0.1)
+
+
+def test_orbits_that_are_torn_leave_when_the_caption_says() -> None:
+    preset = named("torn")
+    window, ((x, px),) = ViewState(**preset.values()).map_spec().find_window(), preset.starts
+    random = np.random.default_rng(4)
+    angle, radius = 2.0 * np.pi * random.random(2000), 10.0**preset.watched.radius * np.sqrt(random.random(2000))
+    xs = x + 0.5 * (window.x_high - window.x_low) * radius * np.cos(angle)
+    ps = px + 0.5 * (window.ordinate_high - window.ordinate_low) * radius * np.sin(angle)
+    outcomes = classify_orbits(CASES["III"], 0.45, start_states(CASES["III"], Plane.X_PX, 0.45, xs, ps), t_max=100.0)
+    assert np.nanmin(outcomes.escape_time) > 15.0
+    shares = [float(np.mean(outcomes.fate == channel)) for channel in (1, 2, 3, 4)]
+    assert min(shares) == pytest.approx(1 / 6, abs=0.04)
+    assert max(shares) == pytest.approx(0.3, abs=0.04)

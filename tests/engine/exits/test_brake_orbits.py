@@ -83,7 +83,7 @@ def test_continuation_finds_the_same_orbit_as_the_search_from_the_saddle(name: s
 @pytest.mark.parametrize("name", ["C6", *(pytest.param(name, marks=pytest.mark.slow) for name in ("C7", "C8"))])
 def test_rotated_channels_have_rotated_exits(name: str) -> None:
     # The first starts of the search lie on walls of other channels.
-    orbits = orbits_of(POTENTIALS[name].potential, 4.0)
+    orbits = orbits_of(POTENTIALS[name], 4.0)
     middle = np.array([complex(orbit.x[50], orbit.y[50]) for orbit in orbits])
     np.testing.assert_allclose(middle, middle[0] * np.exp(2j * np.pi * np.arange(middle.size) / middle.size), atol=1e-10)
     assert middle[0].real > 0.9
@@ -105,7 +105,7 @@ def test_orbits_shot_from_both_ends_are_the_same_in_the_middle(potential: Potent
 
 @pytest.mark.parametrize("name", ["I", "II", "III", "C5", "C6", "C7", "C8"])
 def test_exits_are_found_up_to_ten_times_the_escape_energy(name: str) -> None:
-    potential = POTENTIALS[name].potential
+    potential = POTENTIALS[name]
     for factor in (3.0, 6.0, 10.0):
         orbits = orbits_of(potential, factor)
         assert len(orbits) == potential.channels

@@ -36,7 +36,7 @@ def distance(path: np.ndarray, points: np.ndarray) -> float:
 
 @pytest.mark.parametrize("name", HIGHEST)
 def test_interpolated_exits_are_lyapunov_orbits(name: str) -> None:
-    potential = POTENTIALS[name].potential
+    potential = POTENTIALS[name]
     tables = tabulate_exits(potential.in_well_units, HIGHEST[name] / potential.units.energy)
     for energy in some_energies(potential, HIGHEST[name]):
         for orbit in find_lyapunov_orbits(potential, energy):

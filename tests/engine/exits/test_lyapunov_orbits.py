@@ -167,7 +167,7 @@ def test_orbits_scale_with_the_well(epsilon: float) -> None:
 
 def test_energies_above_a_maximum_between_two_exits_are_refused() -> None:
     # ½r² + xy² + x³/3 has a maximum with energy 1/6 between its two exits.
-    separable = POTENTIALS["Separable"].potential
+    separable = POTENTIALS["Separable"]
     assert len(find_lyapunov_orbits(separable, 0.99 / 6)) == 2
     with pytest.raises(ValueError, match=r"channels 1 and 2 are one above the maximum between them, V = 0\.166667 .*Separable"):
         find_lyapunov_orbits(separable, 1.01 / 6)
@@ -189,7 +189,7 @@ def test_a_maximum_that_is_not_between_exits_limits_no_energy() -> None:
 
 def test_exits_of_a_separable_well_are_straight() -> None:
     # On x + y = −1 only x − y changes; it oscillates between its turning points.
-    orbit = next(o for o in find_lyapunov_orbits(POTENTIALS["Separable"].potential, 0.12) if o.y.mean() < 0)
+    orbit = next(o for o in find_lyapunov_orbits(POTENTIALS["Separable"], 0.12) if o.y.mean() < 0)
     np.testing.assert_allclose(orbit.x + orbit.y, -1.0, atol=1e-12)
 
 

@@ -8,6 +8,8 @@ import pytest
 
 from engine import (
     CASES,
+    CHAOS_THRESHOLD,
+    Certificate,
     EscapeMap,
     Fate,
     MapSpec,
@@ -48,6 +50,23 @@ def test_characters_agree_with_the_sali_of_single_orbits(name: str, energy: floa
     assert np.mean(found != chaotic) <= 0.04
     assert chaotic.any()
     assert not chaotic.all()
+
+
+def test_sali_is_the_smallest_of_the_orbit_and_decides_the_character() -> None:
+    # Too short for tests for tori, so that each orbit is followed to t_max.
+    whole, regularity = map_and_regularity("I", 0.12, 6, 1500.0)
+    judged = np.isfinite(regularity.sali)
+    np.testing.assert_array_equal(judged, (whole.fate == Fate.BOUNDED) & (whole.certificate != Certificate.QUASI_PERIODIC))
+    np.testing.assert_array_equal(regularity.sali[judged] <= CHAOS_THRESHOLD, regularity.character[judged] == Regularity.CHAOTIC)
+    rows, columns = np.nonzero(regularity.sali > 1e-3)
+    assert rows.size > 5
+    for row, column in zip(rows, columns, strict=True):
+        state = start_states(CASES["I"], Plane.X_PX, 0.12, whole.x[[column]], whole.ordinate[[row]])[0]
+        smallest = integrate_orbit(CASES["I"], state, 1500.0).sali.min()
+        # It is looked at every few units of time only.
+        assert 0.99 * smallest <= regularity.sali[row, column] <= 1.3 * smallest
+    assert not regularity.sali.flags.writeable
+    assert regularity.to_xarray()["sali"].attrs == {"units": "1"}
 
 
 def test_exactly_the_bounded_pixels_are_judged() -> None:

@@ -1,13 +1,14 @@
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from engine import CASES, MapSpec, Plane, Potential, Window, default_window
+from engine import CASES, Coordinate, Fate, MapSpec, Plane, Potential, Slice, Window, compute_map, default_window
 from engine.service import LARGEST_SIDE, LONGEST_TIME
+from engine.slices.energies import Energy
 
 I = CASES["I"]  # noqa: E741  # named like the case
 WINDOW = (-1.0, 1.0, -1.0, 1.0)
@@ -96,7 +97,7 @@ def test_a_default_window_follows_the_energy() -> None:
 def test_a_request_computes_nothing() -> None:
     potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.2345)))
     MapSpec(potential, Plane.X_PX, 0.15)
-    assert set(vars(potential)) == {"name", "terms"}
+    assert set(vars(potential)) == {"name", "form", "lineage"}
 
 
 def test_energy_without_exits_raises_for_the_default_window() -> None:
@@ -135,3 +136,53 @@ def test_window_as_small_as_double_precision_allows_is_accepted(width: float) ->
 def test_window_beyond_double_precision_raises() -> None:
     with pytest.raises(ValueError, match="double precision ends here"):
         spec_with(window=(0.3, 0.3 + 1e-14, 0.2, 0.2 + 1e-14)).find_window()
+
+
+def starts_on_a_symmetry_line(spec: MapSpec) -> int:
+    """The number of pixels with x = px = 0 or y = py = 0."""
+    x, ordinate = np.meshgrid(*spec.pixel_centres())
+    states = spec.start_states(x.ravel(), ordinate.ravel())
+    return int(sum((states[:, pair] == 0.0).all(axis=1).sum() for pair in ([0, 2], [1, 3])))
+
+
+# x and y held by a momentum of 0 or by an angle, in both orders of the axes.
+@pytest.mark.parametrize(
+    ("plane", "energy"),
+    [
+        (Plane.X_Y, 0.6),
+        (Plane.X_H, (0.25, 1.0)),
+        (Slice(Coordinate.X, Coordinate.Y, Coordinate.PX), 0.6),
+        (Slice(Coordinate.Y, Coordinate.X), 0.6),
+        (Slice(Coordinate.X, Coordinate.Y, Coordinate.SPEED, 1, ((Coordinate.THETA, 0.0),)), 0.6),
+    ],
+)
+@pytest.mark.parametrize("count", [3, 45, 225])
+def test_an_odd_number_of_pixels_has_none_on_a_line_of_symmetry(plane: Slice, energy: Energy, count: int) -> None:
+    spec = MapSpec(CASES["III"], plane, energy, (count, count))
+    whole = default_window(CASES["III"], plane, energy)
+    assert starts_on_a_symmetry_line(replace(spec, window=whole)) > count // 3
+    assert starts_on_a_symmetry_line(spec) == 0
+    # Half a pixel along one axis.
+    shifts = [astuple(spec.find_window())[k] - astuple(whole)[k] for k in (0, 2)]
+    sizes = [(whole.x_high - whole.x_low) / count, (whole.ordinate_high - whole.ordinate_low) / count]
+    assert sorted(shift / size for shift, size in zip(shifts, sizes, strict=True)) == pytest.approx([0.0, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("case", "plane", "count"),
+    [
+        ("III", Plane.X_Y, 224),
+        ("III", Plane.X_PX, 225),
+        ("III", Plane.TANGENTIAL, 225),
+        ("II", Plane.X_Y, 225),
+        ("III", Plane.X_Y, 1),
+    ],
+)
+def test_other_maps_have_the_default_window(case: str, plane: Slice, count: int) -> None:
+    """An even number, a line that orbits leave, a potential without the symmetry, a line of starts alone."""
+    spec = MapSpec(CASES[case], plane, 0.6, (count, count))
+    assert spec.find_window() == default_window(CASES[case], plane, 0.6)
+
+
+def test_no_orbit_of_an_odd_grid_is_bounded_by_symmetry_alone() -> None:
+    assert not (compute_map(MapSpec(CASES["III"], Plane.X_Y, 0.6, (75, 75), t_max=1e3)).fate == Fate.BOUNDED).any()

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map
+from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map, default_window
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.execution import Execution, SerialExecutor
 from engine.exits.lyapunov_orbits import exit_curves
@@ -198,7 +198,7 @@ def test_fate_and_crossings_are_compared_separately() -> None:
 
 @pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX])
 def test_mirror_images_have_the_same_trust(plane: Plane) -> None:
-    whole, trust = map_and_trust(plane=plane)
+    whole, trust = map_and_trust(plane=plane, window=default_window(CASES["III"], plane, 0.45))
     images = plane.find_mirror_images(whole.spec.potential, whole.x, whole.ordinate)
     assert images is not None
     np.testing.assert_array_equal(trust.trust.ravel(), trust.trust.ravel()[images])

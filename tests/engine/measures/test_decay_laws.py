@@ -332,6 +332,19 @@ def test_parameters_out_of_range_are_named(changed: dict[str, object], message: 
         fit_decay_laws(statistics_of(exponential_times(200)), **arguments)  # type: ignore[arg-type]
 
 
+def test_t_max_is_that_of_the_map() -> None:
+    statistics = compute_statistics(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.6, (60, 60), t_max=50.0)))
+    assert fit_decay_laws(statistics, resamples=500).describe() == fit_decay_laws(statistics, 50.0, resamples=500).describe()
+    assert fit_decay_laws(statistics, 20.0, resamples=500).t_high == 20.0
+    with pytest.raises(ValueError, match=r"t_max=51: must be at most 50, the integration time of the statistics"):
+        fit_decay_laws(statistics, 51.0)
+
+
+def test_statistics_of_unknown_duration_need_a_t_max() -> None:
+    with pytest.raises(ValueError, match=r"t_max=inf: must be above 0 and at most"):
+        fit_decay_laws(statistics_of(exponential_times(200)))
+
+
 def test_a_cancelled_fit_raises() -> None:
     cancel = threading.Event()
     cancel.set()

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, compute_basin_entropy, compute_map, compute_wada_test
 from engine.measures.labels import exit_labels
 
 
@@ -52,3 +54,17 @@ def test_the_map_itself_stays_writable(whole: EscapeMap) -> None:
     frame = with_fate(whole, Fate.FAILED)
     exit_labels(frame.fate, bounded=True)
     assert frame.fate.flags.writeable
+
+
+@pytest.mark.parametrize("measure", [compute_basin_entropy, compute_wada_test])
+def test_negative_codes_without_a_mask_are_no_basin(measure: Callable[..., Any]) -> None:
+    fate = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (30, 30), t_max=100.0)).fate
+    with pytest.raises(ValueError, match=rf"labels: {np.count_nonzero(fate < 0)} are negative, .*valid=\(labels >= 0\)"):
+        measure(fate)
+    assert measure(fate, fate >= 0).describe() == measure(np.where(fate < 0, 7, fate), fate >= 0).describe()
+
+
+@pytest.mark.parametrize("plane", [Plane.X_Y, Plane.X_PX, Plane.Y_PY])
+def test_fates_with_a_mask_are_measured_as_the_map(plane: Plane) -> None:
+    whole = compute_map(MapSpec(CASES["III"], plane, 0.4, (40, 40), t_max=100.0))
+    assert compute_basin_entropy(whole.fate, whole.fate >= 0) == compute_basin_entropy(whole)

@@ -12,7 +12,7 @@ from engine.execution import DEFAULT_EXECUTION, Execution, SerialExecutor
 from engine.maps.spec import MapSpec
 from engine.measures.uncertainty_exponent import UncertaintyExponent, _PairSampler, compute_uncertainty_exponent
 from engine.potentials.potential import CASES, Potential
-from engine.slices.slice import Plane
+from engine.slices.planes import Plane
 from engine.slices.window import Window
 
 # x and y are uncoupled and y alone decides about an escape (upward if its energy exceeds 1/4), so all boundaries are smooth.

@@ -89,12 +89,12 @@ def test_boundaries_of_stripes_one_pixel_wide_coincide_within_one_pixel() -> Non
 
 
 def test_a_small_image() -> None:
-    labels = np.array([[4, 4, 4, 4, 4], [4, 4, 4, 4, 4], [4, 4, 4, 4, 4], [4, 4, 4, 0, 0], [4, 4, 4, 0, -2]])
-    # The boundary of -2 consists of its pixel, (3, 4) and (4, 3), that of 4 of its four pixels beside the corner and the three
+    labels = np.array([[4, 4, 4, 4, 4], [4, 4, 4, 4, 4], [4, 4, 4, 4, 4], [4, 4, 4, 0, 0], [4, 4, 4, 0, 7]])
+    # The boundary of 7 consists of its pixel, (3, 4) and (4, 3), that of 4 of its four pixels beside the corner and the three
     # pixels 0, and that of 0 of all these. So (3, 4) and (4, 3) are on all three boundaries, and the others are next to one of
     # these two.
     result = compute_wada_test(labels)
-    assert result.basins == (-2, 0, 4)
+    assert result.basins == (0, 4, 7)
     assert result.boundary_pixels == 8
     assert result.shares.tolist() == pytest.approx([2 / 8, 1.0])
 
@@ -139,7 +139,7 @@ def test_the_shares_reach_1_at_the_radius() -> None:
 # Invariance, and pixels that do not count.
 
 
-@pytest.mark.parametrize("transform", [np.fliplr, np.flipud, np.transpose, np.rot90, lambda labels: 5 - 3 * labels])
+@pytest.mark.parametrize("transform", [np.fliplr, np.flipud, np.transpose, np.rot90, lambda labels: 20 - 3 * labels])
 def test_rotation_reflection_and_relabelling_do_not_matter(transform: Callable[[np.ndarray], np.ndarray]) -> None:
     one, other = compute_wada_test(patches(1)), compute_wada_test(transform(patches(1)))
     assert (other.radius, other.radius_99, other.boundary_pixels) == (one.radius, one.radius_99, one.boundary_pixels)

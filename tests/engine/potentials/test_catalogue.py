@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy
 
-from engine.potentials.catalogue import POTENTIALS, channel_family
+from engine.potentials.catalogue import CATALOGUE, POTENTIALS, channel_family
 from engine.potentials.formula_parser import parse_formula
 from engine.potentials.potential import CASES
 
@@ -15,13 +15,14 @@ each_entry = pytest.mark.parametrize("name", POTENTIALS)
 
 @each_entry
 def test_formula_matches_the_potential(name: str) -> None:
-    entry = POTENTIALS[name]
+    entry = CATALOGUE[name]
     assert sorted(parse_formula(entry.formula).terms) == sorted(entry.potential.terms)
 
 
 @each_entry
 def test_entry_is_complete(name: str) -> None:
-    entry = POTENTIALS[name]
+    entry = CATALOGUE[name]
+    assert POTENTIALS[name] is entry.potential
     assert entry.name == entry.potential.name == name
     assert entry.title
     assert entry.reference
@@ -31,7 +32,7 @@ def test_entry_is_complete(name: str) -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_cases_come_first_and_have_identical_terms(name: str) -> None:
     assert list(POTENTIALS)[:3] == list(CASES)
-    assert POTENTIALS[name].potential.terms == CASES[name].terms
+    assert POTENTIALS[name].terms == CASES[name].terms
 
 
 @pytest.mark.parametrize("n", MEMBERS)
@@ -74,7 +75,7 @@ def test_family_size_out_of_range_is_refused(n: int) -> None:
 )
 def test_channels_and_escape_energy_of_literature_entries(name: str, channels: int, escape_energy: float) -> None:
     # Barbanis: with V = ½(a² x² + b² y²) − ε x y² the saddles lie at x = b²/2ε and V there is a² b⁴/8ε².
-    potential = POTENTIALS[name].potential
+    potential = POTENTIALS[name]
     assert potential.channels == channels
     assert potential.escape_energy == pytest.approx(escape_energy, rel=1e-13)
 
@@ -82,7 +83,7 @@ def test_channels_and_escape_energy_of_literature_entries(name: str, channels: i
 def second_integral(name: str) -> tuple[sympy.Expr, sympy.Expr]:
     """The Hamiltonian of an integrable entry and an integral independent of it."""
     px, py = sympy.symbols("px py")
-    value = sum(sympy.nsimplify(c, rational=True) * X**i * Y**j for i, j, c in POTENTIALS[name].potential.terms)
+    value = sum(sympy.nsimplify(c, rational=True) * X**i * Y**j for i, j, c in POTENTIALS[name].terms)
     energy = (px**2 + py**2) / 2 + value
     if name == "Separable":
         return energy, px * py + X * Y + X**2 * Y + Y**3 / 3

@@ -27,27 +27,27 @@ def composite(seed: int) -> str:
 
 @pytest.mark.parametrize("formula", [*map(circular, range(40)), *map(composite, range(20)), "x²y²", "(x − y)²(x + 1)"])
 def test_a_common_factor_is_found(formula: str) -> None:
-    assert have_common_factor(*parse_formula(formula).slopes)
+    assert have_common_factor(*parse_formula(formula).form.slopes)
 
 
 def test_a_common_factor_is_one_in_any_unit_of_length() -> None:
-    assert have_common_factor(*parse_formula("1000r² + 0.001r⁶ − 0.000001r^12").slopes)
+    assert have_common_factor(*parse_formula("1000r² + 0.001r⁶ − 0.000001r^12").form.slopes)
 
 
 @pytest.mark.parametrize("name", POTENTIALS)
 @pytest.mark.parametrize("parameters", [(1.0, 1.0, 1.0), (10.0, 0.1, 100.0), (0.1, 0.1, 0.01)])
 def test_the_catalogue_has_none(name: str, parameters: tuple[float, float, float]) -> None:
-    assert not have_common_factor(*POTENTIALS[name].potential.with_parameters(*parameters).slopes)
+    assert not have_common_factor(*POTENTIALS[name].with_parameters(*parameters).form.slopes)
 
 
 @pytest.mark.parametrize("n", range(3, 13))
 def test_the_family_has_none(n: int) -> None:
-    assert not have_common_factor(*channel_family(n).slopes)
+    assert not have_common_factor(*channel_family(n).form.slopes)
 
 
 def test_a_small_term_that_matters_far_away_is_not_a_rounding_error() -> None:
     # Circular up to r = 100; the last term opens the well.
-    assert not have_common_factor(*parse_formula("2e-9r² + 4e8x⁴ + 8e8x²y² + 4e8y⁴ − 2e-9x^12").slopes)
+    assert not have_common_factor(*parse_formula("2e-9r² + 4e8x⁴ + 8e8x²y² + 4e8y⁴ − 2e-9x^12").form.slopes)
 
 
 def test_linear_slopes_have_none() -> None:

@@ -83,16 +83,16 @@ def index_sum(terms: dict[tuple[int, int], float], points: np.ndarray) -> int:
 def test_sum_of_indices_is_the_winding_number(seed: int, degree: int) -> None:
     # Poincaré–Hopf theorem: it fails if a saddle, minimum or maximum is missing.
     terms = random_terms(seed, degree)
-    slopes = derivative(terms, 0), derivative(terms, 1)
-    points = find_critical_points(*slopes)
+    potential = Potential("random", tuple((i, j, c) for (i, j), c in terms.items()))
+    points = find_critical_points(derivative(terms, 0), derivative(terms, 1))
     for radius in (3.0, 300.0):
-        assert index_sum(terms, points[np.hypot(*points.T) < radius]) == winding_number(*slopes, radius)
+        assert index_sum(terms, points[np.hypot(*points.T) < radius]) == winding_number(potential.gradient, radius)
 
 
 @pytest.mark.parametrize("n", [3, 5, 8, 9, 10, 12])
 def test_winding_number_of_the_family(n: int) -> None:
     potential = channel_family(n)
-    assert winding_number(potential.derivative(1, 0), potential.derivative(0, 1), 5.0) == 1 - n == 1 - potential.channels
+    assert winding_number(potential.gradient, 5.0) == 1 - n == 1 - potential.channels
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])

@@ -3,7 +3,6 @@ from __future__ import annotations
 import pytest
 
 from engine.potentials.formula_parser import parse_formula
-from engine.potentials.symmetry import count_rotations
 
 
 @pytest.mark.parametrize(
@@ -19,4 +18,4 @@ from engine.potentials.symmetry import count_rotations
     ],
 )
 def test_number_of_rotations(formula: str, n: int) -> None:
-    assert count_rotations(parse_formula(formula)) == n
+    assert parse_formula(formula).form.count_rotations() == n

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from engine import CASES, POTENTIALS, parse_formula, review_potential
-from engine.service import PAPER_ENERGIES, TYPED, System
+from engine import CASES, POTENTIALS, System, parse_formula, review_potential
+from engine.potentials.catalogue import CATALOGUE
+from engine.service import PAPER_ENERGIES, TYPED
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 
@@ -16,19 +17,19 @@ def test_a_case_has_the_potential_and_the_energies_of_the_paper() -> None:
 
 
 def test_parameters_change_the_potential_and_its_energies() -> None:
-    system = System("I", epsilon=0.5)
+    system = System("I", parameters={"epsilon": 0.5})
     assert system.potential == CASES["I"].with_parameters(epsilon=0.5)
-    assert system.changed == {"epsilon": 0.5}
+    assert system.parameters == {"epsilon": 0.5}
     # With half the perturbation the saddles are at twice the distance and four times the energy.
     assert system.energies.low == pytest.approx(0.8 * 0.5)
     assert system.energies.marked == ()
 
 
 def test_a_formula_gives_a_potential() -> None:
-    assert System(TYPED, HENON_HEILES).potential == POTENTIALS["HH"].potential
+    assert System(TYPED, HENON_HEILES).potential == POTENTIALS["HH"]
 
 
-@pytest.mark.parametrize("system", [System(TYPED, "x y z"), System(TYPED), System("I", omega_1=1e3)])
+@pytest.mark.parametrize("system", [System(TYPED, "x y %"), System(TYPED), System("I", parameters={"omega_1": 1e3})])
 def test_an_invalid_system_has_no_potential(system: System) -> None:
     with pytest.raises(ValueError, match=r"formula|omega_1"):
         _ = system.potential
@@ -36,21 +37,44 @@ def test_an_invalid_system_has_no_potential(system: System) -> None:
 
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_the_slider_contains_the_escape_energy_below_the_initial_energy(name: str) -> None:
-    energies, escape = System(name).energies, POTENTIALS[name].potential.escape_energy
-    assert energies.low < escape < energies.first < energies.high <= review_potential(POTENTIALS[name].potential).highest_energy
+    energies, escape = System(name).energies, POTENTIALS[name].escape_energy
+    assert energies.low < escape < energies.first < energies.high <= review_potential(POTENTIALS[name]).highest_energy
 
 
 def test_the_formula_contains_the_parameters() -> None:
-    assert System("III").formula_shown == POTENTIALS["III"].formula
-    assert parse_formula(System("III", omega_2=1.5).formula_shown) == System("III", omega_2=1.5).potential
+    assert System("III").formula_shown == CATALOGUE["III"].formula
+    assert (
+        parse_formula(System("III", parameters={"omega_2": 1.5}).formula_shown)
+        == System("III", parameters={"omega_2": 1.5}).potential
+    )
 
 
 def test_the_formula_has_no_rounding_errors_of_products() -> None:
-    assert System("I", omega_1=1.46).formula_shown == "1.0658x² + y²/2 − xy²"
-    assert System(TYPED, "½r² − xy²", omega_1=1.46).formula_shown == "1.0658x² + y²/2 − xy²"
+    assert System("I", parameters={"omega_1": 1.46}).formula_shown == "1.0658x² + y²/2 − xy²"
+    assert System(TYPED, "½r² − xy²", parameters={"omega_1": 1.46}).formula_shown == "1.0658x² + y²/2 − xy²"
 
 
 def test_the_title_names_the_parameters() -> None:
     assert System("I").title == "Case I"
-    assert System("I", omega_1=1.46, epsilon=0.5).title == "Case I with ω1 = 1.46, ε = 0.5"
-    assert System(TYPED, "½r² − xy²", omega_2=2.0).title == "Typed potential with ω2 = 2"
+    assert System("I", parameters={"omega_1": 1.46, "epsilon": 0.5}).title == "Case I with ω1 = 1.46, ε = 0.5"
+    assert System(TYPED, "½r² − xy²", parameters={"omega_2": 2.0}).title == "Typed potential with ω2 = 2"
+
+
+def test_letters_are_parameters_beside_those_of_the_well() -> None:
+    system = System(TYPED, "½r² − a x y² + b₂ x³", {"a": 1.5, "b2": 1.0, "omega_1": 1.1})
+    assert system.parameters == {"omega_1": 1.1, "a": 1.5}
+    assert system.letters == {"a": 1.5, "b2": 1.0}
+    assert system.potential == parse_formula("½r² − 1.5 x y² + x³").with_parameters(omega_1=1.1)
+    assert system.title == "Typed potential with ω1 = 1.1, a = 1.5"
+    assert hash(system) == hash(System(TYPED, system.formula, {"omega_1": 1.1, "a": 1.5}))
+
+
+@pytest.mark.parametrize("parameters", [{"b": 2.0}, {"a": float("nan")}, {"a": 1e10}])
+def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=r"b.* is no letter of the formula; its letters are a|a=.*: must be"):
+        _ = System(TYPED, "½r² − a x y²", parameters).potential
+
+
+def test_a_known_potential_has_no_letters() -> None:
+    with pytest.raises(ValueError, match="no parameter of I; it has omega_1, omega_2, epsilon"):
+        _ = System("I", parameters={"a": 2.0}).potential

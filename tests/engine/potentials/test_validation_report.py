@@ -13,7 +13,7 @@ from engine.potentials.validation_report import PointKind, review_potential
 
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_all_catalogue_potentials_are_accepted(name: str) -> None:
-    assert review_potential(POTENTIALS[name].potential).refusal is None
+    assert review_potential(POTENTIALS[name]).refusal is None
 
 
 @pytest.mark.parametrize(
@@ -122,21 +122,21 @@ def test_a_far_saddle_in_a_narrow_valley_is_reviewed() -> None:
 
 def test_maximum_between_two_exits_sets_the_highest_energy() -> None:
     # In u = x + y and v = x − y, V = ¼(u² + v²) + (u³ + v³)/6: the exits merge at the maximum u = v = −1, at energy 1/6.
-    assert review_potential(POTENTIALS["Separable"].potential).highest_energy == pytest.approx(1 / 6, rel=1e-12)
+    assert review_potential(POTENTIALS["Separable"]).highest_energy == pytest.approx(1 / 6, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["I", "II", "III", "C5", "C8"])
 def test_highest_energy_is_infinite_without_other_critical_points(name: str) -> None:
-    assert review_potential(POTENTIALS[name].potential).highest_energy == np.inf
+    assert review_potential(POTENTIALS[name]).highest_energy == np.inf
 
 
 def test_remark_on_an_odd_power_of_y() -> None:
-    assert any("not even in y" in remark for remark in review_potential(POTENTIALS["HH"].potential).remarks)
+    assert any("not even in y" in remark for remark in review_potential(POTENTIALS["HH"]).remarks)
 
 
 @pytest.mark.parametrize("epsilon", [0.01, 100.0])
 def test_review_does_not_depend_on_the_size_of_the_well(epsilon: float) -> None:
-    potential = POTENTIALS["C5"].potential
+    potential = POTENTIALS["C5"]
     scaled, usual = review_potential(potential.with_parameters(epsilon=epsilon)), review_potential(potential)
     assert (scaled.refusal, scaled.channels, scaled.rotations, scaled.remarks) == (None, usual.channels, usual.rotations, ())
 

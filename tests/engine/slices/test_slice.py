@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,20 +12,25 @@ from scipy import ndimage
 from engine import (
     CASES,
     Coordinate,
+    Direction,
     Fate,
     MapSpec,
+    ParameterAxis,
     Plane,
     Potential,
     Slice,
+    System,
     Window,
     compute_map,
     default_window,
     trace_zero_velocity_curve,
 )
-from engine.slices.slice import checked_slice
+from engine.potentials.well_units import WellUnits
+from engine.slices.planes import checked_slice
 from tests.peers.exit_lines import exit_lines
 
 PLANES_OF_ONE_ENERGY = [Plane.X_Y, Plane.X_PX]
+ALONG_EPSILON = Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
 each_case = pytest.mark.parametrize("name", CASES)
 
 
@@ -150,14 +156,42 @@ def test_outside_has_the_channel_number(geometry: dict[str, np.ndarray]) -> None
         assert sorted(np.unique(geometry["outside"][here])) == touched
 
 
+HELD = st.sampled_from((0.0, 0.25, -0.1))
+COLUMNS = {Coordinate.X: 0, Coordinate.Y: 1, Coordinate.PX: 2, Coordinate.PY: 3}
+
+
 @st.composite
-def slices(draw: st.DrawFn) -> Slice:
-    """Any slice: two axes, values of the others, and the momentum that the energy decides."""
+def slices_of_coordinates(draw: st.DrawFn) -> Slice:
+    """Two coordinates as axes, values of the others, and the momentum that the energy decides."""
     solved, other = draw(st.permutations((Coordinate.PX, Coordinate.PY)))
     axes = draw(st.permutations((Coordinate.X, Coordinate.Y, other, Coordinate.H)))
     held = [c for c in (Coordinate.X, Coordinate.Y, other) if c not in axes[:2]]
-    fixed = tuple((coordinate, draw(st.sampled_from((0.0, 0.25, -0.1)))) for coordinate in held)
+    fixed = tuple((coordinate, draw(HELD)) for coordinate in held)
     return Slice(axes[0], axes[1], solved, draw(st.sampled_from((1, -1))), fixed)
+
+
+@st.composite
+def slices_with_an_angle(draw: st.DrawFn) -> Slice:
+    """An angle as axis or held, of which the energy decides the speed."""
+    angle = draw(st.sampled_from((Coordinate.THETA, Coordinate.BETA)))
+    axes = draw(st.permutations((Coordinate.X, Coordinate.Y, angle, Coordinate.H)))
+    fixed = tuple((c, draw(HELD)) for c in (Coordinate.X, Coordinate.Y, angle) if c not in axes[:2])
+    return Slice(axes[0], axes[1], Coordinate.SPEED, 1, fixed)
+
+
+@st.composite
+def oblique_slices(draw: st.DrawFn) -> Slice:
+    """One or two oblique axes."""
+    solved, other = draw(st.permutations((Coordinate.PX, Coordinate.PY)))
+    component = st.sampled_from((-1.0, 0.5, 2.0))
+    first = Direction("u", **{c.key: draw(component) for c in (Coordinate.X, other)})
+    second = draw(st.sampled_from((Coordinate.Y, Coordinate.X, Direction("w", **{"y": draw(component), other.key: 0.25}))))
+    return Slice(first, second, solved, draw(st.sampled_from((1, -1))), ((other, draw(HELD)),))
+
+
+def slices() -> st.SearchStrategy[Slice]:
+    """Any slice of one system."""
+    return st.one_of(slices_of_coordinates(), slices_with_an_angle(), oblique_slices())
 
 
 def states_and_energies(plane: Slice, potential: Potential) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -167,16 +201,46 @@ def states_and_energies(plane: Slice, potential: Potential) -> tuple[np.ndarray,
 
 
 @given(slices(), st.sampled_from(["I", "II", "III"]))
-def test_starts_of_any_slice_have_its_coordinates_energy_and_sign(plane: Slice, name: str) -> None:
-    states, energy, x, ordinate = states_and_energies(plane, CASES[name])
+def test_starts_of_any_slice_have_its_energy(plane: Slice, name: str) -> None:
+    states, energy, _, _ = states_and_energies(plane, CASES[name])
     exists = np.isfinite(states).all(axis=1)
+    assert exists.any()
     np.testing.assert_allclose(CASES[name].energy(states[exists]), energy[exists], atol=1e-14)
-    column = {Coordinate.X: 0, Coordinate.Y: 1, Coordinate.PX: 2, Coordinate.PY: 3}
+
+
+@given(slices_of_coordinates())
+def test_starts_have_the_coordinates_of_the_slice_and_the_sign_of_the_momentum(plane: Slice) -> None:
+    states, _, x, ordinate = states_and_energies(plane, CASES["I"])
+    exists = np.isfinite(states).all(axis=1)
+    for coordinate, values in (dict(plane.fixed) | dict(zip(plane.axes, (x, ordinate), strict=True))).items():
+        if coordinate in COLUMNS:
+            np.testing.assert_array_equal(states[:, COLUMNS[coordinate]], values)
+    assert np.all(plane.sign * states[exists, COLUMNS[plane.decided]] >= 0.0)
+
+
+@given(slices_with_an_angle())
+def test_the_velocity_has_the_angle_of_the_slice(plane: Slice) -> None:
+    states, _, x, ordinate = states_and_energies(plane, CASES["I"])
     given = dict(plane.fixed) | dict(zip(plane.axes, (x, ordinate), strict=True))
-    for coordinate, values in given.items():
-        if coordinate in column:
-            np.testing.assert_array_equal(states[:, column[coordinate]], values)
-    assert np.all(plane.sign * states[exists, column[plane.solved]] >= 0.0)
+    start_x, start_y, px, py = states.T
+    expected = given[Coordinate.THETA] if Coordinate.THETA in given else given[Coordinate.BETA] + np.arctan2(start_y, start_x)
+    exists = np.hypot(px, py) > 1e-6
+    turned = (np.arctan2(py, px) - expected)[exists]
+    np.testing.assert_allclose(np.sin(turned), 0.0, atol=1e-9)
+    assert np.all(np.cos(turned) > 0.0)
+
+
+@given(oblique_slices())
+def test_starts_of_an_oblique_slice_lie_in_the_plane_of_its_directions(plane: Slice) -> None:
+    states, _, x, ordinate = states_and_energies(plane, CASES["III"])
+    columns = [c for c in COLUMNS if c is not plane.decided]
+    held = dict(plane.fixed)
+    rows = [
+        [{axis: 1.0}.get(c, 0.0) if isinstance(axis, Coordinate) else getattr(axis, c.key) for c in columns]
+        for axis in plane.axes
+    ]
+    expected = [held.get(c, 0.0) for c in columns] + np.column_stack([x, ordinate]) @ np.array(rows)
+    np.testing.assert_allclose(states[:, [COLUMNS[c] for c in columns]], expected, atol=1e-15)
 
 
 @given(slices())
@@ -224,10 +288,18 @@ def test_the_limiting_curve_is_named_by_its_equation(plane: Slice, curve: str) -
     ("change", "message"),
     [
         ({"ordinate": Coordinate.X}, "at most once"),
-        ({"ordinate": Coordinate.PY}, "at most once"),
+        ({"ordinate": Coordinate.PY, "solved": Coordinate.PY}, "at most once"),
         ({"fixed": ((Coordinate.X, 0.1),)}, "at most once"),
         ({"fixed": ((Coordinate.H, 0.1),)}, "at most once"),
-        ({"solved": Coordinate.Y}, "must be px or py"),
+        ({"ordinate": Coordinate.PX, "fixed": ((Coordinate.PY, 0.1),), "solved": Coordinate.PX}, "at most once"),
+        ({"abscissa": Coordinate.PX, "ordinate": Coordinate.PY}, "at most once"),
+        ({"ordinate": Coordinate.THETA, "solved": Coordinate.PX}, "must not be set by an axis or an angle"),
+        ({"ordinate": Coordinate.THETA, "fixed": ((Coordinate.PX, 0.1),)}, "px, py and another angle must be left out"),
+        ({"ordinate": Coordinate.THETA, "fixed": ((Coordinate.BETA, 0.1),)}, "px, py and another angle must be left out"),
+        ({"ordinate": Direction("u", py=1.0), "solved": Coordinate.PY}, "must not be set by an axis or an angle"),
+        ({"ordinate": Direction("u", x=2.0)}, "must not be parallel"),
+        ({"ordinate": Coordinate.THETA, "sign": -1}, "must be 1"),
+        ({"solved": Coordinate.Y}, "must be px, py or v"),
         ({"sign": 2}, "must be 1 or -1"),
         ({"fixed": ((Coordinate.PX, np.inf),)}, "must be a finite number"),
     ],
@@ -239,7 +311,65 @@ def test_a_slice_that_is_none_is_refused(change: dict[str, Any], message: str) -
 
 @given(slices())
 def test_the_text_of_a_slice_makes_it_again(plane: Slice) -> None:
-    assert eval(repr(plane), {"Slice": Slice, "Coordinate": Coordinate}) == plane
+    assert eval(repr(plane), {"Slice": Slice, "Coordinate": Coordinate, "Direction": Direction}) == plane
+
+
+@given(slices())
+def test_a_slice_in_units_of_a_well_holds_the_same_starts(plane: Slice) -> None:
+    potential, units = CASES["III"], WellUnits(length=4.0, time=0.5)
+    scaled = Potential("scaled", tuple((i, j, c * units.energy / units.length ** (i + j)) for i, j, c in potential.terms))
+    x_unit, ordinate_unit = (axis.unit(units) for axis in plane.axes)
+    x, ordinate = np.random.default_rng(5).uniform(-0.6, 0.6, (2, 50)) * [[x_unit], [ordinate_unit]]
+    given = plane.states(scaled, 0.4 * units.energy, x, ordinate)
+    expected = plane.in_well_units(units).states(potential, 0.4, x / x_unit, ordinate / ordinate_unit)
+    np.testing.assert_allclose(given / units.state, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_the_usual_momentum_is_decided_unless_another_one_is_named() -> None:
+    assert Slice(Coordinate.Y, Coordinate.PY) == Slice(Coordinate.Y, Coordinate.PY, Coordinate.PX)
+    assert Slice(Coordinate.X, Coordinate.THETA).decided is Coordinate.SPEED
+    assert Slice(Coordinate.X, Direction("u", py=1.0)).decided is Coordinate.PX
+
+
+@pytest.mark.parametrize(
+    ("plane", "title"),
+    [
+        (Slice(Coordinate.X, Coordinate.THETA, fixed=((Coordinate.Y, 0.25),)), "(x, θ), y = 0.25"),
+        (Slice(Coordinate.X, Coordinate.Y, Coordinate.PX), "(x, y), px > 0"),
+        (Slice(Coordinate.Y, Coordinate.PY, sign=-1), "(y, py), px < 0"),
+        (ALONG_EPSILON, "(x, ε)"),
+    ],
+)
+def test_titles_name_what_is_not_usual(plane: Slice, title: str) -> None:
+    assert plane.title == title
+
+
+def test_starts_along_a_parameter_have_the_energy_in_the_potential_of_their_value() -> None:
+    x, epsilon = np.array([0.1, 0.1, 0.3]), np.array([0.6, 1.7, 1.7])
+    states = ALONG_EPSILON.states(CASES["I"], 0.2, x, epsilon)
+    for state, value in zip(states, epsilon, strict=True):
+        assert CASES["I"].with_parameters(epsilon=value).energy(state) == pytest.approx(0.2, abs=1e-15)
+
+
+def test_a_start_at_a_value_that_the_parameter_cannot_have_is_forbidden() -> None:
+    states = ALONG_EPSILON.states(CASES["I"], 0.2, np.zeros(2), np.array([-1.0, 1.0]))
+    assert np.isnan(states).any(axis=1).tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: ParameterAxis("mass", 0.5, 2.0, System("I")), "must be one of the system, omega_1, omega_2, epsilon"),
+        (lambda: ParameterAxis("epsilon", 2.0, 0.5, System("I")), "the lower end must be below the upper end"),
+        (lambda: ParameterAxis("epsilon", -1.0, 0.5, System("I")), "must be between 0.01 and 100"),
+        (lambda: Direction("x", x=1.0), "must be an identifier and none of a coordinate"),
+        (lambda: Direction("u"), "must not be 0"),
+        (lambda: Slice(ALONG_EPSILON.ordinate, ALONG_EPSILON.ordinate), "must be different ones"),
+    ],
+)
+def test_an_axis_that_is_none_is_refused(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        make()
 
 
 def test_a_slice_equal_to_a_named_one_is_that_one() -> None:
@@ -249,7 +379,8 @@ def test_a_slice_equal_to_a_named_one_is_that_one() -> None:
 @given(slices())
 def test_the_default_window_of_any_slice_contains_its_interior(plane: Slice) -> None:
     potential, energy = CASES["III"], (0.3, 0.45) if plane.energy_axis is not None else 0.45
-    edges = [(0.3, 0.45) if axis is Coordinate.H else (-1.5, 1.5) for axis in plane.axes]
+    whole = {Coordinate.H: (0.3, 0.45), Coordinate.THETA: (-np.pi, np.pi), Coordinate.BETA: (-np.pi, np.pi)}
+    edges = [whole.get(axis, (-1.5, 1.5)) for axis in plane.axes]
     # The time is so short that every orbit stays at its start.
     wide = compute_map(MapSpec(potential, plane, energy, (41, 41), (*edges[0], *edges[1]), t_max=1e-9))
     x, ordinate = wide.coordinates(np.flatnonzero(wide.interior))

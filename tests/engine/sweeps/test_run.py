@@ -19,9 +19,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from engine import CASES, Fate, MapSpec, Plane, SweepSpec, Window, compute_map, run_sweep
+from engine import CASES, Fate, MapSpec, Plane, SweepPlan, SweepSpec, Window, compute_map, plan_sweep, run_sweep
 from engine.execution import Execution, count_workers
-from engine.service import SweepPlan, plan_sweep
 from engine.slices.default_window import default_window
 from tests.forked import Finished, run
 

@@ -8,21 +8,42 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine import CASES, BirkhoffDigits, Certificate, Fate, Orbit, Plane, Verdict, integrate_orbit, judge_orbit, start_states
-from engine.service import evaluate_indicators
+from engine import (
+    CASES,
+    BirkhoffDigits,
+    Certificate,
+    Fate,
+    Orbit,
+    Plane,
+    Verdict,
+    evaluate_indicators,
+    integrate_orbit,
+    judge_orbit,
+    start_states,
+)
 
 # An island and the chaotic sea of Hénon & Heiles below the escape energy.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
+
+# Bounded until t = 5000 without a sign of chaos in deviation vectors; SALI falls to 1e-7 by t = 1e5, and the third one escapes.
+STICKY = (
+    ("I", (-0.3167831674667674, -0.1372214035177458, 0.00363892447924018, 0.3447834056797196)),
+    ("I", (0.30298114722811476, 0.027745995206539975, 0.35121822596890456, -0.23779158119211288)),
+    ("I", (0.42691359527116224, 0.3088051241106098, 0.12011369844841593, -0.24774655218686295)),
+    ("II", (0.017126393957194064, -0.3378096145016677, -0.022390221364657945, -0.44853607381264227)),
+)
 
 
 def digits_of(value: float) -> BirkhoffDigits:
     return BirkhoffDigits(np.array([1000.0]), np.array([value]))
 
 
-def with_end(orbit: Orbit, *, sali: float, growth: float) -> Orbit:
-    """The orbit with another final SALI, and deviations that grow like t to a power."""
+def with_end(orbit: Orbit, *, sali: float, growth: float, halves: float) -> Orbit:
+    """The orbit with another final SALI, deviations that grow like t to a power, and digits of its halves."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        return replace(orbit, sali=np.full_like(orbit.t, sali), lyapunov_exponent=growth * np.log(orbit.t) / orbit.t)
+        changed = replace(orbit, sali=np.full_like(orbit.t, sali), lyapunov_exponent=growth * np.log(orbit.t) / orbit.t)
+    changed.__dict__["digits_of_halves"] = halves
+    return changed
 
 
 @pytest.fixture(scope="module")
@@ -41,40 +62,74 @@ def test_a_short_orbit_is_undecided_as_for_its_indicators() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sali", "growth", "digits", "character"),
+    ("sali", "growth", "halves", "digits", "character"),
     [
-        (0.1, 1.0, None, Verdict.REGULAR),
-        (0.1, 1.8, None, Verdict.REGULAR),
-        (1e-6, 1.8, None, Verdict.UNDECIDED),
-        (1e-6, 2.5, None, Verdict.CHAOTIC),
-        (1e-9, 1.8, None, Verdict.CHAOTIC),
-        (0.1, 2.5, None, Verdict.UNDECIDED),
-        (0.1, 1.0, 0.5, Verdict.UNDECIDED),
-        (1e-6, 1.8, 8.5, Verdict.REGULAR),
+        (0.1, 1.0, 7.0, None, Verdict.REGULAR),
+        (1e-6, 1.8, 7.0, None, Verdict.REGULAR),
+        (0.1, 1.0, 6.9, None, Verdict.NO_SIGN),
+        (0.1, 1.0, 3.0, 7.9, Verdict.NO_SIGN),
+        (0.1, 1.0, 3.0, 8.0, Verdict.REGULAR),
+        (0.1, 1.8, 3.0, None, Verdict.UNDECIDED),
+        (1e-6, 1.0, 3.0, None, Verdict.UNDECIDED),
+        (1e-6, 2.5, 3.0, None, Verdict.CHAOTIC),
+        (1e-9, 1.8, 3.0, None, Verdict.CHAOTIC),
+        (0.1, 2.5, 3.0, None, Verdict.CHAOTIC),
+        (0.1, 1.0, 3.0, 0.5, Verdict.CHAOTIC),
+        (1e-9, 1.0, 9.0, None, Verdict.UNDECIDED),
+        (0.1, 2.5, 3.0, 9.0, Verdict.UNDECIDED),
     ],
 )
 def test_the_character_is_that_of_the_indicators_that_decide(
-    bounded: Orbit, sali: float, growth: float, digits: float | None, character: Verdict
+    bounded: Orbit, sali: float, growth: float, halves: float, digits: float | None, character: Verdict
 ) -> None:
-    orbit = with_end(bounded, sali=sali, growth=growth)
+    orbit = with_end(bounded, sali=sali, growth=growth, halves=halves)
     assert judge_orbit(orbit, None if digits is None else digits_of(digits)).character is character
+
+
+@pytest.mark.parametrize(
+    ("sali", "halves", "sentence"),
+    [
+        (0.1, 3.0, "Bounded until t = 2 000, no sign of chaos until t = 2 000, with "),
+        (0.1, 8.25, "Bounded until t = 2 000, regular (Birkhoff digits of halves 8.2), with "),
+        (1e-9, 3.0, "Bounded until t = 2 000, chaotic (SALI 1e-09), with "),
+        (1e-6, 3.0, "Bounded until t = 2 000, undecided whether regular or chaotic, with "),
+    ],
+)
+def test_a_verdict_states_its_evidence_and_its_time(bounded: Orbit, sali: float, halves: float, sentence: str) -> None:
+    assert judge_orbit(with_end(bounded, sali=sali, growth=1.0, halves=halves)).describe().startswith(sentence)
+
+
+@pytest.mark.parametrize("t_max", [1000.0, 2000.0, 5000.0])
+def test_sticky_orbits_are_not_called_regular(t_max: float) -> None:
+    for case, state in STICKY:
+        assert judge_orbit(integrate_orbit(CASES[case], state, t_max)).character is not Verdict.REGULAR
 
 
 @pytest.mark.parametrize(("state", "character"), [(ISLAND, Verdict.REGULAR), (SEA, Verdict.CHAOTIC)])
 def test_an_orbit_below_the_escape_energy_is_bounded_for_ever(state: list[float], character: Verdict) -> None:
     verdict = judge_orbit(integrate_orbit(CASES["II"], state, 2000.0))
     assert (verdict.certificate, verdict.character) == (Certificate.CLOSED, character)
-    assert verdict.describe().startswith(f"Bounded for ever (its energy is below every saddle) and {character}, with ")
+    assert verdict.describe().startswith(f"Bounded for ever (its energy is below every saddle), {character} (")
     assert verdict.describe().endswith(" until t = 2 000.")
 
 
-@pytest.mark.parametrize(("digits", "for_ever"), [(7.9, False), (8.0, True)])
-def test_digits_as_on_a_torus_certify_an_orbit(bounded: Orbit, digits: float, for_ever: bool) -> None:
+@pytest.mark.parametrize(("digits", "on_a_torus"), [(7.9, False), (8.0, True)])
+def test_digits_as_on_a_torus_are_evidence_that_an_orbit_is_bounded_for_ever(
+    bounded: Orbit, digits: float, on_a_torus: bool
+) -> None:
     verdict = judge_orbit(bounded, digits_of(digits))
-    assert verdict.is_bounded_for_ever is for_ever
-    start = "Bounded for ever (certified: quasi-periodic, as on an invariant torus)" if for_ever else "Bounded until t = 2 000"
-    assert verdict.describe().startswith(start)
-    assert verdict.summarize() == f"bounded {'for ever' if for_ever else 'until t = 2 000'}, regular"
+    assert not verdict.is_bounded_for_ever
+    assert (verdict.certificate is Certificate.QUASI_PERIODIC) is on_a_torus
+    reason = "Bounded until t = 2 000 and probably for ever (evidence: its averages converge as on an invariant torus), regular"
+    assert verdict.describe().startswith(reason) is on_a_torus
+    assert verdict.summarize() == "bounded until t = 2 000, regular"
+
+
+@pytest.mark.parametrize(("sali", "growth"), [(4.9e-11, 1.0), (0.1, 2.5)])
+def test_signs_of_chaos_withdraw_the_evidence_of_a_torus(bounded: Orbit, sali: float, growth: float) -> None:
+    verdict = judge_orbit(with_end(bounded, sali=sali, growth=growth, halves=9.0), digits_of(8.5))
+    assert (verdict.certificate, verdict.character) == (Certificate.INTEGRATED, Verdict.UNDECIDED)
+    assert "for ever" not in verdict.describe()
 
 
 def test_without_windows_to_compare_an_orbit_is_not_certified(bounded: Orbit) -> None:
@@ -101,6 +156,14 @@ def test_an_escape_names_channel_time_and_crossings() -> None:
     assert verdict.summarize() == f"channel {orbit.fate} at t = {orbit.escape_time:.5g}"
     assert "after 1 upward crossing of y = 0." in judge_orbit(replace(orbit, crossings=1)).describe()
     assert judge_orbit(replace(orbit, crossings=0)).describe().endswith("directly, without crossing y = 0 upward.")
+
+
+def test_an_orbit_with_aligned_deviation_vectors_was_chaotic_while_inside() -> None:
+    orbit = integrate_orbit(CASES["II"], start_states(CASES["II"], Plane.X_PX, 0.3, np.array([0.1]), np.array([0.2]))[0], 1e3)
+    verdict = judge_orbit(replace(orbit, sali=np.full_like(orbit.sali, 1e-9)))
+    assert verdict.character is Verdict.CHAOTIC_INSIDE
+    assert verdict.describe().endswith(", chaotic while inside.")
+    assert verdict.summarize() == f"channel {orbit.fate} at t = {orbit.escape_time:.5g}, chaotic while inside"
 
 
 def test_an_outside_start_is_neither_bounded_nor_judged() -> None:

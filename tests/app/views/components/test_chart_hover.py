@@ -8,26 +8,27 @@ import pytest
 from bokeh.models import HoverTool
 
 from app.views.analysis.basin_measures import BasinMeasuresView
-from app.views.analysis.energy_curves import EnergyCurvesView
+from app.views.analysis.curves import CurvesView
 from app.views.analysis.statistics import StatisticsView
 
 
 @pytest.fixture(scope="module")
 def chart_hovers() -> list[HoverTool]:
     """The hover tools of all charts."""
-    statistics, measures = StatisticsView(lambda: None, lambda text: None), BasinMeasuresView(lambda: None)
+    statistics = StatisticsView(lambda: None, lambda text: None)
+    measures = BasinMeasuresView(lambda: None, lambda text: None, lambda: None)
     statistics.build()
-    curves = EnergyCurvesView(lambda: None, lambda energy: None)
+    curves = CurvesView(lambda: None, lambda energy: None)
     plots = [statistics._times.state, statistics._probabilities.state, measures._draw_survival(), measures._draw_uncertainty()]
     return [tool for plot in (*plots, *curves._draw().values()) for tool in plot.tools if isinstance(tool, HoverTool)]
 
 
 def test_every_chart_has_a_hover(chart_hovers: list[HoverTool]) -> None:
-    # Two charts of statistics, two of measures, the shares, and five curves.
-    assert len(chart_hovers) == 10
+    # Two charts of statistics, two of measures, the shares, and seven curves.
+    assert len(chart_hovers) == 14
 
 
-@pytest.mark.parametrize("place", range(10))
+@pytest.mark.parametrize("place", range(14))
 def test_every_value_of_a_text_has_a_format(chart_hovers: list[HoverTool], place: int) -> None:
     hover = chart_hovers[place]
     assert isinstance(hover.tooltips, str)

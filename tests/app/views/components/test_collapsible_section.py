@@ -72,7 +72,8 @@ def test_the_button_of_a_fold_opens_and_closes_it(builds: Builds) -> None:
 
 @pytest.fixture
 def drawers(builds: Builds) -> Drawers:
-    return Drawers({name: (name.upper(), f"Title {name}", builds.maker(name)) for name in ("a", "b")})
+    labels = {"a": "A", "b": "B", "plain": ""}
+    return Drawers({name: (label, f"Title {name}", builds.maker(name)) for name, label in labels.items()})
 
 
 def test_at_most_one_drawer_is_open(drawers: Drawers) -> None:
@@ -97,6 +98,14 @@ def test_a_drawer_closed_by_its_own_button_leaves_no_button_pressed(drawers: Dra
     close = next(part for part in head if isinstance(part, pn.widgets.Button))
     close.clicks += 1
     assert (drawers.shown, drawers.buttons.value) == (None, [])
+
+
+def test_a_drawer_without_a_button_is_replaced_by_one_that_has(drawers: Drawers) -> None:
+    drawers.buttons.value = ["a"]
+    drawers.show("plain")
+    assert (drawers.shown, drawers.buttons.value) == ("plain", [])
+    drawers.buttons.value = ["b"]
+    assert drawers.shown == "b"
 
 
 def test_a_drawer_and_its_button_change_in_one_message(drawers: Drawers) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
-from app.views.components.progress import CONTINUE, STOP, ProgressView
+from app.views.components.progress import CONTINUE, STOP, TEST, ProgressView
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
 
 
@@ -17,13 +19,14 @@ def escape_map() -> EscapeMap:
 
 def make_view() -> tuple[ProgressView, list[str]]:
     calls: list[str] = []
-    return ProgressView(lambda: calls.append("cancel"), lambda: calls.append("resume")), calls
+    return ProgressView(*(partial(calls.append, name) for name in ("cancel", "resume", "test"))), calls
 
 
 def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     view, _ = make_view()
     view.show(escape_map)
-    assert view.text.object.startswith("Done, t = 1 000. Interior starts: channel 1 ")
+    text = re.sub(r"<[^>]*>", "", view.text.object)
+    assert text.startswith("Done, t = 1 000. Interior starts: channels 1 to 2: ")
     assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
 
 
@@ -51,3 +54,20 @@ def test_without_a_map_there_is_neither_text_nor_button() -> None:
     view.start()
     view.fail()
     assert (view.text.object, view.button.styles["visibility"], view.bar.styles["opacity"]) == ("", "hidden", "0")
+
+
+def test_a_deep_zoom_says_how_many_pixels_are_lost_to_rounding_and_offers_the_test(escape_map: EscapeMap) -> None:
+    view, calls = make_view()
+    view.show(replace(escape_map, rounded_share=0.273))
+    assert "about 27 % of the pixels depend on rounding errors" in re.sub(r"<[^>]*>", "", view.text.object)
+    assert (view.button.label, view.button.styles["visibility"]) == (TEST, "visible")
+    view.button.clicks += 1
+    assert calls == ["test"]
+
+
+@pytest.mark.parametrize("share", [None, 0.004, float("nan")])
+def test_other_maps_do_not_mention_rounding(escape_map: EscapeMap, share: float | None) -> None:
+    view, _ = make_view()
+    view.show(replace(escape_map, rounded_share=share))
+    assert "rounding" not in view.text.object
+    assert view.button.styles["visibility"] == "hidden"

@@ -9,11 +9,11 @@ from engine import Certificate, Regularity, Trust
 
 
 def test_every_code_of_a_layer_has_words_in_its_order() -> None:
-    hover = pixel_hover(ColumnDataSource(), ColumnDataSource(), Range1d(), Range1d())
+    hover = pixel_hover(ColumnDataSource(), ColumnDataSource(), ColumnDataSource(), Range1d(), Range1d())
     formatter = hover.formatters["@crossing_class"]
     assert isinstance(formatter, CustomJSHover)
-    assert formatter.args["trusts"] == [TRUST.get(code, "") for code in sorted(Trust)]
-    assert formatter.args["characters"] == [CHARACTER.get(code, "") for code in sorted(Regularity)]
-    assert len(formatter.args["certificates"]) == len(Certificate)
+    assert formatter.args["words"]["trusts"] == [TRUST.get(code, "") for code in sorted(Trust)]
+    assert formatter.args["words"]["characters"] == [CHARACTER.get(code, "") for code in sorted(Regularity)]
+    assert len(formatter.args["words"]["certificates"]) == len(Certificate)
     assert set(TRUST) == set(Trust) - {Trust.NOT_APPLICABLE}
     assert set(CHARACTER) == set(Regularity) - {Regularity.NOT_APPLICABLE}

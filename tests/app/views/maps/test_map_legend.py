@@ -1,54 +1,72 @@
-"""The legend has the colours of the palette, and what the map shows."""
+"""The legend of a map has the colours of its palette, and what the map shows."""
 
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import pytest
 
-from app.views.maps.map_legend import MapLegend
+from app.views.maps.map_legend import Described, map_legend
 from engine import CASES, Fate, MapSpec, Plane
 from plots.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
+from plots.time_scale import TimeScale
 
-PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]+)")
+PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")
+ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED, 1, 2))
 
 
-def entries(legend: MapLegend) -> list[tuple[str, str]]:
+def described(**changes: Any) -> Described:
+    spec = MapSpec(CASES["II"], Plane.X_PX, 0.2)
+    values: dict[str, Any] = {"palette": PAPER, "times": TimeScale(2.5, 100.0), "locked": False, "regularity": "", "fates": ALL}
+    return Described(spec, **(values | changes))
+
+
+def entries(html: str) -> list[tuple[str, str]]:
     """Label and colour of each entry."""
-    return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(legend.pane.object)]
+    return [(label.replace("&gt;", ">"), colour) for colour, label in PATCH.findall(html)]
 
 
 @pytest.mark.parametrize("palette", [PAPER, COLOUR_BLIND_SAFE], ids=lambda palette: palette.name)
-def test_the_entries_are_those_of_the_palette(palette: Palette) -> None:
-    legend = MapLegend()
-    curve = Entry("limiting curve", "#1b1b1b")
-    legend.show(MapSpec(CASES["II"], Plane.X_PX, 0.2), palette, 100.0, [curve])
-    outcomes = [palette.outcomes[fate] for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED)]
-    expected = [*palette.channel_entries(3), *palette.crossing_entries, *outcomes, curve]
-    assert sorted(entries(legend)) == sorted((entry.label, entry.colour) for entry in expected)
-    assert palette.escape_time[0] in legend.pane.object
-    assert palette.escape_time[-1] in legend.pane.object
+def test_exits_and_outcomes_have_the_colours_of_the_palette(palette: Palette) -> None:
+    colours = dict(entries(map_legend("basins", described(palette=palette), [])))
+    assert [colours[str(k)] for k in (1, 2, 3)] == list(palette.channels[:3])
+    words = {Fate.BOUNDED: "bounded", Fate.FORBIDDEN: "forbidden", Fate.OUTSIDE: "outside", Fate.NOT_COMPUTED: "not decided yet"}
+    assert {colours[word] == palette.outcomes[fate].colour for fate, word in words.items()} == {True}
 
 
-def test_the_scale_ends_at_the_longest_time() -> None:
-    legend = MapLegend()
-    legend.show(MapSpec(CASES["I"], Plane.X_PX, 0.2), PAPER, 1234.0, [])
-    assert "≥ 1 234" in legend.pane.object
+def test_only_outcomes_that_the_map_has_are_named() -> None:
+    labels = [label for label, _ in entries(map_legend("basins", described(fates=frozenset({int(Fate.BOUNDED)})), []))]
+    assert labels == ["1", "2", "3", "bounded"]
 
 
-def test_the_scale_begins_at_the_shortest_time_and_says_whether_it_is_locked() -> None:
-    legend = MapLegend()
-    legend.show(MapSpec(CASES["I"], Plane.X_PX, 0.2), PAPER, 100.0, [], locked=True)
-    assert "≤ 1 " in legend.pane.object
-    assert "locked" in legend.pane.object
+def test_a_short_label_has_the_whole_one_as_its_title() -> None:
+    html = map_legend("basins", described(), [])
+    assert f"title='{PAPER.outcomes[Fate.FORBIDDEN].label}'" in html
+    assert "title='channel 2'" in html
 
 
-def test_layers_have_entries_only_while_they_are_shown() -> None:
-    legend, spec = MapLegend(), MapSpec(CASES["I"], Plane.X_PX, 0.2)
-    legend.show(spec, PAPER, 100.0, [])
-    assert "chaotic" not in legend.pane.object
-    assert "Enters by" not in legend.pane.object
-    legend.show(spec, PAPER, 100.0, [], regularity="1 % are chaotic.", origins=True)
-    assert "bounded and chaotic" in legend.pane.object
-    assert "1 % are chaotic." in legend.pane.object
-    assert "Enters by" in legend.pane.object
+def test_crossings_have_their_classes() -> None:
+    expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
+    assert entries(map_legend("crossings", described(), [])) == expected
+
+
+def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:
+    html = map_legend("times", described(times=TimeScale(2.5, 1234.0)), [])
+    assert "≤ 2.5 " in html
+    assert "≥ 1 234" in html
+    assert PAPER.escape_time[0] in html
+    assert PAPER.escape_time[-1] in html
+    assert "locked" not in html
+    assert "locked" in map_legend("times", described(locked=True), [])
+
+
+def test_layers_have_legends_of_their_own() -> None:
+    html = map_legend("characters", described(regularity="1 % are chaotic."), [])
+    assert "bounded and chaotic" in html
+    assert "1 % are chaotic." in html
+    assert "Enters by" in map_legend("origins", described(), [])
+
+
+def test_what_is_drawn_over_a_map_is_named() -> None:
+    assert ("doubtful pixels", "#123456") in entries(map_legend("crossings", described(), [Entry("doubtful pixels", "#123456")]))

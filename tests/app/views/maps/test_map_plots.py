@@ -1,22 +1,27 @@
-"""The maps share one toolbar, one legend and one picker."""
+"""The maps share one toolbar, and clicks on them reach the page."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
-from bokeh.models import BoxSelectTool, BoxZoomTool, PanTool, WheelZoomTool
+from bokeh.events import DoubleTap, Tap
+from bokeh.models import BasicTickFormatter, BoxSelectTool, BoxZoomTool, CustomJSTickFormatter, PanTool, WheelZoomTool
 
-from app.views.maps.map_plots import MAPS, SHORT_TITLES, MapsView
+from app.views.maps.map_plots import MAPS, PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from app.views.maps.map_toolbar import Drag
-from engine import CASES, MapSpec, Plane, Window
+from engine import CASES, MapSpec, Plane, compute_map
+from plots.image_columns import map_columns
 from plots.map_images import ON_DEMAND
+from tests.app.map_actions import make_maps
 
-ALWAYS = [name for name in MAPS if name not in ON_DEMAND]
+ALWAYS = [name for name in PICTURES_ALONE if name != "well"]
 
 
 @pytest.fixture
 def maps() -> MapsView:
-    view = MapsView(lambda x, y: None, lambda window: None, lambda: None, lambda box: None)
-    view.show_pictures(frozenset())
+    view = make_maps()
+    view.show_pictures(PICTURES_ALONE)
     return view
 
 
@@ -25,7 +30,8 @@ def tools(maps: MapsView, kind: type) -> list[object]:
 
 
 def test_all_figures_share_one_toolbar(maps: MapsView) -> None:
-    maps.show_pictures(frozenset(ON_DEMAND))
+    maps.show_pictures([*PICTURES_ALONE, *ON_DEMAND])
+    maps.show_pictures(PICTURES_COMPARED)
     assert set(maps.figures) == set(MAPS)
     assert len({id(plot.toolbar) for plot in maps.figures.values()}) == 1
 
@@ -47,43 +53,58 @@ def test_the_mode_chooses_the_active_tool(maps: MapsView, drag: Drag, kind: type
     assert isinstance(maps.figures["basins"].toolbar.active_drag, kind)
 
 
-def test_every_picture_has_a_short_title() -> None:
-    assert set(SHORT_TITLES) == {"well", *MAPS}
-
-
-def test_pictures_on_demand_are_on_the_page_while_they_are_shown(maps: MapsView) -> None:
-    grid, _ = maps.layout()
-    counts = []
-    for on_demand in (frozenset({"origins"}), frozenset(ON_DEMAND), frozenset()):
-        maps.show_pictures(on_demand)
-        counts.append(len(grid.objects))
-    assert counts == [len(ALWAYS) + 2, len(MAPS) + 1, len(ALWAYS) + 1]
-
-
 def test_on_touch_screens_the_tool_of_the_wheel_leaves_two_fingers_alone(maps: MapsView) -> None:
     assert tools(maps, WheelZoomTool)
     maps.begin_touch()
     assert not tools(maps, WheelZoomTool)
 
 
-def test_the_picker_of_a_touch_device_marks_one_picture(maps: MapsView) -> None:
-    maps.begin_touch()
-    maps.show_pictures(frozenset({"origins"}))
-    grid, _ = maps.layout()
-    picker, *panes = grid.objects
-    assert list(picker.options.values()) == ["well", *ALWAYS, "origins"]
-    picker.value = "origins"
-    assert len(panes) == len(ALWAYS) + 2
-    assert [name for name, plot in maps.figures.items() if "picked" in plot.css_classes] == ["origins"]
-    maps.show_pictures(frozenset())
-    assert picker.value == "basins"
+def clicks(*points: tuple[float, float]) -> list[tuple[str, float, float]]:
+    """What is called when points of a map are clicked quickly one after the other."""
+    called: list[tuple[str, float, float]] = []
+    view = make_maps(tap=lambda x, y: called.append(("tap", x, y)), dive=lambda x, y: called.append(("dive", x, y)))
+    view.show_pictures(PICTURES_ALONE)
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (10, 10), (0.0, 1.0, 0.0, 1.0), t_max=10.0))
+    view.show(frame, map_columns(frame))
+    plot = view.figures["basins"]
+    first, *others = points
+    view._tapped(Tap(plot, x=first[0], y=first[1]))
+    for x, y in others:
+        view._tapped_again(DoubleTap(plot, x=x, y=y))
+    return called
 
 
-def test_reversed_ranges_are_no_window() -> None:
-    zooms: list[Window | None] = []
-    view = MapsView(lambda x, y: None, zooms.append, lambda: None, lambda box: None)
-    view._spec = MapSpec(CASES["I"], Plane.X_PX, 0.19)
-    for start, end in ((0.2, 0.1), (0.1, 0.2)):
-        view._ranges[0].update(start=start, end=end)
-        view._rested()
-    assert [(zoom.x_low, zoom.x_high) for zoom in zooms if zoom] == [(0.1, 0.2)]
+def test_two_clicks_on_one_pixel_are_a_dive_to_the_point() -> None:
+    assert clicks((0.31, 0.52), (0.33, 0.54)) == [("tap", pytest.approx(0.35), pytest.approx(0.55)), ("dive", 0.33, 0.54)]
+
+
+def test_two_quick_clicks_on_two_pixels_are_two_taps() -> None:
+    assert [name for name, _, _ in clicks((0.31, 0.52), (0.71, 0.52))] == ["tap", "tap"]
+
+
+def deep(width: float) -> MapsView:
+    view = make_maps()
+    view.show_pictures(PICTURES_ALONE)
+    spec = MapSpec(CASES["I"], Plane.X_PX, 0.19, (4, 4), (0.1, 0.1 + width, 0.2, 0.2 + width), t_max=10.0)
+    frame = compute_map(spec)
+    view.ranges.set_home(replace(spec, window=None))
+    view.show(frame, map_columns(frame))
+    return view
+
+
+def test_labels_of_a_deep_window_are_distances_from_a_stated_number() -> None:
+    view = deep(1e-9)
+    for axis in (view.figures["times"].below[0], view.figures["times"].left[0]):
+        assert isinstance(axis.formatter, CustomJSTickFormatter)
+        assert axis.formatter.args["unit"] == 1e-10
+    assert abs(view.figures["times"].below[0].formatter.args["base"] - 0.1) < 1e-9
+    assert "(x − 0.1" in view.figures["basins"].elements[0].html
+    assert "times enlarged" in view.figures["basins"].elements[0].html
+
+
+def test_labels_of_a_wide_window_are_plain_numbers_again() -> None:
+    view = deep(1e-9)
+    frame = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (4, 4), t_max=10.0))
+    view.show(frame, map_columns(frame))
+    assert isinstance(view.figures["times"].below[0].formatter, BasicTickFormatter)
+    assert "Labels:" not in view.figures["basins"].elements[0].html

@@ -1,11 +1,10 @@
-"""The tools of the maps: buttons that lead somewhere, and what a drag does."""
+"""The tools of the maps: the whole plane, and what a drag does."""
 
 from __future__ import annotations
 
 import panel as pn
 import pytest
 
-from app.state.history import History
 from app.views.maps.map_toolbar import Drag, MapToolbar
 
 
@@ -16,30 +15,22 @@ def chosen() -> list[Drag]:
 
 @pytest.fixture
 def toolbar(chosen: list[Drag]) -> MapToolbar:
-    return MapToolbar(lambda: None, lambda: None, lambda: None, chosen.append)
+    return MapToolbar(lambda: None, chosen.append)
 
 
-def buttons(row: pn.Column) -> list[str]:
-    return [part.label for part in row.objects if isinstance(part, pn.widgets.Button)]
+def test_the_whole_plane_can_be_shown_while_a_part_of_it_is(toolbar: MapToolbar) -> None:
+    shown = [toolbar.home.styles["visibility"]]
+    for zoomed in (True, False):
+        toolbar.follow(zoomed=zoomed)
+        shown.append(toolbar.home.styles["visibility"])
+    assert shown == ["hidden", "visible", "hidden"]
 
 
-def test_only_buttons_that_lead_somewhere_are_shown(toolbar: MapToolbar) -> None:
-    row, history = toolbar.layout(), History()
-    shown = []
-    for step, zoomed in ((None, False), (history.record, True), (history.record, False), (lambda: history.move_to(1), True)):
-        if step is not None:
-            step()
-        toolbar.follow(history, zoomed=zoomed)
-        shown.append(buttons(row))
-    back, forward, home = "← Back", "Forward →", "Whole plane"
-    assert shown == [[], [back, home], [back], [back, forward, home]]
-
-
-def test_the_parts_before_the_buttons_stay(toolbar: MapToolbar) -> None:
+def test_all_parts_have_fixed_places(toolbar: MapToolbar) -> None:
     text = pn.pane.HTML("text")
     row = toolbar.layout(text)
-    toolbar.follow(History(), zoomed=False)
-    assert row.objects == [text, toolbar.drag]
+    toolbar.follow(zoomed=True)
+    assert row.objects == [text, toolbar.home, toolbar.drag]
 
 
 def test_a_mode_is_passed_on(toolbar: MapToolbar, chosen: list[Drag]) -> None:

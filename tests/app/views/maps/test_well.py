@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 
 from app.views.maps.well import WellView
-from engine import CASES, MapSpec, Plane, Window, integrate_orbit, start_states
+from engine import (
+    CASES,
+    Coordinate,
+    MapSpec,
+    ParameterAxis,
+    Plane,
+    Slice,
+    System,
+    Window,
+    integrate_orbit,
+    start_states,
+)
 from plots.orbit_curves import OrbitCurves, compute_orbit_curves
 
 
@@ -53,6 +64,17 @@ def test_the_paths_end_and_begin_with_their_orbits() -> None:
     assert source(well, "points").data["x"] == pytest.approx([0.2, 0.1])
 
 
+def test_a_long_path_that_is_not_chosen_does_not_cover_the_chosen_one() -> None:
+    well = WellView()
+    long = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (-0.46, 0.0, 0.0, 0.2), 2000.0))
+    assert long.visits is not None
+    for chosen in (0, 1):
+        well.show_orbits([long, curves_of("I", 0.19)], chosen)
+        assert (source(well, "shades").data["alpha"][0] == 1.0) == (chosen == 0)
+    order = [each.data_source.name for each in well.plot.renderers]
+    assert order.index("shades") < order.index("paths")
+
+
 def test_the_points_move_along_the_orbits() -> None:
     well, drawing = WellView(), curves_of("III", 0.4)
     well.show_map(MapSpec(CASES["III"], Plane.X_PX, 0.4))
@@ -74,3 +96,19 @@ def test_along_an_axis_h_the_well_is_that_of_the_chosen_orbit() -> None:
     assert not source(well, "lyapunov_orbits").data["xs"]
     well.show_orbits([], chosen=0)
     assert edges(well) == highest
+
+
+def test_along_a_parameter_the_well_is_that_of_the_chosen_orbit() -> None:
+    well, along = WellView(), Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
+    stronger = CASES["I"].with_parameters(epsilon=1.5)
+    drawings = [
+        compute_orbit_curves(potential, integrate_orbit(potential, (0.1, 0.0, 0.0, 0.6), 10.0))
+        for potential in (CASES["I"], stronger)
+    ]
+    well.show_map(MapSpec(CASES["I"], along, 0.2))
+    well.show_orbits(drawings, chosen=1)
+    own = WellView()
+    own.show_map(MapSpec(stronger, Plane.X_PX, drawings[1].orbit.energy))
+    assert edges(well) == edges(own)
+    # The path of an orbit in another well is left out.
+    assert source(well, "paths").data["slot"] == [1]

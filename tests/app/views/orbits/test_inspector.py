@@ -22,15 +22,15 @@ def test_values_and_plots_are_added_and_removed_with_the_orbits() -> None:
     for orbits in (0, 1, 2, 5, 0):
         inspector.follow(orbits, orbits)
         shown.append(len(inspector.layout().objects))
-    # Head, three plots of an orbit, one plot of two, and details.
+    # Head, three plots of an orbit, one of two, values to unfold, and verdicts: the same for any number of orbits.
     entry = shown[0]
-    assert [count - entry for count in shown] == [0, 5, 6, 6, 0]
+    assert [count - entry for count in shown] == [0, 8, 8, 8, 0]
 
 
 def test_a_start_without_an_orbit_has_values_but_no_plots() -> None:
     inspector = make_inspector()
     before = len(inspector.layout().objects)
     inspector.follow(1, 0)
-    assert len(inspector.layout().objects) == before + 2
+    assert len(inspector.layout().objects) == before + 4
     inspector.follow(2, 1)
-    assert len(inspector.layout().objects) == before + 5
+    assert len(inspector.layout().objects) == before + 8

@@ -29,7 +29,6 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
         {"link": "?case=II", "entry": 3, "steps": 1},
         {"dark": True},
         {"touch": True},
-        {"first_visit": True},
         {"copied": False},
     ]
     for message in messages:
@@ -39,7 +38,6 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
         ("navigate", "?case=II", 3, 1),
         ("dark", True),
         ("touch",),
-        ("first_visit",),
         ("copied", False),
     ]
 
@@ -51,6 +49,14 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
 def test_other_messages_are_ignored(events: BrowserEvents, calls: list[tuple[Any, ...]], message: Any) -> None:
     events._receive(message)
     assert calls == []
+
+
+def test_keys_that_a_page_does_not_use_are_left_to_the_browser(calls: list[tuple[Any, ...]]) -> None:
+    some = BrowserEvents(BrowserActions(*[lambda *values: calls.append(values) for _ in fields(BrowserActions)]), ["h"])
+    for key in ("h", "b"):
+        some._receive({"key": key})
+    assert calls == [("h",)]
+    assert some.layout().keys == ["h"]
 
 
 def test_every_key_is_in_the_list_of_keys() -> None:

@@ -8,8 +8,8 @@ import pytest
 from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.panels.controls import ControlActions, Controls
-from engine import Plane
-from engine.service import TYPED, System
+from engine import Plane, System
+from engine.service import TYPED
 
 
 class Page:
@@ -22,6 +22,9 @@ class Page:
             ControlActions(
                 play=lambda: None,
                 choose_potential=lambda: None,
+                choose_slice=lambda: None,
+                compare=lambda on: None,
+                swap=lambda: None,
                 lock_times=lambda locked: None,
             ),
         )
@@ -73,7 +76,7 @@ def test_the_controls_follow_a_preset(page: Page) -> None:
 
 def open_quality(page: Page) -> dict[str, pn.widgets.Select]:
     """The lists of the closed fold, by label."""
-    parts = page.controls.layout(pn.pane.HTML())
+    parts = page.controls.layout()
     fold = next(part for part in parts if isinstance(part, pn.widgets.Button) and "Quality" in part.label)
     assert fold.label == "▸ Quality and colours"
     fold.clicks += 1
@@ -96,13 +99,13 @@ def test_the_lists_change_the_state(page: Page) -> None:
 
 def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:
     page.controls.begin_touch()
-    parts = page.controls.layout(pn.pane.HTML())
+    parts = page.controls.layout()
     labels = [part.label for part in parts if isinstance(part, pn.widgets.Button)]
     assert {label for label in labels if label[0] in "▸▾"} == {"▸ Quality and colours", "▸ Layers"}
 
 
 def test_other_potentials_leave_no_case_selected(page: Page) -> None:
-    page.state.show_system(review_system(System("I", epsilon=0.5)))
+    page.state.show_system(review_system(System("I", parameters={"epsilon": 0.5})))
     assert page.controls.case.value == "I"
     page.state.show_system(review_system(System(TYPED, "½(x² + y²) − x²y")))
     assert page.controls.case.value is None

@@ -31,7 +31,7 @@ def escape_map() -> EscapeMap:
 @pytest.fixture
 def downloads_view(escape_map: EscapeMap) -> Downloads:
     """With a complete map and one orbit."""
-    shown = Downloads(ViewState(case="I", energy=0.19), lambda: None)
+    shown = Downloads(ViewState(case="I", energy=0.19), lambda: None, lambda: None, lambda copied: None)
     shown.show_map(escape_map)
     orbit = integrate_orbit(CASES["I"], STATE, 50.0)
     shown.show_orbits([ChosenOrbit((0.1, 0.05), compute_orbit_curves(CASES["I"], orbit))])
@@ -40,7 +40,7 @@ def downloads_view(escape_map: EscapeMap) -> Downloads:
 
 @pytest.mark.parametrize(
     ("maker", "file", "begins"),
-    [("png_bytes", "png_file", b"\x89PNG"), ("netcdf_bytes", "netcdf_file", b"\x89HDF"), ("orbits_csv", "csv_file", b"# escape")],
+    [("netcdf_bytes", "netcdf_file", b"\x89HDF"), ("orbits_csv", "csv_file", b"# escape")],
 )
 def test_the_event_loop_runs_while_a_file_is_made(
     downloads_view: Downloads, maker: str, file: str, begins: bytes, monkeypatch: pytest.MonkeyPatch

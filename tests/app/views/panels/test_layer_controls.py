@@ -9,6 +9,7 @@ from app.state.view_state import IMAGE_CHOICES, LAYERS, ViewState
 from app.views.components.analysis_choice import LayerSwitches
 from app.views.components.widgets import SegmentedControl, Switches
 from app.views.panels.controls import LOCK, ControlActions, Controls
+from plots.time_scale import TimeScale
 
 
 @pytest.fixture
@@ -18,7 +19,17 @@ def locks() -> list[bool]:
 
 
 def controls(state: ViewState, locks: list[bool]) -> Controls:
-    return Controls(state, ControlActions(lambda: None, lambda: None, locks.append))
+    return Controls(
+        state,
+        ControlActions(
+            lambda: None,
+            lambda: None,
+            lambda: None,
+            lambda on: state.param.update(compared=state.present_view() if on else None),
+            lambda: None,
+            locks.append,
+        ),
+    )
 
 
 def lock_of(panel: Controls) -> Widget:
@@ -50,9 +61,21 @@ def test_the_fold_of_layers_has_the_image_when_the_manifolds_are_switched_on(loc
     state = ViewState()
     panel = controls(state, locks)
     fold = panel._folds[1].layout()
-    assert len(fold.objects) == len(LAYERS)
-    state.manifolds = True
     assert len(fold.objects) == len(LAYERS) + 1
+    state.manifolds = True
+    assert len(fold.objects) == len(LAYERS) + 2
+
+
+def test_the_switch_of_the_comparison_follows_the_state_and_asks_for_it(locks: list[bool]) -> None:
+    state = ViewState(energy=0.19)
+    panel = controls(state, locks)
+    state.compared = state.present_view()
+    assert panel.comparison.switch.value
+    assert "Case I, (x, px), h = 0.19" in panel.comparison.view.object
+    assert panel.comparison.swap in panel._folds[1].layout().objects
+    panel.comparison.switch.value = []
+    assert state.compared is None
+    assert panel.comparison.swap not in panel._folds[1].layout().objects
 
 
 def test_the_lock_asks_for_the_limits_of_the_map(locks: list[bool]) -> None:
@@ -62,7 +85,7 @@ def test_the_lock_asks_for_the_limits_of_the_map(locks: list[bool]) -> None:
 
 
 def test_the_lock_follows_the_state_without_asking(locks: list[bool]) -> None:
-    state = ViewState(lock_times=500.0)
+    state = ViewState(lock_times=TimeScale(1.0, 500.0))
     lock = lock_of(controls(state, locks))
     assert lock.value == [LOCK]
     state.lock_times = None
@@ -71,6 +94,6 @@ def test_the_lock_follows_the_state_without_asking(locks: list[bool]) -> None:
 
 
 def test_the_open_lock_is_closed_by_the_user(locks: list[bool]) -> None:
-    lock = lock_of(controls(ViewState(lock_times=500.0), locks))
+    lock = lock_of(controls(ViewState(lock_times=TimeScale(1.0, 500.0)), locks))
     lock.value = []
     assert locks == [False]

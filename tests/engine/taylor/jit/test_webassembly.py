@@ -14,10 +14,15 @@ from engine.dynamics.portable_system import make_portable_system
 from engine.exits.lyapunov_orbits import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.webassembly import webassembly_module
-from engine.taylor.source.recurrence import LANES, ORDER, TOLERANCE, generate_code
+from engine.taylor.source.recurrence import LANES, TOLERANCE, generate_code
+from engine.taylor.source.series import ORDER
 from tests.node import needs_node, run_node
 
-POTENTIALS = {**CASES, "typed": parse_formula("½(x² + y²) − x²y² − x³/4")}
+POTENTIALS = {
+    **CASES,
+    "typed": parse_formula("½(x² + y²) − x²y² − x³/4"),
+    "functions": parse_formula("½log(1 + r²) − 0.5x² y exp(−y²) − x³ cos(y)/√(2 + y²)"),
+}
 ENERGY = 0.29
 LARGEST_BYTES = 5120
 
@@ -45,7 +50,7 @@ def starts(potential: Potential) -> np.ndarray:
 
 def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon: float) -> tuple[np.ndarray, ...]:
     """The step of the kernels for this machine, its flags with crossings, and the series."""
-    kernels = load_kernels(potential.terms, potential.channels)
+    kernels = load_kernels(potential.form.definition, potential.channels)
     now, new = np.zeros((6, LANES)), np.zeros((6, LANES))
     flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     now[:5, : len(states)] = states.T

@@ -19,7 +19,7 @@ from engine.taylor.kernels.events import (
     exit_distance,
     find_exit_time,
 )
-from engine.taylor.source.recurrence import ORDER
+from engine.taylor.source.series import ORDER
 
 
 def jet_of(polynomial: Polynomial) -> np.ndarray:

@@ -13,10 +13,11 @@ from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
 from engine.potentials.catalogue import channel_family
-from engine.slices.slice import Plane
+from engine.slices.planes import Plane
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
-from engine.taylor.source.recurrence import LANES, ORDER, TOLERANCE, crossings_can_hide, generate_code
+from engine.taylor.source.recurrence import LANES, TOLERANCE, crossings_can_hide, generate_code
+from engine.taylor.source.series import ORDER
 from tests.peers import taylor_heyoka
 
 # A potential that is not in the paper: odd in both coordinates and of degree 5.
@@ -76,7 +77,7 @@ def test_series_obey_the_equations_of_motion(name: str) -> None:
     potential, t = POTENTIALS[name], sympy.Symbol("t")
     jets = jets_of(potential, some_states(1))[:, :, 0]
     x, y = (sympy.Poly([sympy.Rational(float(c)) for c in axis[::-1]], t) for axis in jets)
-    for axis, table in enumerate((potential.derivative(1, 0), potential.derivative(0, 1))):
+    for axis, table in enumerate(potential.form.slopes):
         force = sum((sympy.Rational(c) * x**i * y**j for (i, j), c in table.items()), sympy.Poly(0, t)).all_coeffs()[::-1]
         expected = np.array([-float(c) for c in force[: ORDER - 1]])
         accelerations = np.arange(1, ORDER) * np.arange(2, ORDER + 1) * jets[axis, 2:]

@@ -1,0 +1,155 @@
+// @ts-check
+/** What only the browser has: its history, keys pressed anywhere on the page, theme, touch, the clipboard. */
+
+const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
+  [role=combobox], [role=listbox], [role=menu], [role=menubar], [role=spinbutton], [role=grid], [role=tree],
+  [role=alertdialog], [role=dialog]:not([aria-modal=false]),
+  input:not([type=range], [type=checkbox], [type=radio], [type=button])`
+const MOVING = `[type=range], [type=radio], [role=slider], [role=radio], [role=radiogroup], [role=tab], [role=tablist],
+  [role=toolbar], [role=group]`
+const PRESSED = "button, a[href], summary, input, [role=button]"
+const REST_MS = 100
+/** A drawer that opens is on the page after a few messages: how often it is looked for, and how long to wait in between. */
+const [DRAWER_TRIES, WAIT_MS] = [20, 50]
+
+// The target of an event is the outermost shadow host; its path has all elements.
+/** @type {(event: Event, places: string) => boolean} */
+const comes_from = (event, places) => event.composedPath().some(node => node instanceof Element && node.matches(places))
+
+/** @param {any} node */
+const opens_text = node => node.popoverTargetElement?.matches(":popover-open")
+
+/** @param {KeyboardEvent} event @param {string[]} keys @returns {string | null} the key, if it is one of the page's */
+function key_of(event, keys) {
+  if (event.defaultPrevented || event.isComposing || event.ctrlKey || event.altKey || event.metaKey) return null
+  const named = event.key.length > 1
+  if (named && event.shiftKey) return null
+  const key = event.key === "=" ? "+" : named ? event.key : event.key.toLowerCase()
+  if (!keys.includes(key) || comes_from(event, TYPING)) return null
+  // The browser closes an open help text.
+  if (key === "Escape" && event.composedPath().some(opens_text)) return null
+  if (key === "Enter" && comes_from(event, PRESSED)) return null
+  return key.startsWith("Arrow") && comes_from(event, MOVING) ? null : key
+}
+
+// navigator.clipboard is missing on plain http except on localhost, and may be refused.
+/** @type {(text: string) => Promise<boolean>} */
+const copy = text =>
+  Promise.resolve()
+    .then(() => navigator.clipboard.writeText(text))
+    .then(
+      () => true,
+      () => copy_selected(text),
+    )
+
+/** @param {string} text */
+function copy_selected(text) {
+  const focused = focused_deep()
+  const area = document.createElement("textarea")
+  area.value = text
+  area.style.cssText = "position:fixed;opacity:0"
+  document.body.append(area)
+  area.select()
+  const copied = document.execCommand("copy")
+  area.remove()
+  focused?.focus({preventScroll: true})
+  return copied
+}
+
+/**
+ * The first element that matches, also within shadow roots.
+ *
+ * @type {(root: Document | ShadowRoot, selector: string) => HTMLElement | null}
+ */
+function find_deep(root, selector) {
+  for (const element of root.querySelectorAll("*")) {
+    if (element instanceof HTMLElement && element.matches(selector)) return element
+    const inside = element.shadowRoot && find_deep(element.shadowRoot, selector)
+    if (inside) return inside
+  }
+  return null
+}
+
+/** The element in focus, also within shadow roots. @returns {HTMLElement | null} */
+function focused_deep() {
+  let focused = document.activeElement
+  while (focused?.shadowRoot?.activeElement) focused = focused.shadowRoot.activeElement
+  return focused instanceof HTMLElement ? focused : null
+}
+
+/** Focus the first control of the drawer, which may not be on the page yet. @param {number} tries */
+function focus_drawer(tries) {
+  const drawer = find_deep(document, ".drawer")?.shadowRoot
+  const control = drawer && find_deep(drawer, "button, input, select, textarea")
+  // A drawer can focus another control by itself.
+  if (control) {
+    if (!find_deep(document, ".drawer")?.matches(":focus-within")) control.focus({preventScroll: true})
+  } else if (tries > 0) setTimeout(() => focus_drawer(tries - 1), WAIT_MS)
+}
+
+/** @param {{model: any, el: HTMLElement}} component */
+export function render({model, el}) {
+  let last = -REST_MS
+  /** Where the focus was when a drawer was opened. @type {HTMLElement | null} */
+  let opener = null
+  const listen = (/** @type {KeyboardEvent} */ event) => {
+    const key = key_of(event, model.keys)
+    if (key === null) return
+    if (key !== "Escape") event.preventDefault()
+    // A key that is held down repeats faster than pictures are painted.
+    if (event.repeat && event.timeStamp - last < REST_MS) return
+    last = event.timeStamp
+    model.send_msg({key})
+  }
+  el.setAttribute("aria-hidden", "true")
+  document.addEventListener("keydown", listen)
+  const tell_theme = () => model.send_msg({dark: document.documentElement.dataset.theme === "dark"})
+  document.addEventListener("themechange", tell_theme)
+  // Entries of the history have numbers: a new number is a new entry, the same one replaces the address.
+  const page = crypto.getRandomValues(new Uint32Array(1))[0]
+  let entry = 0
+  // Steps through the history. An address that the server has sent before it knew of the last step is out of date.
+  let steps = 0
+  history.replaceState({page, entry}, "")
+  model.on("address", () => {
+    const {link, entry: next, steps: known} = model.address
+    if (known !== steps) return
+    history[next > entry ? "pushState" : "replaceState"]({page, entry: next}, "", link)
+    entry = next
+  })
+  const tell_entry = (/** @type {PopStateEvent} */ event) => {
+    entry = event.state?.page === page ? event.state.entry : 0
+    steps++
+    model.send_msg({link: window.location.search, entry, steps})
+  }
+  window.addEventListener("popstate", tell_entry)
+  // Buttons in the frames of the pictures.
+  const enlarge = (/** @type {Event} */ event) => {
+    const button = event.composedPath().find(node => node instanceof HTMLElement && node.matches("button[data-picture]"))
+    if (button instanceof HTMLElement) model.send_msg({enlarge: button.dataset.picture})
+  }
+  document.addEventListener("click", enlarge)
+  // The browser would scroll the page when two fingers on a map move the same way.
+  const hold_page = (/** @type {TouchEvent} */ event) => {
+    if (event.touches.length > 1 && comes_from(event, ".map")) event.preventDefault()
+  }
+  document.addEventListener("touchstart", hold_page, {passive: false})
+  model.on("lifecycle:remove", () => {
+    document.removeEventListener("touchstart", hold_page)
+    document.removeEventListener("click", enlarge)
+    window.removeEventListener("popstate", tell_entry)
+    document.removeEventListener("keydown", listen)
+    document.removeEventListener("themechange", tell_theme)
+  })
+  if (document.documentElement.dataset.theme === "dark") tell_theme()
+  model.on("command", async () => {
+    const {name, text} = model.command
+    if (name === "copy") model.send_msg({copied: await copy(text ?? window.location.href)})
+    else if (name === "focus") {
+      opener = focused_deep()
+      focus_drawer(DRAWER_TRIES)
+    } else if (name === "return") opener?.focus({preventScroll: true})
+    else history.go(name === "back" ? -1 : 1)
+  })
+  if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
+}

@@ -1,0 +1,59 @@
+"""The player of many orbits in the visitor's browser: it makes the starts, follows the orbits and paints them by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+from app.browser.module_files import WATCH_ADDRESS
+from app.state.watched_starts import COUNTS, LARGEST_RADIUS, SMALLEST_RADIUS
+
+_STYLE = """
+:host { display: block; font-size: 0.8125rem; color: var(--ui-ink) }
+.row { display: flex; flex-wrap: wrap; gap: 6px; align-items: center; margin: 6px 0 }
+[hidden] { display: none !important }
+button, select { font: inherit; color: inherit; background: var(--ui-surface); border: 1px solid var(--ui-edge);
+  border-radius: var(--ui-radius); padding: 5px 10px; min-height: 2rem; cursor: pointer }
+button:disabled { opacity: 0.5; cursor: default }
+button.play { font-weight: 600 }
+:is(button, select, input):focus-visible { outline: none; box-shadow: var(--ui-focus) }
+input[type=range] { flex: 1 1 8rem; min-width: 6rem; accent-color: var(--ui-accent) }
+output { min-width: 4.5rem; font-variant-numeric: tabular-nums }
+.quiet { color: var(--ui-quiet); margin: 6px 0; min-height: 2lh }
+table { border-spacing: 8px 2px; margin: 0 0 0 -8px; font-variant-numeric: tabular-nums }
+tr { display: flex; flex-wrap: wrap; gap: 4px 14px }
+td { padding-left: 1em; position: relative }
+td::before { content: ""; position: absolute; left: 0; top: 0.3em; width: 0.7em; height: 0.7em; border-radius: 2px;
+  background: var(--colour, var(--ui-quiet)) }
+.survival { display: block; width: 100%; height: 170px; margin-top: 6px }
+"""
+
+
+class EnsemblePlayer(JSComponent):
+    """Controls, counters and a chart; it sends {where, count, seed, radius} when the visitor chooses other starts.
+
+    Parameters
+    ----------
+    on_choice
+        Called with the choice as it comes from the browser.
+    """
+
+    address = param.String(default=WATCH_ADDRESS, doc="of the module that is loaded when the player is first shown")
+    counts = param.List(default=list(COUNTS), doc="numbers of orbits to choose from")
+    radii = param.List(default=[SMALLEST_RADIUS, LARGEST_RADIUS], doc="least and largest radius, as powers of ten")
+    where = param.String(doc="see `WatchedStarts`")
+    count = param.Integer()
+    seed = param.Integer()
+    radius = param.Number()
+    point = param.List(default=[], doc="abscissa and ordinate of the chosen start; empty without one")
+    rate = param.Number(default=0.0, doc="decay rate of mixed motion; 0 if it is not known")
+
+    _esm = Path(__file__).with_name("ensemble_player.js")
+
+    def __init__(self, on_choice: Callable[[Any], None], **options: Any) -> None:
+        super().__init__(sizing_mode="stretch_width", margin=(0, 10), stylesheets=[_STYLE], **options)
+        self.on_msg(lambda event: on_choice(event.data))

@@ -1,0 +1,84 @@
+// @ts-check
+/** Cards with pictures, in groups; it sends the key of the card that is chosen. */
+
+/** @typedef {{key: string, group: string, title: string, caption: string, line: string, alt: string, thumbnail: string}} Card */
+
+/** @type {(tag: string, attributes: object, ...children: (Node | string)[]) => HTMLElement} */
+const make = (tag, attributes, ...children) => {
+  const node = Object.assign(document.createElement(tag), attributes)
+  node.append(...children)
+  return node
+}
+
+// A toolbar is one stop of the Tab key; arrows move from card to card.
+/** @type {Record<string, (place: number, count: number) => number>} */
+const STEPS = {ArrowRight: place => place + 1, ArrowLeft: place => place - 1, Home: () => 0, End: (_, count) => count - 1}
+
+/** @param {KeyboardEvent} event @param {HTMLElement[]} buttons */
+function walk(event, buttons) {
+  const place = buttons.findIndex(button => button === event.target)
+  const next = buttons[STEPS[event.key]?.(place, buttons.length)]
+  if (place < 0 || next === undefined) return
+  event.preventDefault()
+  buttons[place].tabIndex = -1
+  next.tabIndex = 0
+  next.focus()
+}
+
+/**
+ * A card with a line below its title, or with a caption that is read out as its description.
+ *
+ * @param {Card} card @param {number} place @param {(card: Card | null) => void} show
+ */
+function make_card(card, place, show) {
+  // Set loading before src, or the picture is fetched at once, even if the gallery is closed.
+  const picture = make("img", {loading: "lazy", alt: card.alt, width: 112, height: 112, src: card.thumbnail})
+  const button = make("button", {type: "button", tabIndex: place ? -1 : 0}, make("span", {}, card.title), picture)
+  button.dataset.key = card.key
+  if (card.line) {
+    button.append(make("small", {}, card.line))
+    return [button]
+  }
+  const description = make("span", {hidden: true, id: `caption-${card.key}`}, card.caption)
+  button.setAttribute("aria-describedby", description.id)
+  for (const event of ["pointerenter", "focus"]) button.addEventListener(event, () => show(card))
+  for (const event of ["pointerleave", "blur"]) button.addEventListener(event, () => show(null))
+  return [button, description]
+}
+
+/** @param {{model: any, el: HTMLElement}} component */
+export function render({model, el}) {
+  /** @type {Card[]} */
+  const cards = model.cards
+  const caption = make("p", {})
+  // Screen readers get the captions as descriptions of the buttons.
+  caption.setAttribute("aria-hidden", "true")
+  /** @type {Card | null} */
+  let chosen = null
+  const show = (/** @type {Card | null} */ card) => {
+    const shown = card ?? chosen
+    caption.replaceChildren(...(shown ? [make("b", {}, shown.title), ` ${shown.caption}`] : [model.hint]))
+  }
+  const strips = model.groups.map((/** @type {string} */ group) => {
+    const strip = make("div", {})
+    strip.setAttribute("role", "toolbar")
+    strip.setAttribute("aria-label", `Gallery: ${group}`)
+    const shown = cards.filter(card => card.group === group)
+    strip.append(...shown.flatMap((card, place) => make_card(card, place, show)))
+    const buttons = [...strip.querySelectorAll("button")]
+    strip.addEventListener("keydown", event => walk(event, buttons))
+    return make("section", {}, make("h3", {}, group), strip)
+  })
+  const body = make("div", {className: model.hint ? "gallery" : "gallery few"}, ...strips, ...(model.hint ? [caption] : []))
+  body.addEventListener("click", event => {
+    const button = event.target instanceof Element && event.target.closest("button")
+    if (!button) return
+    chosen = cards.find(card => card.key === button.dataset.key) ?? null
+    body.querySelector("[aria-current]")?.removeAttribute("aria-current")
+    button.setAttribute("aria-current", "true")
+    show(chosen)
+    model.send_msg(button.dataset.key)
+  })
+  show(null)
+  el.replaceChildren(body)
+}

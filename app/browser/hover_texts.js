@@ -1,0 +1,70 @@
+// @ts-check
+/**
+ * Texts at the mouse, for Bokeh's hover tools; see `app/browser/callbacks.py`.
+ *
+ * @typedef {Record<string, any>} Columns
+ */
+
+/**
+ * What is known of a pixel, in lines. Columns of layers that are off, and of maps that they are not computed for, have other sizes.
+ *
+ * @param {number} pixel
+ * @param {{maps: Columns, doubts: Columns, compared: Columns}} columns  of the pictures, of the layer of trust, and of the other view
+ * @param {{bounded: number, first: number, firstCertificate: number, ends: number}} codes  the first of each kind, and their ends
+ * @param {{certificates: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
+ */
+export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
+  const fates = maps.fate[0]
+  const fate = fates[pixel]
+  if (fate < codes.bounded) return ""
+  const known = (/** @type {any} */ image) => (image?.length === fates.length ? image[pixel] : undefined)
+  const time = maps.escape_time[0][pixel]
+  const crossings = maps.crossings[0][pixel]
+  const passage = known(maps.passage[0]) - codes.first
+  const origin = Math.floor(passage / codes.ends)
+  const lines = [
+    Number.isFinite(time) && `escape time ${time.toPrecision(5)}`,
+    fate > codes.bounded
+      ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
+      : words.certificates[maps.crossing_class[0][pixel] - codes.firstCertificate],
+    words.characters[known(maps.character[0]) - codes.first],
+    passage >= 0 && (origin > 0 ? `entered through channel ${origin}` : "never entered: inside since −t_max"),
+    words.trusts[known(doubts.trust[0])],
+    known(maps.difference[0]) >= codes.first &&
+      isSamePlace(maps, compared) &&
+      `other view: ${words.fates[known(compared.fate[0])]}`,
+  ]
+  return lines.filter(line => line).join("\n")
+}
+
+/** Whether two images have the same window. @type {(one: Columns, other: Columns) => boolean} */
+function isSamePlace(one, other) {
+  return ["x", "y", "dw", "dh"].every(name => one[name][0] === other[name][0])
+}
+
+/**
+ * A coordinate with enough decimals to distinguish neighbouring pixels.
+ *
+ * @param {number} value
+ * @param {{start: number, end: number}} range
+ */
+export function coordinate(value, range) {
+  const decimals = Math.min(Math.max(Math.ceil(3 - Math.log10(range.end - range.start)), 2), 17)
+  return value.toFixed(decimals)
+}
+
+/** Four digits. @param {number} value */
+export function number(value) {
+  const size = Math.abs(value)
+  return size > 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : String(Number(value.toPrecision(4)))
+}
+
+/** A whole number in groups of digits. @param {number} value */
+export function count(value) {
+  return String(value).replace(/\B(?=(\d{3})+$)/g, " ")
+}
+
+/** A share. @param {number} value */
+export function percent(value) {
+  return `${Number((100 * value).toPrecision(3))} %`
+}

@@ -1,0 +1,38 @@
+// @ts-check
+/**
+ * A button that copies an image. Browsers allow this only at the click itself, when there is no image yet: the clipboard gets the
+ * promise of one, which the server makes and sends.
+ *
+ * @param {{model: any, el: HTMLElement}} component
+ */
+export function render({model, el}) {
+  const button = document.createElement("button")
+  Object.assign(button, {type: "button", className: "bk-btn bk-btn-default", textContent: model.label})
+  el.append(button)
+  /** @type {((image: ArrayBuffer | null) => void) | null} */
+  let deliver = null
+  button.addEventListener("click", async () => {
+    if (deliver) return
+    // navigator.clipboard is missing on plain http except on localhost, and ClipboardItem in some browsers.
+    if (!navigator.clipboard?.write || !globalThis.ClipboardItem) {
+      model.send_msg({copied: false})
+      return
+    }
+    const image = new Promise(resolve => (deliver = resolve))
+    model.send_msg({wanted: true})
+    // The server says itself why it has no image.
+    const copied = await navigator.clipboard.write([new ClipboardItem({"image/png": image.then(asPng)})]).then(
+      () => true,
+      () => false,
+    )
+    if ((await image) !== null) model.send_msg({copied})
+    deliver = null
+  })
+  model.on("msg:custom", (/** @type {{image: ArrayBuffer | null}} */ {image}) => deliver?.(image))
+}
+
+/** @param {ArrayBuffer | null} image */
+function asPng(image) {
+  if (image === null) throw new Error("there is no image")
+  return new Blob([image], {type: "image/png"})
+}

@@ -1,0 +1,45 @@
+"""A button that copies an image into the clipboard, which the browser allows only at the click itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+
+class ImageCopier(JSComponent):
+    """The button.
+
+    Parameters
+    ----------
+    on_wanted
+        Called at a click, without the session's lock; `send` must follow.
+    on_copied
+        Called with the success of a copy.
+    **options
+        Parameters of the component.
+    """
+
+    label = param.String(default="Copy image")
+
+    _esm = Path(__file__).with_name("image_copier.js")
+
+    def __init__(self, on_wanted: Callable[[], None], on_copied: Callable[[bool], None], **options: Any) -> None:
+        super().__init__(**options)
+        self._on_wanted, self._on_copied = on_wanted, on_copied
+        self.on_msg(lambda event: self._receive(event.data))
+
+    def send(self, image: bytes | None) -> None:
+        """Send the PNG file to copy; None if there is none."""
+        self._send_msg({"image": image})
+
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
+        match message:
+            case {"wanted": True}:
+                self._on_wanted()
+            case {"copied": bool(success)}:
+                self._on_copied(success)

@@ -1,0 +1,101 @@
+// @ts-check
+/** Random starts of an ensemble; equal seeds give equal starts. */
+
+import {exitCurves} from "./exits.js"
+import {energyUnit, space, Starts} from "./slice.js"
+import {windowAt} from "./system.js"
+
+/**
+ * Where the starts are: "well", evenly on the energy surface; "view", evenly on the slice in a window; "disc", evenly on it around a
+ * point.
+ *
+ * @typedef {object} Request
+ * @property {"well" | "view" | "disc"} where
+ * @property {number} count
+ * @property {number} seed
+ * @property {[number, number]} point  middle of the disc, in units of the page
+ * @property {number} radius  of the disc, as a share of half the window
+ *
+ * @typedef {object} Surroundings
+ * @property {import("./system.js").System} system
+ * @property {import("./potential.js").Potential} potential
+ * @property {import("./interior.js").Interior} interior
+ */
+
+/** Draws for each start, at most; of a window without an interior there are no starts. */
+const MOST_DRAWS = 200
+
+/**
+ * The states x, y, px, py of the starts inside all exits, in units of the well.
+ *
+ * @param {Request} request
+ * @param {import("./frames.js").Wish} wish  slice, energy and window
+ * @param {Surroundings} surroundings
+ * @returns {Float64Array}
+ */
+export function drawStarts(request, wish, {system, potential, interior}) {
+  const energy = wish.energy / energyUnit(system.units)
+  const exits = exitCurves(system.exits, energy)
+  const random = randomNumbers(request.seed)
+  const isWell = request.where === "well"
+  const slice = isWell ? space(system.units) : wish.slice
+  const window = isWell ? windowAt(system.windows.x_y, wish.energy) : wish.window
+  if (!window) return new Float64Array(0)
+  const starts = new Starts(slice, potential, energy)
+  const {found} = starts
+  const place = request.where === "disc" ? inDisc(request, window, random) : inWindow(window, random)
+  const states = new Float64Array(4 * request.count)
+  let count = 0
+  for (let draw = 0; draw < MOST_DRAWS * request.count && count < request.count; draw++) {
+    const [abscissa, ordinate] = place()
+    if (!starts.find(abscissa / slice.units[0], ordinate / slice.units[1])) continue
+    if (interior.isOutside(exits, energy, found.x, found.y)) continue
+    if (isWell) turn(found, 2 * Math.PI * random())
+    states.set([found.x, found.y, found.px, found.py], 4 * count++)
+  }
+  return states.slice(0, 4 * count)
+}
+
+/**
+ * Turn the velocity of a start: at each place all directions are equally likely on the energy surface.
+ *
+ * @param {{px: number, py: number}} start
+ * @param {number} angle
+ */
+function turn(start, angle) {
+  const speed = Math.hypot(start.px, start.py)
+  start.px = speed * Math.cos(angle)
+  start.py = speed * Math.sin(angle)
+}
+
+/** @type {(window: import("./slice.js").Window, random: () => number) => () => [number, number]} */
+const inWindow =
+  ({xLow, xHigh, ordinateLow, ordinateHigh}, random) =>
+  () => [xLow + random() * (xHigh - xLow), ordinateLow + random() * (ordinateHigh - ordinateLow)]
+
+/** @type {(request: Request, window: import("./slice.js").Window, random: () => number) => () => [number, number]} */
+const inDisc =
+  ({point, radius}, {xLow, xHigh, ordinateLow, ordinateHigh}, random) =>
+  () => {
+    const [distance, angle] = [radius * Math.sqrt(random()), 2 * Math.PI * random()]
+    return [
+      point[0] + 0.5 * (xHigh - xLow) * distance * Math.cos(angle),
+      point[1] + 0.5 * (ordinateHigh - ordinateLow) * distance * Math.sin(angle),
+    ]
+  }
+
+/**
+ * Random numbers from 0 to 1 (the generator mulberry32).
+ *
+ * @param {number} seed  an integer
+ * @returns {() => number}
+ */
+export function randomNumbers(seed) {
+  let state = seed | 0
+  return () => {
+    state = (state + 0x6d2b79f5) | 0
+    let mixed = Math.imul(state ^ (state >>> 15), 1 | state)
+    mixed = (mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed)) ^ mixed
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 2 ** 32
+  }
+}

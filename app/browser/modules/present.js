@@ -1,0 +1,39 @@
+// @ts-check
+/**
+ * What the page shows now, for modules that are loaded later; `main.js` writes it.
+ *
+ * @typedef {object} Shown
+ * @property {import("./system.js").System} system
+ * @property {WebAssembly.Module} module
+ * @property {() => import("./frames.js").Wish | null} wish  slice, energy and window in view; null if the browser cannot compute it
+ * @property {() => string[]} colours  of the channels
+ * @property {HTMLElement} host  for canvases over the pictures
+ */
+
+/** @type {Shown | null} */
+let shown = null
+/** @type {Set<() => void>} */
+const listeners = new Set()
+
+/** @returns {Shown | null} */
+export const present = () => shown
+
+/**
+ * Say that the page shows something else: another system, or another view of it.
+ *
+ * @param {Shown | null} next
+ */
+export function setPresent(next) {
+  shown = next
+  for (const listener of listeners) listener()
+}
+
+/**
+ * Call a function when the page shows something else; returns a function that ends this.
+ *
+ * @param {() => void} listener
+ */
+export function onPresent(listener) {
+  listeners.add(listener)
+  return () => void listeners.delete(listener)
+}

@@ -1,0 +1,69 @@
+// @ts-check
+/** The share of an ensemble that is still inside, against time, on a logarithmic axis, beside the law of mixed motion. */
+
+/** Smallest share on the axis. */
+const LEAST = 1e-3
+const [LEFT, BOTTOM, TOP] = [34, 18, 6]
+const POINTS = 240
+
+/**
+ * @param {HTMLCanvasElement} canvas
+ * @param {{escapeTime: Float64Array, count: number, time: number}} ensemble
+ * @param {{longest: number, unit: number, rate: number, ink: string}} options  longest time and unit of time in units of the well and
+ *   of the page; decay rate of mixed motion per unit of time of the page, 0 if it is not known; colour of the text
+ */
+export function drawSurvival(canvas, {escapeTime, count, time}, {longest, unit, rate, ink}) {
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight]
+  const context = canvas.getContext("2d")
+  if (!context || !width || !count) return
+  const ratio = window.devicePixelRatio
+  Object.assign(canvas, {width: width * ratio, height: height * ratio})
+  context.setTransform(ratio, 0, 0, ratio, 0, 0)
+  const placeX = (/** @type {number} */ t) => LEFT + ((width - LEFT - 4) * t) / longest
+  const placeY = (/** @type {number} */ share) =>
+    TOP + ((height - TOP - BOTTOM) * Math.log(Math.max(share, LEAST))) / Math.log(LEAST)
+  context.fillStyle = context.strokeStyle = ink
+  context.font = "11px system-ui, sans-serif"
+  context.globalAlpha = 0.7
+  for (const share of [1, 0.1, 0.01, LEAST]) {
+    context.fillText(share === 1 ? "1" : String(share), 2, placeY(share) + 4)
+    context.fillRect(LEFT, placeY(share), width - LEFT - 4, 0.5)
+  }
+  const law = rate > 0 ? "; dashed: flux over volume" : ""
+  context.fillText(`Share inside until t = ${Number((longest * unit).toPrecision(3))}${law}`, LEFT, height - 4)
+  const times = escapeTime.filter(each => each <= time).sort()
+  const line = (/** @type {(t: number) => number} */ shareAt, /** @type {number} */ end) => {
+    context.beginPath()
+    for (let k = 0; k <= POINTS; k++) {
+      const t = (end * k) / POINTS
+      const share = shareAt(t)
+      if (share < LEAST) break
+      context.lineTo(placeX(t), placeY(share))
+    }
+    context.stroke()
+  }
+  if (rate > 0) {
+    context.setLineDash([4, 4])
+    line(t => Math.exp(-rate * t * unit), longest)
+    context.setLineDash([])
+  }
+  context.globalAlpha = 1
+  context.lineWidth = 2
+  line(t => 1 - countBelow(times, t) / count, time)
+}
+
+/**
+ * Number of values of a rising array that are at most a limit.
+ *
+ * @param {Float64Array} values
+ * @param {number} limit
+ */
+function countBelow(values, limit) {
+  let [low, high] = [0, values.length]
+  while (low < high) {
+    const middle = (low + high) >> 1
+    if (values[middle] <= limit) low = middle + 1
+    else high = middle
+  }
+  return low
+}

@@ -1,0 +1,357 @@
+// @ts-check
+/** The player of an ensemble: controls, particles over the well and the section, counters, and the survival. */
+
+import {Destinies} from "./destinies.js"
+import {Ensemble} from "./ensemble.js"
+import {drawStarts} from "./ensemble_starts.js"
+import {Integrator} from "./integrator.js"
+import {Interior} from "./interior.js"
+import {cover, frames, wellFrame} from "./pictures.js"
+import {makePotential} from "./potential.js"
+import {onPresent, present} from "./present.js"
+import {energyAxis, energyUnit} from "./slice.js"
+import {drawSurvival} from "./survival_chart.js"
+import {windowAt} from "./system.js"
+
+/** Longest time, in units of the well. */
+const LONGEST = 100
+/** Time between the begin and the first frame on a logarithmic scale. */
+const FIRST = 0.5
+const STEPS = 1000
+/** What a press of "Step" shows of a playing ensemble. */
+const STEP_SECONDS = 0.05
+/** Side of a particle, in pixels, and how fast trails fade: the share of the light that is left after a frame. */
+const [SIDE, TRAIL] = [2.5, 0.88]
+const FRAMES_PER_NUMBER = 6
+/** Share of the map under the passages of the section that is covered. */
+const COVER = 0.85
+/** Time for the destinies of orbits in a frame, in ms. */
+const DESTINIES_MS = 6
+/** Frames longer than this, such as those of a hidden page, do not let the time jump. */
+const LONGEST_FRAME_MS = 100
+const STYLE = "position:fixed;pointer-events:none;z-index:1;display:none"
+
+/**
+ * How the time goes on: in units of time per second, or in factors of two per second.
+ *
+ * @type {Record<string, (time: number, seconds: number) => number>}
+ */
+const PACES = {
+  slow: (time, seconds) => time + seconds,
+  normal: (time, seconds) => time + 4 * seconds,
+  fast: (time, seconds) => time + 16 * seconds,
+  logarithmic: (time, seconds) => Math.max(time, FIRST) * 2 ** (0.5 * seconds),
+}
+
+/** @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any} */
+const make = (tag, attributes = {}, ...children) => {
+  const node = Object.assign(document.createElement(tag), attributes)
+  node.append(...children)
+  return node
+}
+
+/** @type {(label: string, options: Record<string, string>) => any} */
+const makeList = (label, options) => {
+  const list = make("select", {}, ...Object.entries(options).map(([value, text]) => make("option", {value}, text)))
+  list.setAttribute("aria-label", label)
+  return list
+}
+
+class Watch {
+  /**
+   * @param {any} model  of `EnsemblePlayer`
+   * @param {HTMLElement} el
+   */
+  constructor(model, el) {
+    this.#model = model
+    this.#where = makeList("Starts", {well: "in the whole well", view: "in the view", disc: "around the chosen orbit"})
+    const counts = model.counts.map((/** @type {number} */ each) => [
+      each,
+      `${each.toLocaleString("en").replaceAll(",", " ")} orbits`,
+    ])
+    this.#count = makeList("Number of orbits", Object.fromEntries(counts))
+    ;[this.#radius.min, this.#radius.max] = model.radii
+    this.#pace = makeList("Speed", {slow: "slow", normal: "normal", fast: "fast", logarithmic: "logarithmic"})
+    this.#pace.value = "normal"
+    this.#rail.setAttribute("aria-label", "Time of the orbits")
+    this.#radius.setAttribute("aria-label", "Radius of the disc, as a power of ten of the window")
+    for (const canvas of [this.#well, this.#section]) canvas.style.cssText = STYLE
+    this.#trails.checked = false
+    el.replaceChildren(
+      make("div", {className: "row"}, this.#where, this.#count, this.#again),
+      make("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
+      make("div", {className: "row"}, this.#play, this.#step, this.#rail, this.#text),
+      make("div", {className: "row"}, this.#pace, make("label", {}, this.#trails, " trails")),
+      this.#note,
+      this.#counters,
+      this.#chart,
+    )
+    this.#listen()
+    this.#follow()
+  }
+
+  #model
+  #where
+  #count
+  #pace
+  #again = make("button", {type: "button"}, "Other starts")
+  #play = make("button", {type: "button", className: "play"})
+  #step = make("button", {type: "button"}, "Step")
+  #rail = make("input", {type: "range", min: 0, max: STEPS, step: 1, value: 0})
+  #text = make("output")
+  #radius = make("input", {type: "range", step: 0.5})
+  #radiusText = make("output")
+  #trails = make("input", {type: "checkbox"})
+  #note = make("p", {className: "quiet"})
+  #counters = make("table")
+  #chart = make("canvas", {className: "survival"})
+  #well = make("canvas")
+  #section = make("canvas")
+  /** @type {Ensemble | null} */
+  #ensemble = null
+  /** @type {Destinies | null} */
+  #destinies = null
+  #foretelling = 0
+  /** What the ensemble was made of. */
+  #made = ""
+  #frame = 0
+  #painted = 0
+  #unlisten = onPresent(() => this.#follow())
+
+  #listen() {
+    const model = this.#model
+    this.#where.onchange = () => this.#choose({where: this.#where.value})
+    this.#count.onchange = () => this.#choose({count: Number(this.#count.value)})
+    this.#radius.oninput = () => this.#choose({radius: Number(this.#radius.value)})
+    this.#again.onclick = () => this.#choose({seed: model.seed + 1})
+    this.#play.onclick = () => this.#setPlaying(this.#frame === 0)
+    this.#step.onclick = () => this.#show(PACES[this.#pace.value](this.#time, STEP_SECONDS))
+    this.#rail.oninput = () => this.#show((this.#rail.valueAsNumber / STEPS) * LONGEST)
+    model.on(["where", "count", "seed", "radius", "point", "rate"], () => this.#follow())
+    model.on("lifecycle:remove", () => this.#end())
+  }
+
+  get #time() {
+    return this.#ensemble?.time ?? 0
+  }
+
+  /**
+   * Tell the server of a choice, which comes back as a change of the model.
+   *
+   * @param {object} choice
+   */
+  #choose(choice) {
+    const {where, count, seed, radius} = this.#model
+    this.#model.send_msg({where, count, seed, radius, ...choice})
+  }
+
+  /** Follow the page and the choices: with other starts the time begins anew, and goes on if it did. */
+  #follow() {
+    const {where, count, seed, radius, point} = this.#model
+    Object.assign(this.#where, {value: where})
+    this.#count.value = String(count)
+    this.#radius.value = String(radius)
+    this.#radiusText.textContent = `10^${radius}`
+    this.#radius.closest(".radius").hidden = where !== "disc"
+    const [shown, wish] = [present(), present()?.wish() ?? null]
+    const place = {well: wish?.energy, view: wish, disc: [wish, radius, point]}[/** @type {string} */ (where)]
+    const made = JSON.stringify([where, count, seed, place, wish?.slice, shown?.system.key])
+    if (made === this.#made) return this.#draw()
+    this.#made = made
+    this.#ensemble = this.#destinies = null
+    if (shown && wish && energyAxis(wish.slice) < 0) this.#make(shown, wish)
+    this.#foretell()
+    this.#show(0)
+  }
+
+  /** Find in the next frames through which exits the orbits will leave. */
+  #foretell() {
+    cancelAnimationFrame(this.#foretelling)
+    const tick = () => {
+      const [destinies, begun] = [this.#destinies, performance.now()]
+      while (destinies && !destinies.complete && performance.now() - begun < DESTINIES_MS) destinies.continue()
+      if (this.#frame === 0) this.#draw()
+      this.#foretelling = destinies && !destinies.complete ? requestAnimationFrame(tick) : 0
+    }
+    this.#foretelling = requestAnimationFrame(tick)
+  }
+
+  /**
+   * @param {import("./present.js").Shown} shown
+   * @param {import("./frames.js").Wish} wish
+   */
+  #make({system, module}, wish) {
+    const {where, count, seed, radius, point} = this.#model
+    const potential = makePotential(system.formula)
+    const surroundings = {system, potential, interior: new Interior(potential)}
+    const request = {where: where === "disc" && !point.length ? "view" : where, count, seed, point, radius: 10 ** radius}
+    const states = drawStarts(request, wish, surroundings)
+    const energy = wish.energy / energyUnit(system.units)
+    this.#ensemble = new Ensemble(new Integrator(system, module), energy, states)
+    this.#destinies = new Destinies(system, module, energy, states, LONGEST)
+  }
+
+  /** @param {boolean} on */
+  #setPlaying(on) {
+    cancelAnimationFrame(this.#frame)
+    this.#frame = 0
+    if (!on || !this.#ensemble) return this.#label()
+    if (this.#time >= LONGEST) this.#show(0)
+    let last = performance.now()
+    const tick = (/** @type {number} */ now) => {
+      const seconds = Math.min(Math.max(now - last, 0), LONGEST_FRAME_MS) / 1000
+      last = now
+      this.#show(PACES[this.#pace.value](this.#time, seconds))
+      this.#frame = this.#time < LONGEST ? requestAnimationFrame(tick) : 0
+      this.#label()
+    }
+    this.#frame = requestAnimationFrame(tick)
+    this.#label()
+  }
+
+  #label() {
+    const playing = this.#frame !== 0
+    this.#play.textContent = playing ? "❚❚ Pause" : "▶ Watch them leave"
+    this.#play.setAttribute("aria-pressed", String(playing))
+  }
+
+  /** @param {number} time */
+  #show(time) {
+    this.#ensemble?.advance(Math.min(time, LONGEST))
+    this.#draw()
+  }
+
+  #draw() {
+    const [ensemble, shown] = [this.#ensemble, present()]
+    this.#label()
+    for (const control of [this.#play, this.#step, this.#rail]) control.disabled = !ensemble?.count
+    this.#note.textContent = this.#explain()
+    if (!ensemble || !shown) {
+      for (const canvas of [this.#well, this.#section]) canvas.style.display = "none"
+      return
+    }
+    if (!this.#well.isConnected) shown.host.append(this.#well, this.#section)
+    const time = this.#time * shown.system.units.time
+    this.#rail.valueAsNumber = (STEPS * this.#time) / LONGEST
+    this.#text.textContent = `t = ${time.toFixed(time < 100 ? 1 : 0)}`
+    this.#paintWell(ensemble, shown)
+    this.#paintSection(ensemble, shown)
+    // While the time goes on, numbers that change in every frame cannot be read.
+    if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
+    this.#writeCounters(ensemble, shown.colours())
+    const ink = getComputedStyle(this.#chart).color
+    drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
+  }
+
+  #explain() {
+    if (!present()) return "The engine in the browser is being loaded …"
+    if (!this.#ensemble) return "Choose a slice of one energy and one potential, within the range of the slider."
+    if (!this.#ensemble.count) return "There is no start inside the exits here."
+    const where = this.#where.selectedOptions[0].textContent
+    return `${this.#ensemble.count} starts ${where}, in the colours of the exits that they will take; grey ones stay.`
+  }
+
+  /**
+   * @param {Ensemble} ensemble
+   * @param {import("./present.js").Shown} shown
+   */
+  #paintWell(ensemble, {system, wish, colours}) {
+    const [frame, energy] = [wellFrame(), wish()?.energy]
+    const window = energy === undefined ? null : windowAt(system.windows.x_y, energy)
+    if (!frame || !window) return void (this.#well.style.display = "none")
+    this.#paint(
+      this.#well,
+      frame.box,
+      window,
+      colours(),
+      ensemble,
+      ensemble.x,
+      ensemble.y,
+      system.units.length,
+      system.units.length,
+    )
+  }
+
+  /**
+   * On (x, px): each orbit at its last passage.
+   *
+   * @param {Ensemble} ensemble
+   * @param {import("./present.js").Shown} shown
+   */
+  #paintSection(ensemble, {wish, colours}) {
+    const [frame, view] = [frames()[0], wish()]
+    const isSection = view?.slice.axes.join() === "x,px" && !view.slice.fixed.y
+    if (!frame || !view || !isSection) return void (this.#section.style.display = "none")
+    const style = getComputedStyle(this.#note)
+    this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER}%, transparent)`
+    const [xs, ps] = [ensemble.sectionX, ensemble.sectionPx]
+    this.#paint(this.#section, frame.box, view.window, colours(), ensemble, xs, ps, ...view.slice.units)
+  }
+
+  /**
+   * Paint the orbits as particles in the colours of the exits that they will take, others in that of the text.
+   *
+   * @param {HTMLCanvasElement} canvas
+   * @param {DOMRect} box
+   * @param {import("./slice.js").Window} window
+   * @param {string[]} colours
+   * @param {Ensemble} ensemble
+   * @param {Float64Array} xs
+   * @param {Float64Array} ys
+   * @param {number} unitX
+   * @param {number} unitY
+   */
+  #paint(canvas, box, window, colours, {count}, xs, ys, unitX, unitY) {
+    const channel = this.#destinies?.channel ?? []
+    const context = cover(canvas, box)
+    if (!context) return
+    if (this.#trails.checked) {
+      context.globalCompositeOperation = "destination-in"
+      context.fillStyle = `rgba(0,0,0,${TRAIL})`
+      context.fillRect(0, 0, box.width, box.height)
+      context.globalCompositeOperation = "source-over"
+    } else context.clearRect(0, 0, box.width, box.height)
+    const [scaleX, scaleY] = [box.width / (window.xHigh - window.xLow), box.height / (window.ordinateHigh - window.ordinateLow)]
+    const inks = [getComputedStyle(this.#note).color, ...colours]
+    inks.forEach((ink, code) => {
+      context.fillStyle = ink
+      for (let i = 0; i < count; i++) {
+        if (channel[i] !== code) continue
+        const [left, top] = [(xs[i] * unitX - window.xLow) * scaleX, (window.ordinateHigh - ys[i] * unitY) * scaleY]
+        if (left >= 0 && top >= 0 && left < box.width && top < box.height)
+          context.fillRect(left - SIDE / 2, top - SIDE / 2, SIDE, SIDE)
+      }
+    })
+  }
+
+  /**
+   * @param {Ensemble} ensemble
+   * @param {string[]} colours
+   */
+  #writeCounters({channel, count}, colours) {
+    const numbers = new Array(colours.length + 1).fill(0)
+    for (const code of channel) numbers[code]++
+    const names = ["inside", ...colours.map((_, k) => `exit ${k + 1}`)]
+    const channels = present()?.system.exits.length ?? 0
+    const cells = numbers.slice(0, channels + 1).map((number, code) => {
+      const share = count ? ((100 * number) / count).toFixed(1) : "0"
+      const cell = make("td", {}, `${names[code]}: ${number} (${share} %)`)
+      if (code) cell.style.setProperty("--colour", colours[code - 1])
+      return cell
+    })
+    this.#counters.replaceChildren(make("tbody", {}, make("tr", {}, ...cells)))
+  }
+
+  #end() {
+    this.#setPlaying(false)
+    cancelAnimationFrame(this.#foretelling)
+    this.#unlisten()
+    for (const canvas of [this.#well, this.#section]) canvas.remove()
+  }
+}
+
+/**
+ * @param {any} model
+ * @param {HTMLElement} el
+ */
+export const watch = (model, el) => void new Watch(model, el)

@@ -1,0 +1,41 @@
+"""The player of the time along the orbits: the browser counts the steps and reports each one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+
+class OrbitPlayer(JSComponent):
+    """A button to play and pause, and a slider.
+
+    Parameters
+    ----------
+    on_step
+        Called with each step that the player shows, 0 to `steps`, without the session's lock.
+    **options
+        Parameters of the component.
+    """
+
+    label = param.String(default="Time along the orbits")
+    steps = param.Integer(default=600, doc="of the interval")
+    pause = param.Integer(default=50, doc="between two steps while it plays, in ms")
+    begin = param.Number(default=0.0, doc="begin of the interval of time")
+    end = param.Number(default=0.0, doc="its end; at the begin the player is disabled")
+
+    _esm = Path(__file__).with_name("orbit_player.js")
+
+    def __init__(self, on_step: Callable[[int], None], **options: Any) -> None:
+        super().__init__(**options)
+        self._on_step = on_step
+        self.on_msg(lambda event: self._receive(event.data))
+
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected, and steps of an earlier interval.
+        match message:
+            case {"step": int(step), "begin": self.begin, "end": self.end} if 0 <= step <= self.steps and self.begin < self.end:
+                self._on_step(step)

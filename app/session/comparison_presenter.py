@@ -1,0 +1,112 @@
+"""Comparison of one session: the map of another view with the pixels of the map in view, and what differs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from app.job_clients.latest_request import LatestRequest
+from app.job_clients.locking import Locked
+from app.state.compared_view import ComparedView
+from app.state.system_review import SystemReview, review_job
+from app.state.view_state import ViewState
+from app.views.components.numbers import grouped, percent
+from app.views.maps.map_plots import MapsView
+from engine import EscapeMap, Fate
+from engine.service import Job, JobSubmitter, Queue, is_ready_for_maps, map_job, prepare_for_maps
+
+
+class ComparisonPresenter:
+    """Follows the view with which the view state is compared; `say(sentence)` receives what is known of the two."""
+
+    def __init__(self, state: ViewState, jobs: JobSubmitter, maps: MapsView, say: Callable[[str], None], locked: Locked) -> None:
+        self._state, self._maps, self._say = state, maps, say
+        self._frame: EscapeMap | None = None
+        self._other: EscapeMap | None = None
+        self._reviewed: SystemReview | None = None
+        self._request = LatestRequest(jobs, self._take, self._fail, locked)
+        state.param.watch(lambda event: self._follow(), "compared")
+
+    def follow(self, frame: EscapeMap) -> None:
+        """Compare this complete map."""
+        self._frame = frame
+        self._continue()
+        self._describe()
+
+    def close(self) -> None:
+        """Cancel the request at the end of the session."""
+        self._request.cancel()
+
+    def _follow(self) -> None:
+        self._other = None
+        self._maps.show_compared(None)
+        self._say("")
+        if self._state.compared is None:
+            self._request.cancel()
+        else:
+            self._continue()
+
+    def _continue(self) -> None:
+        """Request the next of what is missing: the review of the other system, its kernels, its map."""
+        view = self._state.compared
+        if view is None or self._frame is None:
+            return
+        if self._reviewed is None or self._reviewed.system != view.system:
+            self._request.submit(review_job(view.system))
+        elif self._reviewed.problem is not None:
+            self._fail(self._reviewed.problem)
+        elif not is_ready_for_maps(self._reviewed.potential):
+            self._request.submit(Job(prepare_for_maps, (self._reviewed.potential,), queue=Queue.COMPILATION))
+        else:
+            self._request_map(view, self._reviewed, self._frame)
+
+    def _request_map(self, view: ComparedView, reviewed: SystemReview, frame: EscapeMap) -> None:
+        try:
+            job = map_job(view.map_spec(reviewed.potential, frame.spec))
+        except ValueError as error:
+            self._fail(str(error))
+        else:
+            self._request.submit(job)
+
+    def _take(self, result: Any) -> None:
+        match result:
+            case EscapeMap():
+                self._show(result)
+            case SystemReview():
+                self._reviewed = result
+                self._continue()
+            case _:
+                self._continue()
+
+    def _fail(self, sentence: str) -> None:
+        self._say(f"There is no other view to compare with: {sentence}")
+
+    def _show(self, other: EscapeMap) -> None:
+        view = self._state.compared
+        assert view is not None, "the request is cancelled together with the comparison"
+        self._other = other
+        self._maps.show_compared(other, view.title)
+        self._describe()
+
+    def _describe(self) -> None:
+        view, frame, other = self._state.compared, self._frame, self._other
+        if view is not None and frame is not None and other is not None:
+            self._say(f"Compared with {view.title}: {_difference(frame, other)}")
+
+
+def _difference(one: EscapeMap, other: EscapeMap) -> str:
+    """How many starts of two maps end otherwise, in words."""
+    if not other.complete:
+        return "…"
+    if one.spec.plane.axis_symbols != other.spec.plane.axis_symbols:
+        return "its axes are others, so that pixels are not compared."
+    if one.fate.shape != other.fate.shape or one.spec.find_window() != other.spec.find_window():
+        return "…"
+    counted = (one.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
+    if not counted.any():
+        return "no start in the window has an orbit in both."
+    differ = counted & (one.fate != other.fate)
+    count, share = int(np.count_nonzero(differ)), float(np.mean(differ[counted]))
+    return f"{grouped(count)} of {grouped(int(np.count_nonzero(counted)))} starts end otherwise ({percent(share)})."

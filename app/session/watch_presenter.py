@@ -1,0 +1,69 @@
+"""Many orbits of one session, watched as they leave: the player in the browser follows the view state, and writes to it."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import panel as pn
+
+from app.browser.ensemble_player import EnsemblePlayer
+from app.job_clients.latest_request import LatestRequest
+from app.job_clients.locking import Locked
+from app.state.view_state import SYSTEM, Analysis, ViewState
+from app.state.watched_starts import WatchedStarts
+from engine import EscapeFlux
+from engine.service import JobSubmitter, flux_job, is_ready_for_maps
+
+
+class WatchPresenter:
+    """Makes the player when it is first asked for, and requests the decay rate of mixed motion for it."""
+
+    def __init__(self, state: ViewState, jobs: JobSubmitter, locked: Locked) -> None:
+        self._state = state
+        self._take = locked(self._choose)
+        self._player: EnsemblePlayer | None = None
+        self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
+        watch = state.param.watch
+        watch(lambda *events: self._follow(), ["watched", "starts", "chosen"])
+        watch(lambda *events: self.request_rate(), [*SYSTEM, "plane", "energy", "analysis"])
+
+    def build(self) -> list[pn.viewable.Viewable]:
+        """The player."""
+        self._player = EnsemblePlayer(self._take)
+        self._follow()
+        self.request_rate()
+        return [self._player]
+
+    def close(self) -> None:
+        """Cancel the request at the end of the session."""
+        self._flux.cancel()
+
+    def request_rate(self) -> None:
+        """Request the decay rate while the player is on the page and the kernels that find it are compiled."""
+        state = self._state
+        if self._player is None or state.analysis is not Analysis.WATCH:
+            return
+        self._player.rate = 0.0
+        job = flux_job(state.map_spec())
+        if job is not None and is_ready_for_maps(state.potential):
+            self._flux.submit(job)
+
+    def _follow(self) -> None:
+        if self._player is not None:
+            watched, start = self._state.watched, self._state.chosen_start
+            self._player.param.update(**asdict(watched), point=[] if start is None else list(start))
+
+    def _choose(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
+        match message:
+            case {"where": str(where), "count": int(count), "seed": int(seed), "radius": int() | float() as radius}:
+                try:
+                    self._state.watched = WatchedStarts(where, count, seed, float(radius))  # type: ignore[arg-type]
+                except ValueError:
+                    return
+
+    def _show_flux(self, flux: EscapeFlux) -> None:
+        self._flux.cancel()
+        if self._player is not None:
+            self._player.rate = flux.decay_rate

@@ -1,0 +1,92 @@
+"""The terms of the page, and texts in which they are explained."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from html import escape
+from types import MappingProxyType
+
+GLOSSARY: Mapping[str, str] = MappingProxyType(
+    {
+        "interior starts": (
+            "Starts that are allowed at this energy and lie inside all Lyapunov orbits. All shares refer to them, "
+            "so that they do not depend on how much of the plane is shown."
+        ),
+        "certified": (
+            "Called bounded before t_max: the energy is below all saddles, which is exact, or averages along the "
+            "orbit, or along orbits around it, converge as on an invariant torus, which is numerical evidence."
+        ),
+        "doubtful": (
+            "Pixels whose fate, crossings or escape time change when the start is shifted by 1e−11: they depend "
+            "on rounding errors."
+        ),
+        "SALI": (
+            "Smaller alignment index: how far two small deviations of an orbit are from being parallel. It falls "
+            "exponentially to zero if the orbit is chaotic, and slowly or not at all if it is regular."
+        ),
+        "Lyapunov exponent": (
+            "The mean exponential growth rate of small deviations: positive for chaotic orbits, zero for regular ones."
+        ),
+        "Birkhoff digits": (
+            "The number of digits to which weighted averages of x² and y² over two intervals of time agree. It "
+            "grows with the intervals for regular orbits, and stays small for chaotic ones."
+        ),
+        "limiting curve": "The edge of the allowed starts of a plane: there the momentum that the energy decides is zero.",
+        "Lyapunov orbit": (
+            "The unstable periodic orbit over a saddle of the potential. An orbit that crosses it outward never "
+            "returns: it is the exit."
+        ),
+        "direct escapes": "Orbits that escape without crossing y = 0 upward.",
+        "Basin entropy": (
+            "How mixed the fates of the starts are in small boxes, by Gibbs's formula; zero where all fates are the same."
+        ),
+        "S_b": "The basin entropy, averaged over all boxes.",
+        "S_bb": ("The basin entropy, averaged over the boxes with more than one fate; above ln 2 the boundaries are not smooth."),
+        "Wada": (
+            "Basins have the Wada property if each point on the boundary of one of them is on the boundary of all others, too."
+        ),
+        "Uncertainty exponent": (
+            "The exponent α of the share of uncertain starts, which is proportional to ε^α for an error ε of the "
+            "start. The dimension of the boundary in the plane is 2 − α."
+        ),
+        "κ": ("The decay rate of an exponential law: the share of orbits still inside at time t is proportional to exp(−κ t)."),
+        "γ": "The exponent of a power law: the share of orbits still inside at time t is proportional to t^(−γ).",
+    }
+)
+"""What each term means, in one or two sentences."""
+
+_TERM = re.compile(rf"(?<!\w)({'|'.join(sorted(map(re.escape, GLOSSARY), key=len, reverse=True))})(?!\w)", re.IGNORECASE)
+_BY_LETTERS = {term.lower(): term for term in GLOSSARY}
+
+
+def with_terms(html: str) -> str:
+    """HTML in which each term is explained: where it first stands, it is a button that opens its meaning.
+
+    The elements of one shadow root must not contain a term in two of such texts.
+    """
+    found: dict[str, None] = {}
+
+    def explain(match: re.Match[str]) -> str:
+        term = _BY_LETTERS[match[0].lower()]
+        if term in found:
+            return match[0]
+        found[term] = None
+        return f"<button type='button' class='term' popovertarget='{_identifier(term)}'>{match[0]}</button>"
+
+    # Every other part is a tag.
+    parts = re.split(r"(<[^>]*>)", html)
+    parts[::2] = [_TERM.sub(explain, part) for part in parts[::2]]
+    meanings = (f"<span id='{_identifier(term)}' class='help-text' popover>{escape(GLOSSARY[term])}</span>" for term in found)
+    return "".join([*parts, *meanings])
+
+
+def glossary_list() -> str:
+    """HTML list of all terms."""
+    return "".join(
+        ["<dl class='terms'>", *(f"<dt>{term}</dt><dd>{escape(text)}</dd>" for term, text in GLOSSARY.items()), "</dl>"]
+    )
+
+
+def _identifier(term: str) -> str:
+    return f"term-{term.lower().replace(' ', '-')}"

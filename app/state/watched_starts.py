@@ -1,0 +1,64 @@
+"""The starts of the orbits that are watched as they leave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+LARGEST_SEED = 2**31 - 1
+"""Largest seed of the generator of the browser."""
+
+
+class StartsFrom(StrEnum):
+    """Where the starts are; the values stand in links."""
+
+    WELL = "well"
+    VIEW = "view"
+    DISC = "disc"
+
+
+COUNTS = (1000, 5000, 20000)
+"""Numbers of orbits that can be watched."""
+
+SMALLEST_RADIUS, LARGEST_RADIUS = -9.0, -1.0
+"""Powers of ten of the radius of a disc, as a share of half the window."""
+
+
+@dataclass(frozen=True)
+class WatchedStarts:
+    """Random starts; equal ones give the same picture.
+
+    Attributes
+    ----------
+    where
+        On the energy surface, on the slice in view, or on a disc around the chosen start.
+    count
+        Number of orbits, one of `COUNTS`.
+    seed
+        0 to 2³¹ − 1.
+    radius
+        Power of ten of the radius of the disc, as a share of half the window.
+
+    Raises
+    ------
+    ValueError
+        Naming the parameter, its value and what is legal.
+    """
+
+    where: StartsFrom = StartsFrom.WELL
+    count: int = 5000
+    seed: int = 1
+    radius: float = -2.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "where", StartsFrom(self.where))
+        if self.count not in COUNTS:
+            raise ValueError(f"count={self.count}: must be one of {', '.join(map(str, COUNTS))}")
+        if not 0 <= self.seed <= LARGEST_SEED:
+            raise ValueError(f"seed={self.seed}: must be from 0 to {LARGEST_SEED}")
+        if not SMALLEST_RADIUS <= self.radius <= LARGEST_RADIUS:
+            raise ValueError(f"radius={self.radius:g}: must be from {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g}")
+
+
+DEFAULT_STARTS = WatchedStarts()
+"""Those that are watched until others are chosen."""

@@ -1,0 +1,74 @@
+"""The map of another view, which is compared with the one in view pixel by pixel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bokeh.models import ColumnDataSource, Image, LinearColorMapper
+from bokeh.plotting import figure
+
+from app.views.components.curve_layers import CurveLayers
+from app.views.maps.hover import fate_hover
+from app.views.maps.map_legend import OtherView
+from app.views.maps.map_ranges import MapRanges
+from engine import EscapeMap, Slice
+from plots.image_columns import NO_LAYER, difference_column, map_columns
+from plots.palette import Palette
+
+Columns = dict[str, list[Any]]
+"""Columns of a data source of images."""
+
+_IMAGE = ("fate", "x", "y", "dw", "dh")
+
+
+class ComparedMap:
+    """The image of the other map with its limiting curve; its place is that of its own window.
+
+    Parameters
+    ----------
+    ranges
+        Ranges of the pictures.
+    """
+
+    def __init__(self, ranges: MapRanges) -> None:
+        # In the toolbar from the start: Bokeh warns when tools change together with the pictures.
+        self.hover = fate_hover(ranges.x, ranges.ordinate)
+        self.source = ColumnDataSource(_no_map(), name="compared_map")
+        self.other: OtherView | None = None
+        """What is shown; None for nothing."""
+        self._outlines = CurveLayers()
+
+    def draw(self, plot: figure, mapper: LinearColorMapper) -> None:
+        """Add image and curve to a figure."""
+        image = plot.add_glyph(self.source, Image(image="fate", dw="dw", dh="dh", color_mapper=mapper))
+        self._outlines.draw(plot, full=False)
+        self.hover.renderers = [image]
+
+    def show(self, frame: EscapeMap, title: str) -> None:
+        """Show the other map."""
+        self.other = OtherView(title, frame.spec.channels, frame.spec.plane.axis_symbols)
+        columns = map_columns(frame, characters=False)
+        self.source.data = {name: columns[name] for name in _IMAGE}
+        self._outlines.show(frame.spec)
+
+    def remove(self) -> None:
+        """Show no other map."""
+        self.other = None
+        self.source.data = _no_map()
+
+    def set_palette(self, palette: Palette) -> None:
+        """Set the colours of the channels."""
+        self._outlines.set_palette(palette)
+
+    def set_dark(self, dark: bool) -> None:
+        """Use the line colours of the dark or the light theme."""
+        self._outlines.set_dark(dark)
+
+    def difference(self, columns: Columns, plane: Slice) -> Columns:
+        """The column ``difference`` for the columns of a map of a slice; blank without another map, or one of other axes."""
+        is_compared = self.other is not None and self.other.axes == plane.axis_symbols
+        return difference_column(columns, self.source.data) if is_compared else {"difference": NO_LAYER}
+
+
+def _no_map() -> Columns:
+    return {"fate": NO_LAYER, "x": [0.0], "y": [0.0], "dw": [0.0], "dh": [0.0]}

@@ -1,0 +1,116 @@
+"""The ranges of the maps: they follow the map that is shown, and report the window to which a hand moves them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import astuple
+from typing import Any
+
+import numpy as np
+from bokeh.models import Range1d
+
+from engine import MapSpec, Window
+from engine.service import finest_pixel
+
+GESTURE_PAUSE_MS = 500
+"""Drags and steps of the wheel that follow each other within this time are one entry of the browser's history."""
+
+REST_MS = 90
+"""A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
+
+
+class MapRanges:
+    """The ranges of x and of the ordinate, which all maps share.
+
+    Parameters
+    ----------
+    on_zoom
+        Called with the window when the ranges have stopped changing; None is the whole interior.
+    on_rest
+        Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
+    """
+
+    def __init__(self, on_zoom: Callable[[Window | None], None], on_rest: Callable[[], None]) -> None:
+        self.x, self.ordinate = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
+        self._on_zoom, self._on_rest = on_zoom, on_rest
+        self._shown: Window | None = None
+        self._home: Window | None = None
+        self._rest_timer: Any = None
+        self._gesture_timer: Any = None
+        self._following = False
+        for edges in (self.x, self.ordinate):
+            edges.on_change("start", self._moved)
+            edges.on_change("end", self._moved)
+
+    def follow(self, window: Window) -> None:
+        """Go to the window of a new map, unless the ranges are being moved."""
+        self._shown = window
+        if self._rest_timer is None:
+            self._following = True
+            self.x.update(start=window.x_low, end=window.x_high)
+            self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
+            self._following = False
+
+    def set_home(self, home: MapSpec) -> None:
+        """Set the map of the whole interior, and with it the smallest window, where zooming ends."""
+        self._home = home.find_window()
+        pixels = zip(finest_pixel(home, self._home), home.resolution, strict=True)
+        # Twice the least distance of pixels: the edges are rounded, too.
+        self.x.min_interval, self.ordinate.min_interval = (2.0 * finest * count for finest, count in pixels)
+
+    @property
+    def magnification(self) -> float:
+        """Width of the whole interior in units of that of the window shown."""
+        if self._home is None or self._shown is None:
+            return 1.0
+        return (self._home.x_high - self._home.x_low) / (self._shown.x_high - self._shown.x_low)
+
+    def end_gesture(self) -> None:
+        """The end of a drag, or a step of the wheel, which has no end: the next one may follow."""
+        self._rested()
+        document = self.x.document
+        if document is not None and self._gesture_timer is None:
+            self._gesture_timer = document.add_timeout_callback(self._finish_gesture, GESTURE_PAUSE_MS)
+
+    def _finish_gesture(self) -> None:
+        self._gesture_timer = None
+        self._on_rest()
+
+    def _moved(self, _name: str, _old: float, _new: float) -> None:
+        """The ranges change: wait until they stop."""
+        document = self.x.document
+        if not self._following and document is not None:
+            self._stop_waiting()
+            if self._gesture_timer is not None:
+                document.remove_timeout_callback(self._gesture_timer)
+                self._gesture_timer = None
+            self._rest_timer = document.add_timeout_callback(self._waited, REST_MS)
+
+    def _stop_waiting(self) -> None:
+        if self._rest_timer is not None:
+            self.x.document.remove_timeout_callback(self._rest_timer)
+            self._rest_timer = None
+
+    def _waited(self) -> None:
+        # A timeout callback that runs is already removed.
+        self._rest_timer = None
+        self._rested()
+
+    def _rested(self) -> None:
+        """The ranges have stopped: report the window."""
+        self._stop_waiting()
+        x, ordinate = self.x, self.ordinate
+        # The page and its browser can change a range at once.
+        if not (x.start < x.end and ordinate.start < ordinate.end):
+            return
+        window = Window(x.start, x.end, ordinate.start, ordinate.end)
+        if self._shown is None or is_near(window, self._shown):
+            return
+        self._on_zoom(None if self._home is not None and is_near(window, self._home) else window)
+
+
+def is_near(one: Window, other: Window) -> bool:
+    """Whether two windows are equal up to rounding in the browser."""
+    width, height = other.x_high - other.x_low, other.ordinate_high - other.ordinate_low
+    apart = np.abs(np.subtract(astuple(one), astuple(other)))
+    return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))

@@ -1,0 +1,125 @@
+"""Where the pictures stand: side by side, or one of them enlarged above a row of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import panel as pn
+from bokeh.plotting import figure
+
+from app.views.components.flex_row import FULL_HEIGHT
+from app.views.components.plots import FigurePane, set_thumbnail
+from app.views.components.widgets import SegmentedControl
+from plots.map_images import ON_DEMAND
+
+SHORT_TITLES = {
+    "well": "Well",
+    "basins": "Basins",
+    "times": "Times",
+    "crossings": "Crossings",
+    "characters": "Chaos",
+    "origins": "Origins",
+    "compared": "Other",
+    "differences": "Differ",
+}
+"""Titles of all pictures, in their order, where there is little room."""
+
+FIRST = "basins"
+"""The largest picture, and on narrow screens the only one, until another one is chosen."""
+
+# As many pictures have the same size; of more, one is twice as large as the others.
+_MOST_EQUAL = 4
+
+
+class PictureGrid:
+    """The pictures on the page; the stylesheet places them by the classes that are set here.
+
+    Parameters
+    ----------
+    on_choose
+        Called with the name of the picture that is chosen to be shown large.
+    alone
+        Whether only the picture is seen that is shown large.
+    """
+
+    def __init__(self, on_choose: Callable[[str], None], *, alone: bool = False) -> None:
+        self._panes: dict[str, FigurePane] = {}
+        self._enlarged = ""
+        # Pictures that show nothing.
+        self._empty: frozenset[str] = frozenset()
+        classes = ["maps", "alone"] if alone else ["maps"]
+        self._column = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=classes)
+        self.picker = SegmentedControl(label="Map", css_classes=["segmented", "map-picker"], visible=False)
+        self.picker.param.watch(lambda event: self._choose(event.new), "value")
+        self._on_choose = on_choose
+
+    def layout(self) -> pn.viewable.Viewable:
+        """The grid as a part of the page."""
+        return self._column
+
+    @property
+    def shown(self) -> Sequence[str]:
+        """Names of the pictures on the page."""
+        return tuple(self._panes)
+
+    def show(self, panes: dict[str, FigurePane]) -> None:
+        """Put pictures on the page, by name and in this order; hidden ones would still be painted with every frame."""
+        self._panes = panes
+        self._place()
+
+    def enlarge(self, name: str) -> None:
+        """Show a picture large; an empty name, or a picture that is not on the page, shows all side by side."""
+        self._enlarged = name
+        self._place()
+
+    def mark_empty(self, name: str, empty: bool) -> None:
+        """Say whether a picture shows nothing: then the picture of its layer is not the largest."""
+        marked = self._empty | {name} if empty else self._empty - {name}
+        if marked != self._empty:
+            self._empty = marked
+            self._place()
+
+    def mark_stale(self, stale: bool) -> None:
+        """Grey the pictures out while they do not belong to the controls, or show them as they are."""
+        self._set_class("stale", stale)
+
+    def begin_touch(self) -> None:
+        """The page is used by touch: offer the choice of the picture, of which a narrow screen shows one."""
+        self.picker.visible = True
+        self._place()
+
+    def _choose(self, name: str | None) -> None:
+        # None, and the picture that is picked: the picker follows the page.
+        if name is not None and name != self._picked:
+            self._on_choose(name)
+
+    @property
+    def _picked(self) -> str:
+        """The picture that is larger than the others: the enlarged one, or else that of the last layer that shows something."""
+        layers = [name for name in self._panes if name in ON_DEMAND and name not in self._empty]
+        return self._enlarged if self._enlarged in self._panes else [FIRST, *layers][-1]
+
+    def _place(self) -> None:
+        # The classes of a pane of Bokeh cannot be changed once it is on the page, those of its figure can.
+        picked, is_enlarged, are_many = self._picked, self._enlarged in self._panes, len(self._panes) > _MOST_EQUAL
+        other = "small" if is_enlarged else "compact" if are_many else "equal"
+        with pn.io.hold():
+            self._set_class("enlarged", is_enlarged)
+            self._set_class("many", are_many and not is_enlarged)
+            for name, pane in self._panes.items():
+                plot: figure = pane.object
+                kinds = ["well" if name == "well" else "map", "picked" if name == picked else other]
+                if plot.css_classes != kinds:
+                    plot.css_classes = kinds
+                    set_thumbnail(plot, "small" in kinds or "compact" in kinds)
+            self.picker.param.update(options={SHORT_TITLES[name]: name for name in self._panes}, value=picked)
+            parts = [*([self.picker] if self.picker.visible else []), *self._panes.values()]
+            if parts != self._column.objects:
+                self._column.objects = parts
+
+    def _set_class(self, name: str, on: bool) -> None:
+        """Set or remove a class of the grid in the stylesheet."""
+        others = [each for each in self._column.css_classes if each != name]
+        classes = [*others, name] if on else others
+        if classes != self._column.css_classes:
+            self._column.css_classes = classes

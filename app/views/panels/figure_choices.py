@@ -1,0 +1,70 @@
+"""The figures that can be made of what the page shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from app.job_clients.orbit_requests import ChosenOrbit
+from app.state.view_state import ViewState
+from engine import Curves, EscapeMap
+from engine.service import highest_energy
+from plots.figure_files import (
+    curves_figure_bytes,
+    map_figure_bytes,
+    orbits_figure_bytes,
+    statistics_figure_bytes,
+    well_figure_bytes,
+)
+from plots.figure_style import FigureFormat, FigureStyle
+from plots.map_analyses import NO_ANALYSES, MapAnalyses
+from plots.map_images import ON_DEMAND, TITLES
+
+Make = Callable[[FigureFormat, FigureStyle], bytes]
+"""Makes a file of a figure; takes seconds."""
+
+ALL_MAPS, WELL, ORBITS, STATISTICS, CURVES = "All maps", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"
+FIGURES = (ALL_MAPS, *(title for name, title in TITLES.items() if name != "curves"), WELL, ORBITS, STATISTICS, CURVES)
+"""Titles of all figures."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What the page shows; None and empty for what is not computed."""
+
+    frame: EscapeMap | None = None
+    analyses: MapAnalyses = NO_ANALYSES
+    orbits: Sequence[ChosenOrbit] = ()
+    curves: Curves | None = None
+
+
+def figure_choices(shown: Shown, state: ViewState) -> dict[str, Make]:
+    """The figures by title; they show what is shown now, however the page changes afterwards."""
+    choices: dict[str, Make] = {}
+    drawings = [one.drawing for one in shown.orbits if one.drawing is not None]
+    if shown.frame is not None:
+        choices |= _map_choices(shown.frame, shown, state)
+        spec = shown.frame.spec
+        energy = highest_energy(spec.energy)
+        choices[WELL] = partial(well_figure_bytes, spec.potential, energy, drawings, state.colours)
+    if drawings:
+        verdicts = [one.describe() for one in shown.orbits if one.drawing is not None]
+        choices[ORBITS] = partial(orbits_figure_bytes, state.potential, drawings, state.colours, verdicts)
+    if shown.frame is not None:
+        choices[STATISTICS] = partial(statistics_figure_bytes, shown.frame, state.box)
+    if shown.curves is not None and shown.curves.values.size:
+        choices[CURVES] = partial(curves_figure_bytes, shown.curves)
+    return choices
+
+
+def _map_choices(frame: EscapeMap, shown: Shown, state: ViewState) -> dict[str, Make]:
+    available = {"characters": shown.analyses.regularity, "origins": shown.analyses.origins}
+    pictures = [name for name in TITLES if name != "curves" and (name not in ON_DEMAND or available[name] is not None)]
+
+    def make(names: Sequence[str], format: FigureFormat, style: FigureStyle) -> bytes:
+        return map_figure_bytes(frame, names, palette, format, style, analyses=shown.analyses, starts=starts, times=times)
+
+    palette, times, starts = state.colours, state.lock_times, tuple(one.start for one in shown.orbits)
+    choices: dict[str, Make] = {ALL_MAPS: partial(make, pictures)}
+    return choices | {TITLES[name]: partial(make, [name]) for name in pictures}

@@ -1,0 +1,125 @@
+"""The section "Figure" of the downloads: what to draw, in which format, and how large."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections.abc import Callable
+from functools import partial
+from html import escape
+
+import panel as pn
+
+from app.browser.image_copier import ImageCopier
+from app.state.view_state import ViewState
+from app.views.components.file_saver import FileSaver
+from app.views.components.number_box import NumberBox
+from app.views.components.widgets import SegmentedControl, StatusPane, Switches, button
+from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, Shown, figure_choices
+from plots.figure_style import FigureFormat, FigureStyle
+
+_TITLES = "Titles"
+_NUMBERS = {"width": ("Width in cm", 0.5), "dpi": ("Pixels per inch", 50.0), "font_size": ("Letters in points", 0.5)}
+Send = Callable[[str, bytes | None], None]
+"""Sends the name and the content of a file to the browser; None if it could not be made."""
+
+_MAKING = "The figure is made …"
+
+
+class FigureForm:
+    """Choices and the buttons that make the figure.
+
+    Parameters
+    ----------
+    state
+        Of the session.
+    saver
+        Sends files to the browser.
+    name
+        Called with the end of a file name for the whole.
+    on_copied
+        Called with the success of copying an image.
+    """
+
+    def __init__(self, state: ViewState, saver: FileSaver, name: Callable[[str], str], on_copied: Callable[[bool], None]) -> None:
+        self._state, self._saver, self._name = state, saver, name
+        self._shown = Shown()
+        self._style: dict[str, float] = {name: getattr(FigureStyle(), name) for name in _NUMBERS}
+        self.what = pn.widgets.Select(label="What to draw", options=[ALL_MAPS], sizing_mode="stretch_width", margin=(0, 10))
+        formats = {format.name: format for format in FigureFormat}
+        self.format = SegmentedControl(label="Format", options=formats, value=FigureFormat.PNG, margin=(6, 10))
+        self.titles = Switches(label="Titles and provenance", options=[_TITLES], value=[_TITLES], margin=(6, 10))
+        self.save = button("Save figure", self._on_save, kind="primary")
+        self.copy = ImageCopier(self._on_copy, on_copied, margin=(5, 10))
+        self.text = StatusPane("", margin=(0, 10), css_classes=["quiet"])
+        self.show(self._shown)
+
+    def build(self) -> list[pn.viewable.Viewable]:
+        """The section, in a column."""
+        boxes = [
+            NumberBox(partial(self.type, name), self._style[name], label=label, step=step, width=110, margin=(0, 4, 0, 10))
+            for name, (label, step) in _NUMBERS.items()
+        ]
+        numbers = pn.Row(*boxes, margin=0)
+        return [self.what, self.format, numbers, self.titles, pn.Row(self.save, self.copy, margin=0), self.text]
+
+    def show(self, shown: Shown) -> None:
+        """Offer the figures of what the page shows; what is chosen stays, as the next map may have it."""
+        self._shown = shown
+        offered = {ALL_MAPS, self.what.value, *figure_choices(shown, self._state)}
+        self.what.options = [title for title in FIGURES if title in offered]
+
+    @property
+    def style(self) -> FigureStyle:
+        """The style; ValueError if a number is not in its range."""
+        return FigureStyle(**self._style, titles=bool(self.titles.value))
+
+    def figure(self) -> tuple[str, Make]:
+        """Part of the file name, empty for all maps, and the call that makes the chosen figure.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing to draw.
+        """
+        choices, name = figure_choices(self._shown, self._state), self.what.value
+        if name not in choices:
+            raise ValueError(f"{name}: this is not computed yet.")
+        return "" if name == ALL_MAPS else "-" + re.sub(r"\W+", "-", name.lower()).strip("-"), choices[name]
+
+    def type(self, name: str, number: float) -> None:
+        """Set one of the numbers of the style."""
+        self._style[name] = number
+
+    def _on_save(self) -> None:
+        save = self._saver.save
+        self._begin(self.format.value, lambda name, content: None if content is None else save(name, content))
+
+    def _on_copy(self) -> None:
+        self._begin(FigureFormat.PNG, lambda name, content: self.copy.send(content))
+
+    def _begin(self, format: FigureFormat, send: Send) -> None:
+        """Make the figure of the moment of the click and send it, or say why not."""
+        try:
+            name, make = self.figure()
+            style = self.style
+        except ValueError as error:
+            self._say(str(error))
+            send("", None)
+        else:
+            pn.state.execute(partial(self.make, partial(make, format, style), partial(send, self._name(f"{name}.{format}"))))
+
+    async def make(self, make: Callable[[], bytes], send: Callable[[bytes | None], None]) -> None:
+        """Make a file in a thread, so that the event loop goes on, and send it, or None and say why not."""
+        self._say(_MAKING)
+        try:
+            content = await asyncio.to_thread(make)
+        except ValueError as error:
+            self._say(str(error))
+            send(None)
+        else:
+            self._say("")
+            send(content)
+
+    def _say(self, sentence: str) -> None:
+        self.text.object = escape(sentence)

@@ -1,0 +1,200 @@
+"""The drawer in which the slice is chosen: its axes, what the energy decides, and the values of the other coordinates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from html import escape
+from typing import Any
+
+import panel as pn
+
+from app.state.view_state import SYSTEM, ViewState
+from app.views.components.flex_row import flex_row
+from app.views.components.number_box import NumberBox
+from app.views.components.widgets import StatusPane
+from engine import Coordinate, ParameterAxis, Slice
+from engine.service import AXIS_NAMES, PARAMETERS, default_range
+
+_HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
+_ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}
+_FIRST_ANGLE = {Coordinate.THETA: 0.0, Coordinate.BETA: 0.5 * math.pi}
+_STEP = 0.05
+# What the energy decides: a momentum and its sign, or the speed and the angle that gives its direction.
+_Mode = tuple[Coordinate, int, Coordinate | None]
+_MODES: dict[str, _Mode] = {
+    "py > 0": (Coordinate.PY, 1, None),
+    "py < 0": (Coordinate.PY, -1, None),
+    "px > 0": (Coordinate.PX, 1, None),
+    "px < 0": (Coordinate.PX, -1, None),
+    **{text: (Coordinate.SPEED, 1, angle) for angle, text in _ANGLES.items()},
+}
+
+
+class SlicePanel:
+    """Widgets that write the slice of the state and follow it.
+
+    Parameters
+    ----------
+    state
+        The view.
+    on_slice
+        Called with a chosen slice, without the session's lock.
+    """
+
+    def __init__(self, state: ViewState, on_slice: Callable[[Slice], None]) -> None:
+        self._state, self._on_slice = state, on_slice
+        self._following = False
+        self.axes = [_make_list("Horizontal axis"), _make_list("Vertical axis")]
+        self.mode = _make_list("The energy decides")
+        self.ranges = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.held = pn.Column(sizing_mode="stretch_width", margin=0)
+        self.message = StatusPane("", sizing_mode="stretch_width", margin=(8, 0))
+        for place, axis in enumerate(self.axes):
+            axis.param.watch(partial(self._take_axis, place), "value")
+        self.mode.param.watch(lambda event: self._take(mode=_MODES[event.new]) if event.new else None, "value")
+        state.param.watch(lambda *events: self.follow(), ["plane", *SYSTEM])
+        self.follow()
+
+    def build(self) -> list[pn.viewable.Viewable]:
+        """Parts of a column."""
+        hint = pn.pane.HTML(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
+        return [hint, *self.axes, self.ranges, self.mode, self.held, self.message]
+
+    def follow(self) -> None:
+        """Show the slice of the state."""
+        plane, system = self._state.plane, self._state.system
+        names = {_symbol(key): key for key in (*AXIS_NAMES, *system.parameter_names)}
+        self._following = True
+        try:
+            for axis, shown in zip(self.axes, plane.axes, strict=True):
+                axis.param.update(options=names, value=shown.key)
+            self.mode.param.update(options=[text for text, mode in _MODES.items() if self._is_legal(mode)], value=_mode_of(plane))
+        finally:
+            self._following = False
+        self.ranges.objects = self._range_boxes(plane)
+        self.held.objects = self._held_boxes(plane)
+        self.message.object = f"<p>{escape(plane.title)}</p>"
+
+    def _range_boxes(self, plane: Slice) -> list[pn.viewable.Viewable]:
+        axis = plane.parameter
+        if axis is None:
+            return []
+        low = NumberBox(lambda value: self._take_range(value, None), axis.low, label=f"{axis.symbol} from", step=_STEP)
+        high = NumberBox(lambda value: self._take_range(None, value), axis.high, label="to", step=_STEP)
+        return [flex_row(low, high, gap="8px")]
+
+    def _held_boxes(self, plane: Slice) -> list[pn.viewable.Viewable]:
+        """A box for each coordinate that is neither an axis nor decided by the energy."""
+        values = dict(plane.fixed)
+        others = [c for c in (Coordinate.PX, Coordinate.PY) if c is not plane.decided and plane.decided is not Coordinate.SPEED]
+        angles = [angle for angle in _ANGLES if angle in values]
+        boxes = [
+            NumberBox(partial(self._take_held, c), values.get(c, 0.0), label=f"{c.symbol} =", step=_STEP)
+            for c in (Coordinate.X, Coordinate.Y, *others, *angles)
+            if c not in plane.axes
+        ]
+        return [flex_row(*boxes, gap="8px")] if boxes else []
+
+    def _is_legal(self, mode: _Mode) -> bool:
+        try:
+            self._changed(mode=mode)
+        except ValueError:
+            return False
+        return True
+
+    def _take_axis(self, place: int, event: Any) -> None:
+        plane, system = self._state.plane, self._state.system
+        if self._following or event.new is None or event.new == plane.axes[place].key:
+            return
+        if event.new in system.parameter_names:
+            axis: Any = ParameterAxis(event.new, *default_range(system, event.new), system)
+        else:
+            axis = Coordinate(event.new)
+        axes = (axis, plane.ordinate) if place == 0 else (plane.abscissa, axis)
+        if event.new == plane.axes[1 - place].key:
+            # The axes change places.
+            axes = plane.ordinate, plane.abscissa
+        self._submit(lambda: _with_axes(plane, axes))
+
+    def _take(self, mode: _Mode) -> None:
+        if not self._following:
+            self._submit(lambda: self._changed(mode=mode))
+
+    def _take_held(self, coordinate: Coordinate, value: float) -> None:
+        self._submit(lambda: self._changed(fixed={**dict(self._state.plane.fixed), coordinate: value}))
+
+    def _take_range(self, low: float | None, high: float | None) -> None:
+        axis = self._state.plane.parameter
+        if axis is None:
+            return
+        low, high = axis.low if low is None else low, axis.high if high is None else high
+
+        def changed() -> Slice:
+            new = ParameterAxis(axis.key, low, high, axis.system)
+            plane = self._state.plane
+            axes = tuple(new if each is axis else each for each in plane.axes)
+            return Slice(axes[0], axes[1], plane.solved, plane.sign, plane.fixed)
+
+        self._submit(changed)
+
+    def _changed(self, mode: _Mode | None = None, fixed: dict[Coordinate, float] | None = None) -> Slice:
+        """The slice of the state with another decision of the energy, or other held values."""
+        plane = self._state.plane
+        held = dict(plane.fixed) if fixed is None else fixed
+        if mode is None:
+            return Slice(plane.abscissa, plane.ordinate, plane.solved, plane.sign, tuple(held.items()))
+        solved, sign, angle = mode
+        kept = {c: value for c, value in held.items() if c in (Coordinate.X, Coordinate.Y)}
+        if angle is None:
+            kept |= {c: value for c, value in held.items() if c in (Coordinate.PX, Coordinate.PY) and c is not solved}
+        elif angle not in plane.axes:
+            kept[angle] = held.get(angle, _FIRST_ANGLE[angle])
+        return Slice(plane.abscissa, plane.ordinate, solved, sign, tuple(kept.items()))
+
+    def _submit(self, make: Callable[[], Slice]) -> None:
+        """Use a slice, or say why there is none."""
+        try:
+            chosen = make()
+        except ValueError as error:
+            self.message.object = f"<p role='alert'>{escape(str(error))}</p>"
+            self._follow_axes()
+        else:
+            self._on_slice(chosen)
+
+    def _follow_axes(self) -> None:
+        """Show the axes of the state again after a choice that is refused."""
+        self._following = True
+        try:
+            for axis, shown in zip(self.axes, self._state.plane.axes, strict=True):
+                axis.value = shown.key
+        finally:
+            self._following = False
+
+
+def _make_list(label: str) -> pn.widgets.Select:
+    return pn.widgets.Select(label=label, sizing_mode="stretch_width", margin=(4, 0))
+
+
+def _symbol(key: str) -> str:
+    return Coordinate(key).symbol if key in AXIS_NAMES else PARAMETERS.get(key, key)
+
+
+def _mode_of(plane: Slice) -> str:
+    """The text of what the energy decides on a slice."""
+    if plane.decided is Coordinate.SPEED:
+        used = (*plane.axes, *dict(plane.fixed))
+        return next(text for angle, text in _ANGLES.items() if angle in used)
+    return next(text for text, mode in _MODES.items() if mode == (plane.decided, plane.sign, None))
+
+
+def _with_axes(plane: Slice, axes: tuple[Any, Any]) -> Slice:
+    """A slice with other axes; what its energy decides and its held values stay where they can."""
+    kept = tuple((c, value) for c, value in plane.fixed if c not in axes)
+    for solved, sign, fixed in ((plane.solved, plane.sign, kept), (None, 1, kept), (None, 1, ())):
+        try:
+            return Slice(*axes, solved, sign, fixed)
+        except ValueError as error:
+            problem = error
+    raise problem

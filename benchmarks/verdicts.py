@@ -1,0 +1,82 @@
+"""How many verdicts on single orbits turn out wrong later, in ten chaotic seas with their islands.
+
+Starts are uniform on the energy surface; those that are bounded until t = 1000 are judged at several times, and again at 1e5. An
+orbit is taken as chaotic if its SALI falls to 1e-7 by then or it escapes.
+
+Run: uv run python -m benchmarks.verdicts [orbits per sea, by default 200] [seed]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+
+from engine import (
+    CASES,
+    CHAOS_THRESHOLD,
+    Fate,
+    Orbit,
+    Potential,
+    Verdict,
+    classify_orbits,
+    integrate_orbit,
+    judge_orbit,
+    sample_starts,
+)
+from engine.potentials.catalogue import channel_family
+
+FIVE = channel_family(5)
+SEAS = (
+    (CASES["I"], 0.125), (CASES["I"], 0.13), (CASES["I"], 0.136), (CASES["II"], 0.16), (CASES["II"], 0.168), (CASES["II"], 0.172),
+    (CASES["III"], 0.25), (CASES["III"], 0.26), (CASES["III"], 0.28), (FIVE, 1.03 * FIVE.escape_energy),
+)  # fmt: skip
+TIMES = (1e3, 2e3, 4e3, 1e4, 2e4, 5e4, 1e5)
+WRONG = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False))
+# Starts drawn for one that is bounded until the first time.
+DRAWN = 30
+
+
+def bounded_starts(potential: Potential, energy: float, count: int, seed: int) -> np.ndarray:
+    starts = sample_starts(potential, energy, DRAWN * count, seed=seed)
+    fates = classify_orbits(potential, energy, starts, t_max=TIMES[0]).fate
+    return starts[fates == Fate.BOUNDED][:count]
+
+
+def shortened(orbit: Orbit, t_end: float) -> Orbit:
+    """The orbit until a time at which it is bounded."""
+    count = int(np.searchsorted(orbit.t, t_end * (1.0 + 1e-12), side="right"))
+    names = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
+    return replace(orbit, fate=int(Fate.BOUNDED), **{name: getattr(orbit, name)[:count] for name in names})
+
+
+def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -> Counter[tuple[float, Verdict | None, bool]]:
+    """The number of orbits by time, verdict then, and whether they are chaotic."""
+    counts: Counter[tuple[float, Verdict | None, bool]] = Counter()
+    for state in bounded_starts(potential, energy, count, seed):
+        orbit = integrate_orbit(potential, state, TIMES[-1])
+        is_chaotic = orbit.fate != Fate.BOUNDED or bool(orbit.sali.min() <= CHAOS_THRESHOLD)
+        for time in TIMES:
+            if time <= orbit.t[-1] * (1.0 + 1e-12):
+                counts[time, judge_orbit(shortened(orbit, time)).character, is_chaotic] += 1
+    return counts
+
+
+def main(count: int = 200, seed: int = 2) -> None:
+    total: Counter[tuple[float, Verdict | None, bool]] = Counter()
+    for potential, energy in SEAS:
+        found = count_verdicts(potential, energy, count, seed)
+        total += found
+        wrong = sum(found[time, verdict, chaotic] for time in TIMES for verdict, chaotic in WRONG)
+        print(f"{potential.name} at h = {energy:g}: {wrong} wrong verdicts of {found.total()}", flush=True)
+    print("| t | regular, wrong | chaotic, wrong | no sign of chaos, chaotic later | undecided |\n|---|---|---|---|---|")
+    for time in TIMES:
+        pairs = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False), (Verdict.NO_SIGN, True), (Verdict.UNDECIDED, True))
+        cells = [f"{total[time, v, True] + total[time, v, False]}, {total[time, v, later]}" for v, later in pairs]
+        print(f"| {time:g} | {' | '.join(cells)} |")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))

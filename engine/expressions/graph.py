@@ -1,0 +1,155 @@
+"""Expressions as a list of operations in which no part occurs twice; what is evaluated, compiled and sent to the browser.
+
+The graph of an expression has places for its numbers, so that expressions that differ in numbers only have the same graph, and
+share compiled code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
+
+# Cached graphs, some kB each.
+_GRAPHS = 256
+
+
+class Node(NamedTuple):
+    """An operation on the results of earlier ones.
+
+    Attributes
+    ----------
+    kind
+        ``x``, ``y``, ``sum``, ``product`` of two, ``power``, ``exp``, ``log``, ``sin`` or ``cos``.
+    operands
+        Indices of nodes. The second one of a sine is the cosine of the same argument, and that of a cosine is the sine: the
+        derivative of each is the other one.
+    numbers
+        Places of the coefficients of a sum, one for each operand, and of its constant if that is not 0.
+    exponent
+        Of a power.
+    """
+
+    kind: str
+    operands: tuple[int, ...] = ()
+    numbers: tuple[int, ...] = ()
+    exponent: float = 1.0
+
+
+class Graph(NamedTuple):
+    """The operations, and the indices of those that are the values of the expressions."""
+
+    nodes: tuple[Node, ...]
+    results: tuple[int, ...]
+
+    @property
+    def convolutions(self) -> int:
+        """How many nodes need a sum over all lower orders for each coefficient of their series."""
+        return sum(node.kind not in ("x", "y", "sum") for node in self.nodes)
+
+
+@lru_cache(maxsize=_GRAPHS)
+def make_graph(expressions: tuple[Expression, ...]) -> tuple[Graph, tuple[float, ...]]:
+    """The graph of expressions, and its numbers."""
+    builder = _Builder()
+    results = tuple(builder.add(each) for each in expressions)
+    return Graph(tuple(builder.nodes), results), tuple(builder.numbers)
+
+
+class _Builder:
+    def __init__(self) -> None:
+        self.nodes: list[Node] = []
+        self.numbers: list[float] = []
+        self._places: dict[Any, int] = {}
+
+    def add(self, expression: Expression) -> int:
+        """The index of the node of an expression."""
+        if expression not in self._places:
+            self._places[expression] = self._add_new(expression)
+        return self._places[expression]
+
+    def _add_new(self, expression: Expression) -> int:
+        match expression:
+            case Coordinate(axis):
+                return self._append(Node("xy"[axis]))
+            case Sum(constant, terms):
+                operands = tuple(self.add(part) for part, _ in terms)
+                values = [*(c for _, c in terms), *([constant] if constant or not terms else [])]
+                first = len(self.numbers)
+                self.numbers += values
+                return self._append(Node("sum", operands, tuple(range(first, first + len(values)))))
+            case Product(factors):
+                first_place, *others = (self._raised(self.add(base), n) for base, n in factors)
+                for other in others:
+                    first_place = self._node(Node("product", (first_place, other)))
+                return first_place
+            case Function("sin" | "cos" as name, argument):
+                return self._sine_and_cosine(name, argument)
+            case Function(name, argument):
+                return self._append(Node(name, (self.add(argument),)))
+        raise TypeError(expression)
+
+    def _raised(self, base: int, exponent: float) -> int:
+        """A power; positive integer ones are products, which have no singularity where the base is 0."""
+        if exponent == 1.0:
+            return base
+        if exponent < 0.0 or exponent != int(exponent):
+            return self._node(Node("power", (base,), exponent=exponent))
+        half = self._raised(base, float(int(exponent) // 2))
+        square = self._node(Node("product", (half, half)))
+        return square if int(exponent) % 2 == 0 else self._node(Node("product", (square, base)))
+
+    def _sine_and_cosine(self, name: str, argument: Expression) -> int:
+        angle = self.add(argument)
+        sine = self._append(Node("sin", (angle, len(self.nodes) + 1)))
+        cosine = self._append(Node("cos", (angle, sine)))
+        self._places |= {Function("sin", argument): sine, Function("cos", argument): cosine}
+        return sine if name == "sin" else cosine
+
+    def _node(self, node: Node) -> int:
+        """The index of a node, which is added unless it is there."""
+        if node not in self._places:
+            self._places[node] = self._append(node)
+        return self._places[node]
+
+    def _append(self, node: Node) -> int:
+        self.nodes.append(node)
+        return len(self.nodes) - 1
+
+
+_UNARY: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
+    {"exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos}
+)
+
+
+def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.ndarray]:
+    """The values of the expressions at (x, y), which broadcast; NaN or infinite where one is not defined."""
+    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    values: list[np.ndarray] = []
+    with np.errstate(all="ignore"):
+        for node in graph.nodes:
+            values.append(_node_value(node, values, numbers, x, y))
+    return [values[index] for index in graph.results]
+
+
+def _node_value(node: Node, values: list[np.ndarray], numbers: Sequence[float], x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    match node.kind:
+        case "x" | "y":
+            return x if node.kind == "x" else y
+        case "sum":
+            constant = numbers[node.numbers[-1]] if len(node.numbers) > len(node.operands) else 0.0
+            total = np.full(x.shape, constant)
+            for operand, place in zip(node.operands, node.numbers, strict=False):
+                total = total + numbers[place] * values[operand]
+            return total
+        case "product":
+            left, right = (values[operand] for operand in node.operands)
+            return np.asarray(left * right)
+        case "power":
+            return np.asarray(np.power(values[node.operands[0]], node.exponent))
+    return np.asarray(_UNARY[node.kind](values[node.operands[0]]))

@@ -1,0 +1,219 @@
+"""Expressions in x and y: immutable trees in canonical form, so that equal formulas are equal objects.
+
+An expression is a coordinate, a sum Σ c m + constant, a product Π b^a with real exponents, or a function exp, log, sin or cos of
+an expression. Numbers are the coefficients of sums, and a number alone is a sum without terms. Parameters have their values.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any
+
+from engine.polynomials import Powers, Terms
+
+
+class Expression:
+    """A node with all below it.
+
+    Attributes
+    ----------
+    key
+        A tuple that is different for each expression, for comparisons and for the order of the parts of sums and products.
+    """
+
+    @cached_property
+    def key(self) -> tuple[Any, ...]:
+        """Set by each kind of node."""
+        raise NotImplementedError
+
+    @cached_property
+    def _hash(self) -> int:
+        return hash(self.key)
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Expression) and self._hash == other._hash and self.key == other.key)
+
+    def __hash__(self) -> int:
+        return self._hash
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinate(Expression):
+    """x (axis 0) or y (axis 1)."""
+
+    axis: int
+
+    @cached_property
+    def key(self) -> tuple[Any, ...]:
+        """See `Expression`."""
+        return 0, self.axis
+
+
+@dataclass(frozen=True, eq=False)
+class Function(Expression):
+    """exp, log, sin or cos of an expression."""
+
+    name: str
+    argument: Expression
+
+    @cached_property
+    def key(self) -> tuple[Any, ...]:
+        """See `Expression`."""
+        return 1, self.name, self.argument.key
+
+
+@dataclass(frozen=True, eq=False)
+class Product(Expression):
+    """Π b^a; the exponents are finite and not 0."""
+
+    factors: tuple[tuple[Expression, float], ...]
+
+    @cached_property
+    def key(self) -> tuple[Any, ...]:
+        """See `Expression`."""
+        return 2, tuple((base.key, exponent) for base, exponent in self.factors)
+
+
+@dataclass(frozen=True, eq=False)
+class Sum(Expression):
+    """constant + Σ c m; no m is a sum, and no c is 0."""
+
+    constant: float
+    terms: tuple[tuple[Expression, float], ...]
+
+    @cached_property
+    def key(self) -> tuple[Any, ...]:
+        """See `Expression`."""
+        return 3, tuple((part.key, c) for part, c in self.terms), self.constant
+
+
+X, Y = Coordinate(0), Coordinate(1)
+
+FUNCTIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
+    {"cos": math.cos, "exp": math.exp, "log": math.log, "sin": math.sin}
+)
+"""The functions of expressions, for numbers."""
+
+
+def number(value: float) -> Sum:
+    """A constant."""
+    return Sum(float(value), ())
+
+
+def as_number(expression: Expression) -> float | None:
+    """The value of a constant; None for others."""
+    return expression.constant if isinstance(expression, Sum) and not expression.terms else None
+
+
+def linear_combination(parts: Iterable[tuple[float, Expression]]) -> Expression:
+    """Σ c e over the pairs (c, e)."""
+    constant, collected = 0.0, dict[Expression, float]()
+    for c, part in parts:
+        inner = part if isinstance(part, Sum) else Sum(0.0, ((part, 1.0),))
+        constant += c * inner.constant
+        for each, d in inner.terms:
+            collected[each] = collected.get(each, 0.0) + c * d
+    terms = tuple(sorted(((part, c) for part, c in collected.items() if c), key=lambda term: _order(term[0])))
+    if not constant and len(terms) == 1 and terms[0][1] == 1.0:
+        return terms[0][0]
+    return Sum(constant, terms)
+
+
+def multiply(*factors: Expression) -> Expression:
+    """The product of expressions; products of sums are not expanded."""
+    coefficient, collected = 1.0, dict[Expression, float]()
+    for factor in factors:
+        scale, rest = _split_coefficient(factor)
+        coefficient *= scale
+        for base, exponent in rest.factors if isinstance(rest, Product) else ((rest, 1.0),):
+            if as_number(base) is None:
+                collected[base] = collected.get(base, 0.0) + exponent
+    if not coefficient:
+        return number(0.0)
+    kept = tuple(sorted(((base, n) for base, n in collected.items() if n), key=lambda factor: factor[0].key))
+    if not kept:
+        return number(coefficient)
+    product = kept[0][0] if len(kept) == 1 and kept[0][1] == 1.0 else Product(kept)
+    return linear_combination([(coefficient, product)])
+
+
+def power(base: Expression, exponent: float) -> Expression:
+    """A real power; ArithmeticError or ValueError for one of a number that is not a finite real number."""
+    coefficient, rest = _split_coefficient(base)
+    integer = exponent == int(exponent)
+    if exponent == 0.0:
+        return number(1.0)
+    if coefficient < 0.0 and not integer:
+        coefficient, rest = 1.0, base
+    if as_number(rest) is not None:
+        return number(_finite(math.pow(coefficient * rest.constant, exponent)))  # type: ignore[attr-defined]
+    if isinstance(rest, Product) and (integer or (len(rest.factors) == 1 and _keeps_domain(rest.factors[0][1]))):
+        raised: Expression = multiply(*(Product(((b, n * exponent),)) for b, n in rest.factors))
+    else:
+        raised = rest if exponent == 1.0 else Product(((rest, float(exponent)),))
+    return linear_combination([(_finite(math.pow(coefficient, exponent)), raised)])
+
+
+def _keeps_domain(inner: float) -> bool:
+    """Whether (b^inner)^a = b^(inner a) for all b for which the left side is real: not for even powers of negative numbers."""
+    return inner != int(inner) or (int(inner) % 2 != 0 and abs(inner) == 1.0)
+
+
+def apply_function(name: str, argument: Expression) -> Expression:
+    """A function of an expression; ArithmeticError or ValueError for a number outside its domain."""
+    value = as_number(argument)
+    return Function(name, argument) if value is None else number(_finite(FUNCTIONS[name](value)))
+
+
+def from_terms(terms: Terms) -> Expression:
+    """A polynomial {(i, j): c} as an expression."""
+    return linear_combination((c, multiply(power(X, i), power(Y, j))) for (i, j), c in terms.items())
+
+
+def as_terms(expression: Expression) -> dict[Powers, float] | None:
+    """{(i, j): c} of an expression that is a polynomial, expanded; None for others."""
+    whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    terms = {(0, 0): whole.constant} if whole.constant else {}
+    for part, c in whole.terms:
+        powers = powers_of(part)
+        if powers is None:
+            return None
+        terms[powers] = c
+    return terms
+
+
+def powers_of(expression: Expression) -> Powers | None:
+    """(i, j) of x^i y^j; None for other expressions."""
+    powers = [0, 0]
+    for base, exponent in expression.factors if isinstance(expression, Product) else ((expression, 1.0),):
+        if not isinstance(base, Coordinate) or exponent < 0.0 or exponent != int(exponent):
+            return None
+        powers[base.axis] += int(exponent)
+    return powers[0], powers[1]
+
+
+def _split_coefficient(expression: Expression) -> tuple[float, Expression]:
+    """(c, e) with expression = c e, where e has no coefficient of its own."""
+    value = as_number(expression)
+    if value is not None:
+        return value, number(1.0)
+    if isinstance(expression, Sum) and not expression.constant and len(expression.terms) == 1:
+        part, c = expression.terms[0]
+        return c, part
+    return 1.0, expression
+
+
+def _order(part: Expression) -> tuple[Any, ...]:
+    """Sort key of the terms of a sum: x^i y^j by degree and by the power of y, then others."""
+    powers = powers_of(part)
+    return (1, part.key) if powers is None else (0, sum(powers), powers[1])
+
+
+def _finite(value: float) -> float:
+    if not math.isfinite(value):
+        raise OverflowError
+    return value

@@ -1,0 +1,46 @@
+"""Mirror symmetries of expressions, found node by node, so that mirror images of orbits are exact in floating point."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
+
+EVEN, ODD, NEITHER = 1, -1, 0
+"""Sign of f(−x)/f(x), 0 if it is no constant."""
+
+_PARITIES = 1024
+
+
+@lru_cache(maxsize=_PARITIES)
+def parity(expression: Expression, axis: int) -> int:
+    """`EVEN`, `ODD` or `NEITHER` under the change of sign of a coordinate.
+
+    A sum whose terms are exchanged by the mirror, as those of two equal centres, is `NEITHER`: in floating point its values are
+    not those of the mirror image to the last bit.
+    """
+    match expression:
+        case Coordinate(own):
+            return ODD if own == axis else EVEN
+        case Sum(constant, terms):
+            signs = {parity(part, axis) for part, _ in terms} | ({EVEN} if constant or not terms else set())
+            return signs.pop() if len(signs) == 1 else NEITHER
+        case Product(factors):
+            sign = EVEN
+            for base, exponent in factors:
+                sign *= _power_parity(parity(base, axis), exponent)
+            return sign
+        case Function(name, argument):
+            inner = parity(argument, axis)
+            if inner != ODD:
+                return inner
+            return {"sin": ODD, "cos": EVEN}.get(name, NEITHER)
+    raise TypeError(expression)
+
+
+def _power_parity(sign: int, exponent: float) -> int:
+    if sign != ODD:
+        return sign
+    if exponent != int(exponent):
+        return NEITHER
+    return ODD if int(exponent) % 2 else EVEN

@@ -1,0 +1,99 @@
+"""Expressions as plain text that the parser of formulas reads back."""
+
+from __future__ import annotations
+
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, powers_of
+from engine.results.wording import short_fraction
+
+_TO_SUPERSCRIPT = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+def write_expression(expression: Expression, digits: int | None = None) -> str:
+    """An expression as text, such as "x²/2 + y²/2 − x²y exp(−y²)".
+
+    digits: significant digits of numbers; None for as many as they need to be read back exactly.
+    """
+    whole = expression if isinstance(expression, Sum) else Sum(0.0, ((expression, 1.0),))
+    parts: list[tuple[float, str]] = [(c, _term(part, abs(c), digits)) for part, c in whole.terms]
+    if whole.constant or not parts:
+        parts.append((whole.constant, monomial_term(0, 0, abs(whole.constant), digits)))
+    return join_signed(parts)
+
+
+def join_signed(parts: list[tuple[float, str]]) -> str:
+    """A sum of texts, each with a number that has its sign."""
+    text = ""
+    for c, part in parts:
+        sign = ("−" if c < 0 else "") if not text else (" − " if c < 0 else " + ")
+        text += sign + part
+    return text
+
+
+def _term(part: Expression, size: float, digits: int | None) -> str:
+    """A positive multiple of a term; the number of one with functions is in front of it, where it is read back exactly."""
+    powers = powers_of(part)
+    if powers is not None:
+        return monomial_term(*powers, size, digits)
+    ratio = "/".join(each for k, each in enumerate(write_ratio(size, digits)) if not k or each != "1")
+    return _product(part, digits) if ratio == "1" else f"{ratio} {_product(part, digits)}"
+
+
+def monomial_term(i: int, j: int, size: float, digits: int | None) -> str:
+    """A positive multiple of x^i y^j, such as "2x²/3"."""
+    numerator, denominator = write_ratio(size, digits)
+    powers = monomial(i, j)
+    factor = "" if numerator == "1" and powers else numerator
+    return f"{factor}{powers}{f'/{denominator}' if denominator != '1' else ''}"
+
+
+def monomial(i: int, j: int) -> str:
+    """x^i y^j as text, such as "x²y"; empty for a constant."""
+    return "".join(raised(name, exponent) for name, exponent in (("x", i), ("y", j)) if exponent)
+
+
+def write_ratio(size: float, digits: int | None) -> tuple[str, str]:
+    """Numerator and denominator of a number, as a `short_fraction`, otherwise as decimals over 1."""
+    fraction = short_fraction(size, 0.0 if digits is None else 5.0 * 10.0**-digits * size)
+    if fraction is not None:
+        return str(fraction.numerator), str(fraction.denominator)
+    return (repr(float(size)) if digits is None else f"{size:.{digits}g}"), "1"
+
+
+def raised(name: str, exponent: float) -> str:
+    """A base to a power, with superscripts where it is an integer."""
+    if exponent == 1.0:
+        return name
+    if exponent == int(exponent):
+        return name + str(int(exponent)).translate(_TO_SUPERSCRIPT)
+    return f"{name}^({_write_exponent(exponent)})"
+
+
+def _product(expression: Expression, digits: int | None) -> str:
+    """A factor or a product of them: coordinates first, then brackets, then functions."""
+    factors = expression.factors if isinstance(expression, Product) else ((expression, 1.0),)
+    text = ""
+    for base, exponent in sorted(factors, key=lambda factor: _place(factor[0])):
+        part = _factor(base, exponent, digits)
+        space = " " if text and isinstance(base, Function) else ""
+        text += f"{space}{part}"
+    return text
+
+
+def _place(base: Expression) -> int:
+    return 0 if isinstance(base, Coordinate) else 2 if isinstance(base, Function) else 1
+
+
+def _factor(base: Expression, exponent: float, digits: int | None) -> str:
+    match base:
+        case Coordinate(axis):
+            return raised("xy"[axis], exponent)
+        case Function(name, argument):
+            function = f"{name}({write_expression(argument, digits)})"
+            return function if exponent == 1.0 else raised(f"({function})", exponent)
+    return raised(f"({write_expression(base, digits)})", exponent)
+
+
+def _write_exponent(exponent: float) -> str:
+    numerator, denominator = write_ratio(abs(exponent), None)
+    sign = "−" if exponent < 0.0 else ""
+    return f"{sign}{numerator}{f'/{denominator}' if denominator != '1' else ''}"

@@ -1,0 +1,306 @@
+"""Maps along a parameter: each row, or each column, is a map of its own with its own potential.
+
+Such a line has the units of its well and its own exits, and is computed as any map of its potential. What is computed for a
+whole map is computed line by line.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, fields, replace
+from functools import partial
+from operator import truediv
+from typing import Any
+
+import numpy as np
+
+from engine.dynamics.batch import OrbitBatch
+from engine.dynamics.certificates import Certificate
+from engine.dynamics.fates import Fate
+from engine.execution import SERIAL_EXECUTION, Execution, count_cores
+from engine.maps.result import PIXEL_ARRAYS, EscapeMap, representative_indices
+from engine.maps.run import MapRun
+from engine.maps.spec import MapSpec
+from engine.results.arrays import read_only
+from engine.slices.axes import HeldParameter
+from engine.slices.parameter_family import ManyExitsError, parameter_family
+from engine.slices.window import Window
+
+# Time in units of the well up to which a line is one task of the executor, of some 50 ms at most. Tiles of a line, with threads
+# that wait for them, would take three times as long; orbits that are still inside are worth them.
+_FIRST_HORIZON = 1000.0
+# Distances of the lines of the first frames.
+_STRIDES = (8, 4, 2, 1)
+# The arrays whose positive codes are numbers of channels.
+_NUMBERED = ("fate", "outside")
+# Pause between frames of an analysis, in seconds.
+_PAUSE = 0.5
+
+Place = tuple[Any, Any]
+"""The index of a line in the arrays of a map."""
+
+Analyse = Callable[[Place, EscapeMap, Execution], Any]
+"""An analysis of a line of a map, given with its place."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A row or a column of a map along a parameter.
+
+    Attributes
+    ----------
+    spec
+        The map that it is.
+    place
+        Its index in the arrays of the whole map.
+    numbers
+        (channels + 1,) the number of each of its channels on the whole map; entry 0 is 0.
+    """
+
+    spec: MapSpec
+    place: Place
+    numbers: np.ndarray
+
+    def of(self, escape_map: EscapeMap) -> EscapeMap:
+        """This line of a map, with its own numbers of channels, and with its integration state if the map has one."""
+        own = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
+        own[self.numbers] = np.arange(self.numbers.size)
+        arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
+        for name in _NUMBERED:
+            arrays[name] = renumbered(arrays[name], own)
+        x, ordinate = self.spec.pixel_centres()
+        line = replace(
+            escape_map, spec=replace(self.spec, t_max=escape_map.spec.t_max), x=x, ordinate=ordinate, trust=None, **arrays
+        )
+        if escape_map.batch is None:
+            return line
+        pixels = np.arange(escape_map.fate.size).reshape(escape_map.fate.shape)[self.place].ravel()
+        which = np.searchsorted(escape_map.continued_pixels, pixels[line.continued_pixels])
+        return replace(line, batch=escape_map.batch.take(which))
+
+
+def find_lines(spec: MapSpec) -> list[Line | None]:
+    """The lines of a map along a parameter, in rising order of it; None where the system has no potential."""
+    axis, place = spec.plane.parameter, spec.plane.parameter_axis
+    assert axis is not None
+    window, family = spec.find_window(), parameter_family(axis)
+    return [_line(spec, window, family.member, k, value) for k, value in enumerate(spec.pixel_centres()[place or 0].tolist())]
+
+
+def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k: int, value: float) -> Line | None:
+    try:
+        member = find_member(value)
+    except ManyExitsError:
+        raise
+    except ValueError:
+        return None
+    columns, rows = spec.resolution
+    edges = value - 0.5, value + 0.5
+    place: Place
+    if spec.plane.parameter_axis == 0:
+        place, size, part = np.s_[:, k : k + 1], (1, rows), Window(*edges, window.ordinate_low, window.ordinate_high)
+    else:
+        place, size, part = np.s_[k : k + 1, :], (columns, 1), Window(window.x_low, window.x_high, *edges)
+    line_spec = replace(spec, potential=member.potential, plane=spec.plane.line(value), resolution=size, window=part)
+    return Line(line_spec, place, member.numbers)
+
+
+def renumbered(codes: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+    """Codes of which the positive ones, numbers of channels, are replaced by others."""
+    changed: np.ndarray = np.where(codes > 0, numbers[np.maximum(codes, 0)], codes)
+    return changed
+
+
+class LineStack:
+    """The lines of a map while they are computed.
+
+    Parameters
+    ----------
+    spec
+        The map.
+    resume
+        An earlier map to continue from.
+    keeps_states
+        Whether the states of orbits are kept, for which large maps need too much memory.
+    """
+
+    def __init__(self, spec: MapSpec, resume: EscapeMap | None = None, *, keeps_states: bool = True) -> None:
+        self.spec, self._keeps_states = spec, keeps_states
+        self.x, self.ordinate = spec.pixel_centres()
+        self._lines = find_lines(spec)
+        self._found: dict[int, EscapeMap] = {}
+        self._stride, self._horizon = _STRIDES[0], 0.0
+        shape = self.ordinate.size, self.x.size
+        self._arrays: dict[str, np.ndarray] = {
+            name: np.full(shape, value, dtype) for name, (dtype, value) in PIXEL_ARRAYS.items()
+        }
+        for k, line in enumerate(self._lines):
+            if line is None:
+                # There is no system of this value.
+                here = (slice(None), k) if spec.plane.parameter_axis == 0 else k
+                self._arrays["fate"][here], self._arrays["started"][here] = Fate.FORBIDDEN, True
+            elif resume is not None:
+                self._put(k, line.of(resume))
+
+    @property
+    def _existing(self) -> list[tuple[int, Line]]:
+        return [(k, line) for k, line in enumerate(self._lines) if line is not None]
+
+    def run(self, execution: Execution, on_change: Callable[[bool], None]) -> None:
+        """Compute all lines; `on_change(stage_over)` is called after each."""
+        first, last = _FIRST_HORIZON * self.spec.potential.units.time, self.spec.t_max
+        is_divided = first < last and self._keeps_states and not self._found
+        for horizon in (first, last) if is_divided else (last,):
+            for stride, lines in self._stages():
+                self._advance(lines, horizon, execution, on_change)
+                if execution.is_cancelled:
+                    return
+                self._stride = min(self._stride, stride)
+                on_change(True)
+            self._horizon = horizon
+
+    def _stages(self) -> Iterator[tuple[int, list[int]]]:
+        """(stride, lines): coarse to fine, each line once."""
+        seen: set[int] = set()
+        existing = dict(self._existing)
+        for stride in _STRIDES:
+            chosen = [k for k in np.unique(representative_indices(len(self._lines), stride)).tolist() if k not in seen]
+            seen |= set(chosen)
+            yield stride, [k for k in chosen if k in existing]
+
+    def _advance(self, lines: list[int], horizon: float, execution: Execution, on_change: Callable[[bool], None]) -> None:
+        """Integrate the orbits of some lines up to a time."""
+        waiting = [k for k in lines if _continues(self._found.get(k))]
+        arguments = [(self._lines[k], horizon, self._found.get(k)) for k in waiting]
+        if horizon <= _FIRST_HORIZON * self.spec.potential.units.time:
+            running = {execution.submit(_compute_line, *each): k for k, each in zip(waiting, arguments, strict=True)}
+            self._collect(running, execution, on_change)
+            return
+        alone = replace(execution, on_progress=None)
+        with _coordinating_threads() as threads:
+            running = {threads.submit(_compute_line, *each, alone): k for k, each in zip(waiting, arguments, strict=True)}
+            self._collect(running, execution, on_change)
+
+    def _collect(self, running: dict[Future[EscapeMap], int], execution: Execution, on_change: Callable[[bool], None]) -> None:
+        """Take over lines as they are finished; those that are dropped when the computation is cancelled stay as they are."""
+        for future in as_completed(running):
+            found = execution.collect(future)
+            if found is not None:
+                self._put(running[future], found)
+                on_change(False)
+
+    def _put(self, k: int, found: EscapeMap) -> None:
+        line = self._lines[k]
+        assert line is not None
+        self._found[k] = found if self._keeps_states else replace(found, batch=None)
+        for name, array in self._arrays.items():
+            codes = getattr(found, name)
+            array[line.place] = renumbered(codes, line.numbers) if name in _NUMBERED else codes
+        if found.spec.t_max < self.spec.t_max:
+            open_ended = (found.fate == Fate.BOUNDED) & (found.certificate == Certificate.INTEGRATED)
+            for name, value in (("fate", Fate.NOT_COMPUTED), ("certificate", Certificate.NONE)):
+                array = self._arrays[name]
+                array[line.place] = np.where(open_ended, value, array[line.place])
+
+    def progress(self) -> float:
+        """Share of the work done, averaged over the lines."""
+        existing = self._existing
+        done = (found.progress * min(1.0, found.spec.t_max / self.spec.t_max) for found in self._found.values())
+        return sum(done) / len(existing) if existing else 1.0
+
+    def frame(self) -> EscapeMap:
+        """The map so far."""
+        arrays: dict[str, Any] = {name: read_only(array.copy()) for name, array in self._arrays.items()}
+        complete = bool(self._arrays["started"].all() and not np.any(self._arrays["fate"] == Fate.NOT_COMPUTED))
+        return EscapeMap(
+            spec=self.spec, x=read_only(self.x), ordinate=read_only(self.ordinate), stride=self._stride, horizon=self._horizon,
+            progress=self.progress(), complete=complete, **arrays,
+        )  # fmt: skip
+
+    def result(self) -> EscapeMap:
+        """The map so far, with the integration state for a later `resume`."""
+        frame = self.frame()
+        if not self._keeps_states:
+            return frame
+        numbers = np.arange(frame.fate.size).reshape(frame.fate.shape)
+        pixels, batches = [np.zeros(0, int)], [OrbitBatch.empty(np.zeros(0, np.int64))]
+        for k, line in self._existing:
+            found = self._found.get(k)
+            if found is not None and found.batch is not None:
+                pixels.append(numbers[line.place].ravel()[found.continued_pixels])
+                batches.append(found.batch)
+        joined = OrbitBatch(**{f.name: np.concatenate([getattr(b, f.name) for b in batches]) for f in fields(OrbitBatch)})
+        return replace(frame, batch=joined.take(np.argsort(np.concatenate(pixels))))
+
+
+def analyse_lines[Result](
+    escape_map: EscapeMap,
+    analyse: Analyse,
+    result: Callable[..., Result],
+    arrays: dict[str, np.ndarray],
+    on_frame: Callable[[Result], None] | None,
+    execution: Execution,
+) -> Result:
+    """Analyse a complete map along a parameter line by line.
+
+    Parameters
+    ----------
+    escape_map
+        The map.
+    analyse
+        Returns the analysis of a line, with its attribute `complete`.
+    result
+        Returns the analysis of a map, from its request, its arrays and whether it is complete.
+    arrays
+        (rows, columns) the values of pixels that are on no line, by the attribute of an analysis that has those of its pixels, in
+        the order in which `result` takes them; changed in place.
+    on_frame
+        Called with the analysis so far, now and then.
+    execution
+        How the computation runs.
+
+    Returns
+    -------
+    The analysis of the map, complete when all lines are.
+    """
+    lines = [line for line in find_lines(escape_map.spec) if line is not None]
+    alone, complete, published = replace(execution, on_progress=None), True, time.monotonic()
+    with _coordinating_threads() as threads:
+        running = {threads.submit(analyse, line.place, line.of(escape_map), alone): line for line in lines}
+        for done, future in enumerate(as_completed(running), start=1):
+            found = future.result()
+            for name, values in arrays.items():
+                values[running[future].place] = getattr(found, name)
+            complete = complete and found.complete
+            execution.report(partial(truediv, done, len(lines)))
+            if on_frame is not None and time.monotonic() - published > _PAUSE:
+                on_frame(result(escape_map.spec, *(read_only(values.copy()) for values in arrays.values()), False))
+                published = time.monotonic()
+    return result(escape_map.spec, *map(read_only, arrays.values()), complete)
+
+
+def _coordinating_threads() -> ThreadPoolExecutor:
+    """Threads for lines that are computed at once. They share the executor: each waits for its tiles most of the time."""
+    return ThreadPoolExecutor(2 * count_cores(), thread_name_prefix="lines")
+
+
+def _continues(earlier: EscapeMap | None) -> bool:
+    """Whether a longer time can change a line."""
+    return earlier is None or not earlier.started.all() or bool(earlier.continued_pixels.size)
+
+
+def _compute_line(
+    line: Line | None, t_max: float, earlier: EscapeMap | None, execution: Execution = SERIAL_EXECUTION
+) -> EscapeMap:
+    """A line integrated up to a time; with its integration state."""
+    assert line is not None
+    spec = replace(line.spec, t_max=t_max)
+    run = MapRun(spec.in_well_units(), None if earlier is None else earlier.in_well_units(), coarse_first=False)
+    try:
+        run.run(execution)
+    except ValueError as error:
+        held = next(axis for axis in spec.plane.axes if isinstance(axis, HeldParameter))
+        raise ValueError(f"{held.key}={held.value:.6g}, {error}") from None
+    return run.result().restored(spec)

@@ -1,0 +1,178 @@
+"""Potentials that are expressions of x and y with powers, roots, exp, log, sin and cos."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from engine.expressions.calculus import derivative, substitute
+from engine.expressions.graph import Graph, evaluate, make_graph
+from engine.expressions.nodes import Expression, Sum, X, Y, from_terms, linear_combination, number
+from engine.expressions.parity import EVEN, parity
+from engine.expressions.text import write_expression
+from engine.potentials.form import Velocity
+from engine.potentials.stationary_points import find_stationary_points
+from engine.potentials.well_units import nearest_power_of_two
+
+MOST_CONVOLUTIONS = 80
+"""Largest number of products and functions in the graph of gradient and Hessian: their cost and compile time grow with it."""
+
+_ORDERS = ((2, 0), (1, 1), (0, 2))
+# Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
+_MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
+_RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
+# A rotation that is none by 2π/n: by 1 radian.
+_ANY_ROTATION = 1.0
+
+
+@dataclass(frozen=True)
+class ExpressionForm:
+    """V as an expression; a parameter of it has its value."""
+
+    expression: Expression
+
+    def __repr__(self) -> str:
+        return f"ExpressionForm({self.text})"
+
+    @property
+    def definition(self) -> Expression:
+        """The expression."""
+        return self.expression
+
+    @property
+    def text(self) -> str:
+        """The formula."""
+        return write_expression(self.expression)
+
+    @property
+    def length(self) -> float:
+        """The distance of the nearest critical point from the origin, or 1."""
+        distance = np.hypot(*self.find_critical_points().T)
+        distance = distance[distance > 0.0]
+        return nearest_power_of_two(float(distance.min())) if distance.size else 1.0
+
+    @property
+    def mirror_in_x(self) -> bool:
+        """Whether x enters through its even powers only."""
+        return parity(self.expression, 0) == EVEN
+
+    @property
+    def mirror_in_y(self) -> bool:
+        """Whether y enters through its even powers only."""
+        return parity(self.expression, 1) == EVEN
+
+    @property
+    def has_constant(self) -> bool:
+        """Whether a number is added."""
+        return isinstance(self.expression, Sum) and self.expression.constant != 0.0
+
+    def value(self, x: Any, y: Any) -> Any:
+        """V at (x, y); arrays broadcast; NaN where it is not defined."""
+        return self._evaluate(x, y, self.expression)[0]
+
+    def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """(V_x, V_y)."""
+        along_x, along_y = self._evaluate(x, y, *self._slopes)
+        return along_x, along_y
+
+    def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
+        """(V_xx, V_xy, V_yy)."""
+        vxx, vxy, vyy = self._evaluate(x, y, *self._curvatures)
+        return vxx, vxy, vyy
+
+    @staticmethod
+    def _evaluate(x: Any, y: Any, *expressions: Expression) -> list[Any]:
+        graph, numbers = make_graph(expressions)
+        return [value[()] for value in evaluate(graph, numbers, x, y)]
+
+    @property
+    def slopes_graph(self) -> tuple[Graph, tuple[float, ...]]:
+        """The graph of V, V_x and V_y, and its numbers."""
+        return make_graph((self.expression, *self._slopes))
+
+    @cached_property
+    def _slopes(self) -> tuple[Expression, Expression]:
+        return derivative(self.expression, 0), derivative(self.expression, 1)
+
+    @cached_property
+    def _curvatures(self) -> tuple[Expression, ...]:
+        along_x, along_y = self._slopes
+        return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
+
+    def force(self, axis: int) -> ExpressionForm:
+        """−∂V/∂x or −∂V/∂y."""
+        return ExpressionForm(linear_combination([(-1.0, self._slopes[axis])]))
+
+    def find_critical_points(self) -> np.ndarray:
+        """(n, 2) those of a region, see `engine.potentials.stationary_points`."""
+        return find_stationary_points(self.value, self.gradient, self.hessian)
+
+    def are_complete(self, _points: np.ndarray, _index_sum: int) -> bool:
+        """The sum of the indices is checked where they are found."""
+        return True
+
+    def downhill(self, length: float, sign: float) -> Velocity:
+        """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`."""
+        vxx, vxy, vyy = self.hessian(0.0, 0.0)
+        steep = length * max(abs(vxx), abs(vxy), abs(vyy))
+
+        def velocity(_time: float, place: np.ndarray) -> np.ndarray:
+            slope = np.array(self.gradient(*place))
+            slower: np.ndarray = -sign * slope / (1.0 + np.hypot(*slope) / steep)
+            return slower
+
+        return velocity
+
+    def scaled(self, length: float, energy: float) -> ExpressionForm:
+        """V(length x, length y) / energy."""
+        x, y = (linear_combination([(length, axis)]) for axis in (X, Y))
+        return ExpressionForm(linear_combination([(1.0 / energy, substitute(self.expression, x, y))]))
+
+    def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> ExpressionForm:
+        """ε V with the constant, linear and quadratic terms of the expansion about the origin as the parameters want them."""
+        if omega_1 == omega_2 == epsilon == 1.0:
+            return self
+        vxx, vxy, vyy = map(float, self.hessian(0.0, 0.0))
+        along_x, along_y = map(float, self.gradient(0.0, 0.0))
+        changes = {
+            (0, 0): float(self.value(0.0, 0.0)) * (1.0 - epsilon),
+            (1, 0): along_x * (1.0 - epsilon),
+            (0, 1): along_y * (1.0 - epsilon),
+            (2, 0): 0.5 * vxx * (omega_1**2 - epsilon),
+            (1, 1): vxy * (omega_1 * omega_2 - epsilon),
+            (0, 2): 0.5 * vyy * (omega_2**2 - epsilon),
+        }
+        return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
+
+    def moved(self, x: float, y: float) -> ExpressionForm | None:
+        """V(x + x₀, y + y₀) − V(x₀, y₀)."""
+        axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
+        moved = substitute(self.expression, *axes)
+        return ExpressionForm(linear_combination([(1.0, moved), (-float(self.value(x, y)), number(1.0))]))
+
+    def count_rotations(self) -> int:
+        """From values of V on circles."""
+        if self._is_turned_by(_ANY_ROTATION):
+            return 0
+        return next(n for n in range(_MOST_ROTATIONS, 0, -1) if n == 1 or self._is_turned_by(2.0 * math.pi / n))
+
+    def _is_turned_by(self, angle: float) -> bool:
+        """Whether a rotation leaves V unchanged, as far as it is defined."""
+        one, other = (self.value(_RADII * np.cos(a), _RADII * np.sin(a)) for a in (_ANGLES, _ANGLES + angle))
+        known = np.isfinite(one).all(axis=1) & np.isfinite(other).all(axis=1)
+        error = np.abs(one[known] - other[known]).max(axis=1)
+        return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
+
+    def limits_refusal(self) -> str | None:
+        """Size, and whether V is smooth at the origin."""
+        used = make_graph((*self._slopes, *self._curvatures))[0].convolutions
+        if used > MOST_CONVOLUTIONS:
+            return f"The second derivatives of V have {used} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
+        values = [self.value(0.0, 0.0), *self.gradient(0.0, 0.0), *self.hessian(0.0, 0.0)]
+        if not np.isfinite(values).all():
+            return "V, its slope or its curvature is not defined at the origin, where the well is to be."
+        return None

@@ -1,0 +1,91 @@
+"""Tokens of formulas: numbers, names, letters for coefficients, operators and brackets."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+
+# Limits that keep exact arithmetic fast.
+_LARGEST_DECIMAL_EXPONENT = 99
+_MOST_NUMBER_BITS = 700
+
+FROM_SUPERSCRIPT = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+_FROM_SUBSCRIPT = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+_FRACTIONS = {
+    "½": (1, 2),
+    "⅓": (1, 3),
+    "⅔": (2, 3),
+    "¼": (1, 4),
+    "¾": (3, 4),
+    "⅕": (1, 5),
+    "⅙": (1, 6),
+    "⅛": (1, 8),
+    "⅒": (1, 10),
+}
+SIGNS = {"+": "+", "-": "-", "−": "-", "–": "-"}
+OPERATORS = {"*": "*", "·": "*", "×": "*", "⋅": "*", "∗": "*", "/": "/", "÷": "/", "∕": "/", "⁄": "/"}
+BASE_KINDS = ("number", "fraction", "name", "letter", "open", "function", "root")
+"""Kinds of tokens that a factor begins with."""
+_TOKEN = re.compile(
+    r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
+    r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
+)
+# Names that would otherwise be read as products of letters.
+_UNKNOWN = re.compile("tan|abs|pi")
+_PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
+ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
+"""What a formula consists of."""
+
+
+class FormulaError(ValueError):
+    """A formula that cannot be parsed; `position` is the index of the character at which parsing failed."""
+
+    def __init__(self, position: int, problem: str) -> None:
+        super().__init__(f"formula, character {position + 1}: {problem}")
+        self.position = position
+
+
+@dataclass(frozen=True)
+class Token:
+    """A piece of a formula; the digit of a letter is a plain one."""
+
+    kind: str
+    text: str
+    position: int
+
+
+def tokenize(text: str) -> list[Token]:
+    """The tokens of a text, with one of kind "end" last; FormulaError at a character that belongs to none."""
+    prefix = _PREFIX.match(text)
+    position = prefix.end() if prefix else 0
+    tokens: list[Token] = []
+    while position < len(text):
+        if text[position].isspace():
+            position += 1
+            continue
+        unknown = _UNKNOWN.match(text, position)
+        if unknown is not None:
+            raise FormulaError(position, f"{unknown.group()!r} is not understood; {ALLOWED}")
+        match = _TOKEN.match(text, position)
+        if match is None:
+            raise FormulaError(position, f"{text[position]!r} is not understood; {ALLOWED}")
+        text_of_token = match.group()
+        if match.lastgroup == "letter":
+            text_of_token = text_of_token.translate(_FROM_SUBSCRIPT)
+        tokens.append(Token(str(match.lastgroup), text_of_token, position))
+        position = match.end()
+    return [*tokens, Token("end", "", len(text))]
+
+
+def read_number(token: Token) -> Fraction:
+    """The exact value of a number or a fraction; FormulaError if it is too large."""
+    if token.kind == "fraction":
+        return Fraction(*_FRACTIONS[token.text])
+    exponent = re.search("[eE]([+-]?[0-9]+)$", token.text)
+    if exponent and (len(exponent[1]) > 4 or abs(int(exponent[1])) > _LARGEST_DECIMAL_EXPONENT):
+        raise FormulaError(token.position, f"a decimal exponent must be at most {_LARGEST_DECIMAL_EXPONENT} in magnitude")
+    value = Fraction(token.text)
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MOST_NUMBER_BITS:
+        raise FormulaError(token.position, "a number of more than 200 digits")
+    return value

@@ -1,0 +1,146 @@
+"""Critical points of an expression in a stated region: the disc of 16.2 times the distance of the nearest one from the origin.
+
+Newton's method starts on a grid that is uniform in the logarithm of the distance over 48 octaves, which shows the scale of the
+well, and then on a grid over the region. The sum of the indices must be the number of turns of the gradient along the edge of the
+region (Poincaré–Hopf theorem); if it is not, a finer grid follows. The region is smaller if V is not defined in all of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from engine.potentials.critical_points import NotIsolatedError, UndecidedError, winding_number
+
+Gradient = Callable[[Any, Any], tuple[Any, Any]]
+Value = Callable[[Any, Any], Any]
+Hessian = Callable[[Any, Any], tuple[Any, Any, Any]]
+
+MOST_POINTS = 60
+"""Largest number of critical points in the region."""
+
+# Radius of the region in units of the distance of the nearest critical point; the smaller ones where V is not defined in it, or
+# has too many points.
+_FACTORS = (16.2, 8.1, 4.1, 2.1)
+_OCTAVES, _PER_OCTAVE, _ANGLES = 24, 2, 32
+# A point this close to the origin is the origin.
+_ZERO = 2.0**-_OCTAVES
+# Points along a side of the grids over the region, and rings around the origin.
+_SIDES = (48, 160)
+_RINGS = 40
+_NEWTON_STEPS = 60
+_CONVERGED = 1e-12
+# Relative to their distance from the origin and to that of the nearest point, points closer than this are the same one.
+_SAME = 1e-8
+# Coordinates below this, in units of the distance of the nearest point, are rounding errors of zero.
+_ROUNDING = 1e-13
+# Largest ratio of the singular values of a Hessian that counts as singular.
+_SINGULAR_RATIO = 1e-6
+
+_ON_A_CURVE = "the slope vanishes along a curve"
+
+
+def find_stationary_points(value: Value, gradient: Gradient, hessian: Hessian) -> np.ndarray:
+    """(n, 2) the points with ∇V = 0 in the region, each once; the origin, if it is one, is exactly (0, 0).
+
+    Parameters
+    ----------
+    value, gradient, hessian
+        V, (V_x, V_y) and (V_xx, V_xy, V_yy) as functions of arrays x and y.
+
+    Raises
+    ------
+    NotIsolatedError
+        If the points form a curve.
+    UndecidedError
+        If there are too many points, V is not defined in the region, or the sum of the indices is wrong.
+    """
+    radii = 2.0 ** np.linspace(-_OCTAVES, _OCTAVES, 2 * _OCTAVES * _PER_OCTAVE + 1)
+    near = _newton(gradient, hessian, _rings(radii), 2.0**_OCTAVES)
+    distance = np.hypot(*near.T)
+    nearest = float(distance[distance >= _ZERO].min(initial=np.inf))
+    if nearest == np.inf:
+        return np.zeros((1, 2)) if len(near) else np.empty((0, 2))
+    problem = ""
+    for factor in _FACTORS:
+        try:
+            return _find_within(value, gradient, hessian, near, nearest, factor)
+        except UndecidedError as error:
+            problem = problem or str(error)
+    raise UndecidedError(problem)
+
+
+def _find_within(
+    value: Value, gradient: Gradient, hessian: Hessian, near: np.ndarray, nearest: float, factor: float
+) -> np.ndarray:
+    """The points within a multiple of the distance of the nearest one."""
+    radius = factor * nearest
+    region = f"within r = {radius:.6g}, {factor:g} times the distance of the nearest critical point from the origin"
+    x, y = (radius * _rings(np.linspace(0.02, 1.0, 50))).T
+    if not np.isfinite([value(x, y), *gradient(x, y)]).all():
+        raise UndecidedError(f"V is not defined everywhere {region}.")
+    for side in _SIDES:
+        axis = np.linspace(-radius, radius, side)
+        grid = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
+        rings = _rings(np.geomspace(radius / 256.0, radius, _RINGS))
+        points = _distinct(_newton(gradient, hessian, np.concatenate([near, grid, rings]), radius), nearest)
+        if len(points) > MOST_POINTS:
+            if _are_degenerate(hessian, points):
+                raise NotIsolatedError(_ON_A_CURVE)
+            raise UndecidedError(f"V has more than {MOST_POINTS} critical points {region}.")
+        if winding_number(gradient, radius) == _index_sum(hessian, points):
+            return points
+    raise UndecidedError(
+        f"Not all critical points {region} were found: the sum of their indices is wrong (Poincaré–Hopf theorem)."
+    )
+
+
+def _rings(radii: np.ndarray) -> np.ndarray:
+    """(n, 2) points on circles, not on the axes, where symmetry can lead Newton's method to the same point again."""
+    angle = 0.1 + 2.0 * np.pi / _ANGLES * np.arange(_ANGLES)
+    return np.stack([np.outer(radii, np.cos(angle)), np.outer(radii, np.sin(angle))], axis=-1).reshape(-1, 2)
+
+
+def _newton(gradient: Gradient, hessian: Hessian, points: np.ndarray, radius: float) -> np.ndarray:
+    """(n, 2) where Newton's method converges within a radius, with repetitions."""
+    roots = []
+    with np.errstate(all="ignore"):
+        for _ in range(_NEWTON_STEPS):
+            (gx, gy), (vxx, vxy, vyy) = gradient(*points.T), hessian(*points.T)
+            step = np.stack(np.broadcast_arrays(vyy * gx - vxy * gy, vxx * gy - vxy * gx), axis=-1)
+            step = step / np.broadcast_to(vxx * vyy - vxy * vxy, len(points))[:, None]
+            still = (np.broadcast_to(gx, len(points)) == 0.0) & (np.broadcast_to(gy, len(points)) == 0.0)
+            length = np.where(still, 0.0, np.hypot(*step.T))
+            distance = np.hypot(*points.T)
+            converged = length <= _CONVERGED * np.maximum(distance, _ZERO)
+            roots.append(points[converged & (distance <= radius)])
+            continues = ~converged & np.isfinite(length)
+            points = points[continues] - step[continues]
+    return np.concatenate(roots)
+
+
+def _distinct(points: np.ndarray, nearest: float) -> np.ndarray:
+    """Each point once, on the axes exactly; no more than one beyond the largest number."""
+    distance = np.hypot(*points.T)
+    kept = [np.zeros(2)] if np.any(distance < _ZERO) else []
+    left = points[distance >= _ZERO]
+    while len(left) and len(kept) <= MOST_POINTS:
+        kept.append(left[0])
+        left = left[np.hypot(*(left - left[0]).T) > _SAME * (nearest + np.hypot(*left[0]))]
+    unique = np.array(kept).reshape(-1, 2)
+    return np.where(np.abs(unique) < _ROUNDING * nearest, 0.0, unique)
+
+
+def _are_degenerate(hessian: Hessian, points: np.ndarray) -> bool:
+    """Whether most of the Hessians are singular."""
+    vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(*points.T))
+    largest, smallest = np.linalg.svd(np.array([[vxx, vxy], [vxy, vyy]]).transpose(2, 0, 1), compute_uv=False).T
+    return bool(np.mean(smallest <= _SINGULAR_RATIO * largest) > 0.5)
+
+
+def _index_sum(hessian: Hessian, points: np.ndarray) -> int:
+    """The number of minima and maxima without that of saddles."""
+    vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(*points.T))
+    return int(np.sign(vxx * vyy - vxy * vxy).sum())

@@ -1,0 +1,241 @@
+"""Axes of a slice: what changes along them."""
+
+from __future__ import annotations
+
+from collections.abc import MutableMapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Self
+
+import numpy as np
+
+from engine.potentials.potential import Potential
+from engine.potentials.system import PARAMETERS, System
+from engine.potentials.well_units import WellUnits, nearest_power_of_two
+from engine.validation import check_type, checked_number, short_repr
+
+
+class Coordinate(Enum):
+    """A coordinate of a start; the value is its name.
+
+    `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is its angle from the direction
+    away from the origin: 0 is radially outward, π/2 tangential, counterclockwise. `SPEED` is v, which only the energy decides.
+    """
+
+    X = "x"
+    Y = "y"
+    PX = "px"
+    PY = "py"
+    THETA = "theta"
+    BETA = "beta"
+    SPEED = "v"
+    H = "h"
+
+    @property
+    def key(self) -> str:
+        """The name in addresses, in files and on the command line."""
+        return self.value
+
+    @property
+    def symbol(self) -> str:
+        """The name in texts and at axes."""
+        return {"theta": "θ", "beta": "β"}.get(self.value, self.value)
+
+    @property
+    def parity(self) -> int | None:
+        """1 if x → −x leaves the coordinate unchanged, −1 if it changes its sign, None otherwise."""
+        return {"x": -1, "px": -1, "beta": -1, "theta": None, "v": 1}.get(self.value, 1)
+
+    @property
+    def is_free(self) -> bool:
+        """Whether starts can be displaced along it at constant energy."""
+        return self is not Coordinate.H
+
+    def unit(self, units: WellUnits) -> float:
+        """The unit of the coordinate in which it is a number of the size of the well."""
+        momentum = {"px": units.momentum, "py": units.momentum, "v": units.momentum}
+        return {"x": units.length, "y": units.length, **momentum, "h": units.energy}.get(self.value, 1.0)
+
+    def in_well_units(self, units: WellUnits) -> Coordinate:
+        """The axis itself: its values have units, it has none."""
+        return self
+
+    def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
+        """Give starts their coordinates (n,) on this axis."""
+        start[self] = along
+
+
+POSITIONS = (Coordinate.X, Coordinate.Y)
+MOMENTA = (Coordinate.PX, Coordinate.PY)
+ANGLES = (Coordinate.THETA, Coordinate.BETA)
+STATE = (*POSITIONS, *MOMENTA)
+
+# Values of a parameter below this, as a share of its range, are rounding errors of 0, and too small for a coefficient.
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Direction:
+    """An oblique axis: a direction in (x, y, px, py), along which starts move from the fixed values of the slice.
+
+    Parameters
+    ----------
+    key
+        Its name, an identifier such as "u".
+    x, y, px, py
+        How far a start moves along each coordinate where the axis rises by 1, finite, not all 0.
+
+    Raises
+    ------
+    ValueError
+        If the name is no identifier or that of a coordinate, or the components are not finite or all 0.
+    """
+
+    key: str
+    x: float = 0.0
+    y: float = 0.0
+    px: float = 0.0
+    py: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_type("key", self.key, str)
+        if not self.key.isidentifier() or self.key in {coordinate.value for coordinate in Coordinate}:
+            raise ValueError(f"direction {short_repr(self.key)}: its name must be an identifier and none of a coordinate")
+        for coordinate in STATE:
+            value = checked_number(f"direction {self.key}: {coordinate.value}", getattr(self, coordinate.value))
+            object.__setattr__(self, coordinate.value, value)
+        if not self.components:
+            raise ValueError(f"direction {self.key}: one of x, y, px, py must not be 0")
+
+    @property
+    def components(self) -> dict[Coordinate, float]:
+        """The components that are not 0."""
+        return {coordinate: value for coordinate in STATE if (value := getattr(self, coordinate.value))}
+
+    @property
+    def symbol(self) -> str:
+        """The name in texts and at axes."""
+        return self.key
+
+    @property
+    def parity(self) -> int | None:
+        """As `Coordinate.parity`; None if components of both kinds are not 0."""
+        parities = {coordinate.parity for coordinate in self.components}
+        return parities.pop() if len(parities) == 1 else None
+
+    @property
+    def is_free(self) -> bool:
+        """True: starts can be displaced along it at constant energy."""
+        return True
+
+    def unit(self, units: WellUnits) -> float:
+        """The unit of the axis, a power of 2, in which it is a number of the size of the well."""
+        return 1.0 / nearest_power_of_two(float(np.hypot.reduce([v / c.unit(units) for c, v in self.components.items()])))
+
+    def in_well_units(self, units: WellUnits) -> Direction:
+        """The same direction where the state and the axis are in units of the well."""
+        unit = self.unit(units)
+        return Direction(self.key, **{c.value: value * unit / c.unit(units) for c, value in self.components.items()})
+
+    def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
+        """Move starts (n,) by these distances (n,) along the axis."""
+        for coordinate, component in self.components.items():
+            start[coordinate] = start[coordinate] + component * along
+
+
+class _OfSystem:
+    """An axis along which the system differs, and starts stay as they are."""
+
+    key: str
+
+    @property
+    def symbol(self) -> str:
+        """The name in texts and at axes."""
+        return PARAMETERS.get(self.key, self.key)
+
+    @property
+    def parity(self) -> int:
+        """1: x → −x leaves parameters unchanged."""
+        return 1
+
+    @property
+    def is_free(self) -> bool:
+        """False: another value is another system."""
+        return False
+
+    def unit(self, units: WellUnits) -> float:
+        """1: parameters are given as they are."""
+        return 1.0
+
+    def in_well_units(self, units: WellUnits) -> Self:
+        """The axis itself."""
+        return self
+
+    def move(self, start: MutableMapping[Coordinate, np.ndarray], along: np.ndarray) -> None:
+        """Leave starts as they are."""
+
+
+@dataclass(frozen=True)
+class ParameterAxis(_OfSystem):
+    """A parameter of a system as an axis: each of its values has a potential of its own.
+
+    Parameters
+    ----------
+    key
+        Name of the parameter: omega_1, omega_2, epsilon, or a letter of the system's formula.
+    low, high
+        Its range in the default window, dimensionless, low < high.
+    system
+        The system; its own value of the parameter is that at which exits have their numbers.
+
+    Raises
+    ------
+    ValueError
+        If the system has no such parameter, the range is empty, or the system has no potential at one of its ends.
+    """
+
+    key: str
+    low: float
+    high: float
+    system: System
+
+    def __post_init__(self) -> None:
+        check_type("system", self.system, System)
+        known = self.system.parameter_names
+        if self.key not in known:
+            raise ValueError(f"parameter {short_repr(self.key)}: must be one of the system, {', '.join(known)}")
+        low, high = (checked_number(f"parameter {self.key}", value) for value in (self.low, self.high))
+        if not low < high:
+            raise ValueError(f"parameter {self.key} from {low:g} to {high:g}: the lower end must be below the upper end")
+        object.__setattr__(self, "low", low)
+        object.__setattr__(self, "high", high)
+        for value in (low, high):
+            self.potential(value)
+
+    def potential(self, value: float) -> Potential:
+        """The potential at a value of the parameter; ValueError if there is none."""
+        is_zero = abs(value) < _ROUNDING * (self.high - self.low)
+        return self.system.with_parameter(self.key, 0.0 if is_zero else value).potential
+
+    def at(self, value: float) -> HeldParameter:
+        """The axis of a line of starts, on which the parameter has one value."""
+        return HeldParameter(self.key, value)
+
+
+@dataclass(frozen=True)
+class HeldParameter(_OfSystem):
+    """A parameter with one value: the axis of a map that is one row or column of a map along the parameter.
+
+    Parameters
+    ----------
+    key
+        Name of the parameter.
+    value
+        Its value; the potential of the map is the one at this value.
+    """
+
+    key: str
+    value: float
+
+
+Axis = Coordinate | Direction | ParameterAxis | HeldParameter

@@ -1,0 +1,245 @@
+"""The potentials along a parameter of a system, whose exits keep their numbers.
+
+Critical points take a tenth of a second to find and to classify, so they are found at a few values of the parameter, the nodes.
+Between two nodes with the same exits, saddles are continued by Newton's method, which takes a millisecond. Where the exits of two
+neighbouring nodes cannot be matched, nodes are inserted: exits appear and disappear there.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
+from engine.slices.axes import ParameterAxis
+
+# Nodes divide the range of the axis into this many parts, and the way from the system's own value to its farther end into at most
+# so many; where exits differ, parts are halved this many times.
+_PARTS, _MOST_PARTS, _HALVINGS = 8, 24, 12
+# Potentials whose critical points are found anew, at most: some 10 s.
+_MOST_FOUND = 120
+_NEWTON_STEPS = 20
+# Newton's method has converged when its last step is this small, and it may move a saddle by this share of the distance to the
+# nearest other one.
+_CONVERGED, _LARGEST_SHARE = 1e-12, 0.5
+# Relative to the distance from the origin, saddles closer than this are the same one.
+_SAME = 1e-7
+
+
+class ManyExitsError(ValueError):
+    """The exits change too often along the parameter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """A potential of a family.
+
+    Attributes
+    ----------
+    potential
+        The potential.
+    numbers
+        (channels + 1,) int8: the number that each of its channels has in the family; entry 0 is 0.
+    """
+
+    potential: Potential
+    numbers: np.ndarray
+
+
+class ParameterFamily:
+    """The potentials along one axis; made once for each axis, see `parameter_family`.
+
+    Channels have the numbers that they have at the system's own value of the parameter. Those that only exist elsewhere follow,
+    in the order in which they appear, first towards higher values.
+    """
+
+    def __init__(self, axis: ParameterAxis) -> None:
+        self._axis, self._lineage = axis, repr(axis)
+        self._own = axis.system.value_of(axis.key)
+        self._reach = max(abs(axis.low - self._own), abs(axis.high - self._own))
+        self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
+        self._found = 0
+        # Potentials within parts whose ends have different exits.
+        self._others: dict[float, Member] = {}
+        self._nodes: dict[float, Member] = {}
+        self._matched: dict[tuple[float, float], list[int] | None] = {}
+        self._lock = threading.Lock()
+        first = axis.potential(self._own)
+        self._nodes[self._own] = Member(first, read_only(np.arange(first.channels + 1, dtype=np.int8)))
+        self.channels = first.channels
+        """Number of channels of all potentials of the family that have been met."""
+        self._extend_to(axis.high)
+        self._extend_to(axis.low)
+
+    def member(self, value: float) -> Member:
+        """The potential at a value of the parameter.
+
+        Raises
+        ------
+        ManyExitsError
+            If the exits change too often on the way to it.
+        ValueError
+            If the system has no potential there.
+        """
+        with self._lock:
+            return self._member(value)
+
+    def _member(self, value: float) -> Member:
+        self._extend_to(value)
+        for known in (self._nodes, self._others):
+            if value in known:
+                return known[value]
+        values = sorted(self._nodes)
+        above = next(place for place, node in enumerate(values) if node > value)
+        low, high = values[above - 1], values[above]
+        between = self._between(value, low, high)
+        if between is None:
+            between = self._others[value] = self._linked(value, min(low, high, key=lambda node: (abs(node - value), node)))
+        return between
+
+    def _extend_to(self, value: float) -> None:
+        """Add nodes, away from the system's own value, until they enclose a value."""
+        sign = math.copysign(1.0, value - self._own)
+        while True:
+            ends = sorted(self._nodes)
+            end = ends[-1] if sign > 0 else ends[0]
+            if (value - end) * sign <= 0.0:
+                return
+            self._connect(end, self._node_after(end, value, sign))
+
+    def _node_after(self, end: float, value: float, sign: float) -> float:
+        """The node after the last one: in the range at multiples of the step, beyond it at twice the distance.
+
+        Where the system ends before it, the value to reach.
+        """
+        distance = abs(end - self._own)
+        further = self._step * (math.floor(distance / self._step * (1.0 + _CONVERGED)) + 1)
+        node = self._own + sign * (further if distance < self._reach else 2.0 * distance)
+        try:
+            self._axis.potential(node)
+        except ValueError:
+            return value
+        return node
+
+    def _connect(self, known: float, new: float) -> None:
+        """Add a node, and others before it where the exits differ."""
+        potential = self._axis.potential(new)
+        for _ in range(_HALVINGS):
+            if _match(self._nodes[known].potential, potential) is not None:
+                break
+            middle = 0.5 * (known + new)
+            if _match(self._nodes[known].potential, self._axis.potential(middle)) is None:
+                new, potential = middle, self._axis.potential(middle)
+            else:
+                self._nodes[middle] = self._linked(middle, known)
+                known = middle
+        self._nodes[new] = self._linked(new, known)
+
+    def _linked(self, value: float, node: float) -> Member:
+        """The potential at a value, found anew, with the numbers that its exits have at a node, and new ones for others."""
+        self._found += 1
+        if self._found > _MOST_FOUND:
+            raise ManyExitsError(
+                f"parameter {self._axis.key}: its exits change too often up to {value:.6g}; choose a smaller range"
+            )
+        potential, neighbour = self._axis.potential(value), self._nodes[node]
+        numbers = np.zeros(potential.channels + 1, np.int8)
+        for channel, place in enumerate(_continue(potential, neighbour.potential.saddles), start=1):
+            k = _nearest(potential.saddles, place)
+            if k is not None and not numbers[k + 1]:
+                numbers[k + 1] = neighbour.numbers[channel]
+        new = np.flatnonzero(numbers[1:] == 0) + 1
+        numbers[new] = self.channels + 1 + np.arange(new.size)
+        self.channels += new.size
+        return Member(potential, read_only(numbers))
+
+    def _matches(self, low: float, high: float) -> list[int] | None:
+        """`_match` of two nodes."""
+        if (low, high) not in self._matched:
+            self._matched[low, high] = _match(self._nodes[low].potential, self._nodes[high].potential)
+        return self._matched[low, high]
+
+    def _between(self, value: float, low: float, high: float) -> Member | None:
+        """The potential between two nodes with the same exits, whose saddles are continued; None if they differ."""
+        first, last = self._nodes[low], self._nodes[high]
+        matched = self._matches(low, high)
+        share = (value - low) / (high - low)
+        if matched is None or len(first.potential.channel_mergers) != len(last.potential.channel_mergers):
+            return None
+        order = np.array(matched, int)
+        plain = self._axis.potential(value)
+        saddles = _continue(plain, (1.0 - share) * first.potential.saddles + share * last.potential.saddles[order])
+        maxima = []
+        for merger in first.potential.channel_mergers:
+            around = {int(order[k - 1]) + 1 for k in merger.channels}
+            other = next((each for each in last.potential.channel_mergers if set(each.channels) == around), None)
+            if other is None:
+                return None
+            guess = (1.0 - share) * np.array([[merger.x, merger.y]]) + share * np.array([[other.x, other.y]])
+            maxima.append((_continue(plain, guess)[0], tuple(k - 1 for k in merger.channels)))
+        if not (np.isfinite(saddles).all() and all(np.isfinite(place).all() for place, _ in maxima)):
+            return None
+        potential = plain.continued(self._lineage, saddles, maxima)
+        ordered = [_nearest(saddles, place) for place in potential.saddles]
+        if None in ordered or len(set(ordered)) < len(saddles):
+            return None
+        numbers = np.array([0, *(first.numbers[k + 1] for k in ordered if k is not None)], np.int8)
+        return Member(potential, read_only(numbers))
+
+
+@functools.lru_cache(maxsize=256)
+def parameter_family(axis: ParameterAxis) -> ParameterFamily:
+    """The family of an axis; takes up to a second the first time, and less when its nodes are stored on disk."""
+    return ParameterFamily(axis)
+
+
+def _match(first: Potential, last: Potential) -> list[int] | None:
+    """For each exit saddle of the first potential, the index of the one in the last to which it leads; None if not one to one."""
+    if first.channels != last.channels:
+        return None
+    found = [_nearest(last.saddles, place) for place in _continue(last, first.saddles)]
+    matched = [k for k in found if k is not None]
+    return matched if len(set(matched)) == first.channels else None
+
+
+def _continue(potential: Potential, points: np.ndarray) -> np.ndarray:
+    """(n, 2) the critical points of a potential near those of another one, by Newton's method; NaN where there is none."""
+    start = points = np.array(points)
+    if not len(points):
+        return points
+    with np.errstate(all="ignore"):
+        step = np.full_like(points, np.inf)
+        for _ in range(_NEWTON_STEPS):
+            if not np.any(np.hypot(*step.T) > _CONVERGED * np.hypot(*points.T)):
+                break
+            (gx, gy), (vxx, vxy, vyy) = potential.gradient(*points.T), potential.hessian(*points.T)
+            step = np.column_stack([gx * vyy - gy * vxy, gy * vxx - gx * vxy]) / (vxx * vyy - vxy * vxy)[:, None]
+            points = points - step
+        near = np.hypot(*step.T) <= _CONVERGED * np.hypot(*points.T)
+        moved = np.hypot(*(points - start).T) <= _LARGEST_SHARE * _separation(start)
+    result: np.ndarray = np.where((near & moved)[:, None], points, np.nan)
+    return result
+
+
+def _separation(points: np.ndarray) -> np.ndarray:
+    """(n,) the distance of each point to the nearest other one or to the origin."""
+    others = np.concatenate([points, np.zeros((1, 2))])
+    distances = np.hypot(*np.moveaxis(points[:, None] - others, -1, 0))
+    distances[np.arange(len(points)), np.arange(len(points))] = np.inf
+    nearest: np.ndarray = distances.min(axis=1)
+    return nearest
+
+
+def _nearest(points: Sequence[np.ndarray] | np.ndarray, place: np.ndarray) -> int | None:
+    """The index of the point at a place; None if there is none."""
+    if not len(points) or not np.isfinite(place).all():
+        return None
+    distances = np.hypot(*(np.asarray(points) - place).T)
+    k = int(np.argmin(distances))
+    return k if distances[k] <= _SAME * np.hypot(*place) else None

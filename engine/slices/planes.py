@@ -1,0 +1,90 @@
+"""Named slices."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from engine.potentials.potential import Potential
+from engine.slices.axes import Coordinate
+from engine.slices.slice import Slice
+from engine.validation import checked_array, checks_types, short_repr
+
+
+class Plane(Slice, Enum):
+    """The named slices. Coordinates that are not axes are 0, and the momentum that the energy decides is positive.
+
+    The first three are those of Zotos (2014), the fourth is the section of Hénon & Heiles (1964), Astron. J. 69, 73, and the last
+    one, of orbits launched at right angles to the radius, is that of Aguirre, Vallejo & Sanjuán (2001), Phys. Rev. E 64, 066208.
+    """
+
+    X_Y = Coordinate.X, Coordinate.Y
+    X_PX = Coordinate.X, Coordinate.PX
+    X_H = Coordinate.X, Coordinate.H
+    Y_PY = Coordinate.Y, Coordinate.PY
+    TANGENTIAL = Coordinate.X, Coordinate.Y, Coordinate.SPEED, 1, ((Coordinate.BETA, 0.5 * np.pi),)
+
+    @property
+    def key(self) -> str:
+        """The name in addresses, in file names and on the command line."""
+        return self.name.lower()
+
+
+SPACE = Plane.X_Y
+"""The plane of the positions, in which V, paths and exits are drawn."""
+
+
+def checked_slice(value: Any) -> Slice:
+    """A slice, given as one or by the title or the key of a named one: "(x, px)" or "x_px"."""
+    if isinstance(value, Slice):
+        return next((plane for plane in Plane if _fields(plane) == _fields(value)), value)
+    for plane in Plane if isinstance(value, str) else ():
+        if value in (plane.title, plane.key):
+            return plane
+    raise ValueError(f"plane={short_repr(value)}: must be a Slice or one of {', '.join(plane.title for plane in Plane)}")
+
+
+def _fields(chosen: Slice) -> tuple[Any, ...]:
+    return chosen.abscissa, chosen.ordinate, chosen.solved, chosen.sign, chosen.fixed
+
+
+@checks_types(potential=Potential)
+def start_states(
+    potential: Potential, plane: Slice, energy: float | np.ndarray, x: float | np.ndarray, ordinate: float | np.ndarray
+) -> np.ndarray:
+    """The initial conditions of points of a slice.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    plane
+        The slice, such as a `Plane`.
+    energy
+        h, a number or (n,); ignored on a slice with an axis h.
+    x, ordinate
+        Coordinates on the slice, (n,) or one number each.
+
+    Returns
+    -------
+    (n, 4), n = 1 for numbers: x, y, px, py; the momentum that the energy decides is NaN where the start is forbidden.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is of a wrong type, or the coordinates differ in shape.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from escape_explorer import CASES, Plane, start_states
+    >>> start_states(CASES["III"], Plane.X_PX, 0.45, np.array([0.0, 0.9]), np.array([0.3, 0.5])).round(4)
+    array([[0. , 0. , 0.3, 0.9],
+           [0.9, 0. , 0.5, nan]])
+    """
+    points = {"x": checked_array("x", x), "ordinate": checked_array("ordinate", ordinate)}
+    if points["x"].shape != points["ordinate"].shape:
+        raise ValueError(f"ordinate of shape {points['ordinate'].shape}: must be shaped like x, {points['x'].shape}")
+    return checked_slice(plane).states(potential, checked_array("energy", energy)[()], points["x"][()], points["ordinate"][()])

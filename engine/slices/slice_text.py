@@ -1,0 +1,120 @@
+"""Slices as two texts, for addresses and the command line: axes "x,epsilon=0.5:2" and what is held, "y=0.1,py=-"."""
+
+from __future__ import annotations
+
+from engine.potentials.formula_parser import LARGEST_VALUE
+from engine.potentials.potential import PARAMETER_RANGES
+from engine.potentials.system import PARAMETERS, System
+from engine.slices.axes import STATE, Axis, Coordinate, Direction, ParameterAxis
+from engine.slices.planes import Plane, checked_slice
+from engine.slices.slice import Slice
+from engine.validation import short_repr
+
+AXIS_NAMES = tuple(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
+"""Names of the coordinates that can be axes."""
+
+_COORDINATES = {coordinate.key: coordinate for coordinate in Coordinate}
+_ALIASES = {
+    **{coordinate.symbol: coordinate.key for coordinate in Coordinate},
+    **{symbol: key for key, symbol in PARAMETERS.items()},
+    "eps": "epsilon",
+}
+_SIGNS = {"+": 1, "-": -1}
+_RANGE, _COMPONENTS = 2, len(STATE)
+
+
+def write_slice(chosen: Slice) -> tuple[str, str]:
+    """The texts of a slice at full precision; `read_slice` makes it again.
+
+    Returns
+    -------
+    The axes, or the key of a named slice, and what is held; the second text is empty if all of it is as by default.
+    """
+    if isinstance(chosen, Plane):
+        return chosen.key, ""
+    held = [f"{coordinate.key}={value!r}" for coordinate, value in chosen.fixed]
+    if chosen != Slice(chosen.abscissa, chosen.ordinate, fixed=chosen.fixed):
+        held.append(f"{chosen.decided.key}={'+' if chosen.sign > 0 else '-'}")
+    return ",".join(map(_write_axis, chosen.axes)), ",".join(held)
+
+
+def read_slice(axes: str, held: str, system: System) -> Slice:
+    """The slice of two texts, whose parameters are those of a system.
+
+    Parameters
+    ----------
+    axes
+        The key of a named slice, "x_px", or abscissa and ordinate, "x,theta": x, y, px, py, theta, beta, h, a parameter of the
+        system with its range, "epsilon=0.5:2", or a direction with its components along x, y, px and py, "u=1:0.3:0:0".
+    held
+        Values of other coordinates, "y=0.1,px=0", 0 for those left out; "py=-" if the energy decides py, with a negative sign.
+    system
+        The system of the picture.
+
+    Raises
+    ------
+    ValueError
+        Naming the part, its value and what is legal.
+    """
+    if axes in {plane.key for plane in Plane} and not held:
+        return checked_slice(axes)
+    names = axes.split(",")
+    if len(names) != len(("abscissa", "ordinate")):
+        keys = ", ".join(plane.key for plane in Plane)
+        raise ValueError(f"axes={short_repr(axes)}: must be one of {keys}, or two axes such as x,py")
+    abscissa, ordinate = (_read_axis(name, system) for name in names)
+    fixed: list[tuple[Coordinate, float]] = []
+    solved, sign = None, 1
+    for part in held.split(",") if held else ():
+        name, _, value = part.partition("=")
+        coordinate = _COORDINATES.get(_known(name))
+        if coordinate is None:
+            raise ValueError(f"fix={short_repr(part)}: must be one of {', '.join(_COORDINATES)} with a number, such as y=0.1")
+        if value in _SIGNS:
+            solved, sign = coordinate, _SIGNS[value]
+        else:
+            fixed.append((coordinate, _number("fix", part, value)))
+    return checked_slice(Slice(abscissa, ordinate, solved, sign, tuple(fixed)))
+
+
+def default_range(system: System, name: str) -> tuple[float, float]:
+    """A legal range of a parameter about its value in a system: from half of it to twice as much, or from −1 to 1 about 0."""
+    value = system.value_of(name)
+    low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
+    lowest, highest = PARAMETER_RANGES.get(name, (-LARGEST_VALUE, LARGEST_VALUE))
+    return max(low, lowest), min(high, highest)
+
+
+def _write_axis(axis: Axis) -> str:
+    if isinstance(axis, ParameterAxis):
+        return f"{axis.key}={axis.low!r}:{axis.high!r}"
+    if isinstance(axis, Direction):
+        return f"{axis.key}={':'.join(repr(getattr(axis, coordinate.key)) for coordinate in STATE)}"
+    return axis.key
+
+
+def _read_axis(text: str, system: System) -> Axis:
+    name, _, numbers = text.partition("=")
+    key = _known(name)
+    if key in AXIS_NAMES and not numbers:
+        return _COORDINATES[key]
+    values = [_number("axes", text, number) for number in numbers.split(":")] if numbers else []
+    if key in system.parameter_names and len(values) in (0, _RANGE):
+        low, high = values or default_range(system, key)
+        return ParameterAxis(key, low, high, system)
+    if len(values) == _COMPONENTS:
+        return Direction(key, *values)
+    legal = ", ".join([*AXIS_NAMES, *system.parameter_names])
+    raise ValueError(f"axes={short_repr(text)}: must be one of {legal}, or a name with a range or with four components")
+
+
+def _known(name: str) -> str:
+    stripped = name.strip()
+    return _ALIASES.get(stripped, stripped)
+
+
+def _number(part: str, text: str, number: str) -> float:
+    try:
+        return float(number)
+    except ValueError:
+        raise ValueError(f"{part}={short_repr(text)}: {short_repr(number)} must be a number") from None

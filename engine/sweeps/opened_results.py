@@ -1,0 +1,119 @@
+"""Results from files: NetCDF files and Zarr stores."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from engine.dynamics.classification import Outcomes
+from engine.maps.origin_fates import OriginFateMap
+from engine.maps.regularity import RegularityMap
+from engine.maps.result import EscapeMap
+from engine.maps.stored_maps import read_map, read_potential, read_spec
+from engine.maps.trust import TrustMap
+from engine.measures.basin_entropy import BasinEntropy
+from engine.measures.uncertainty_exponent import UncertaintyExponent
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.sweeps.zarr_store import DONE
+from engine.trajectories.chaos_indicators import BirkhoffDigits
+from engine.trajectories.nearest_divergent_start import DivergentStart
+from engine.trajectories.separation import Separation
+from engine.trajectories.trajectory import Orbit
+from engine.validation import checks_types
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_KINDS: dict[str, Any] = {
+    kind.__name__: kind
+    for kind in (
+        EscapeMap, RegularityMap, TrustMap, OriginFateMap, Orbit, Outcomes, Separation, BirkhoffDigits, DivergentStart,
+        BasinEntropy, UncertaintyExponent,
+    )
+}  # fmt: skip
+_ZARR = "zarr.json"
+
+
+@checks_types(path=(str, os.PathLike))
+def open_result(path: str | os.PathLike[str]) -> Any:
+    """A result from a file.
+
+    Parameters
+    ----------
+    path
+        A NetCDF file, or the folder of a Zarr store, to which ``result.to_xarray()`` was written, or the store of a sweep.
+
+    Returns
+    -------
+    An equal result: an `EscapeMap`, `RegularityMap`, `TrustMap`, `OriginFateMap`, `Orbit`, `Outcomes`, `Separation`,
+    `BirkhoffDigits`, `DivergentStart`, `BasinEntropy` or `UncertaintyExponent`. A map has no integration state and cannot be
+    resumed. Of a sweep the dataset of `run_sweep`, read on access; measures and analyses take one of its maps,
+    ``dataset.sel(h=0.3)``.
+
+    Raises
+    ------
+    OSError
+        If there is no such file, or it cannot be read.
+    ValueError
+        If the file holds no result, or one of another kind, which xarray can open.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, open_result
+    >>> escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.3, (20, 20), t_max=100.0))
+    >>> with TemporaryDirectory() as folder:
+    ...     escapes.to_xarray().to_netcdf(f"{folder}/map.nc", engine="h5netcdf")
+    ...     opened = open_result(f"{folder}/map.nc")
+    >>> opened.spec == escapes.spec, bool((opened.fate == escapes.fate).all())
+    (True, True)
+    """
+    # Slow to import, and seldom used.
+    import xarray as xr
+
+    if (Path(path) / _ZARR).exists():
+        stored: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
+        if "result" not in stored.attrs and DONE in stored:
+            return stored.drop_vars(DONE)
+        return _read(path, stored)
+    with xr.open_dataset(path, engine="h5netcdf") as opened:
+        return _read(path, opened)
+
+
+def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Result:
+    kind = _KINDS.get(str(dataset.attrs.get("result")))
+    if kind is None:
+        held = dataset.attrs.get("result", "no result")
+        raise ValueError(
+            f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}, or a sweep. xarray opens it"
+        )
+    if kind is EscapeMap:
+        return read_map(dataset)
+    values = {each.name: _value(kind, each.name, dataset) for each in fields(kind)}
+    found: Result = kind(**{name: value for name, value in values.items() if value is not None})
+    return found
+
+
+def _value(kind: Any, name: str, dataset: xr.Dataset) -> Any:
+    """The value of a field; None for the default one."""
+    if name == "spec":
+        return read_spec(dataset)
+    if name == "potential":
+        return read_potential(dataset.attrs) if "terms" in dataset.attrs else None
+    if name in ("x", "ordinate") and kind is OriginFateMap:
+        return read_only(read_spec(dataset).pixel_centres()[name == "ordinate"])
+    if name in dataset.variables and dataset[name].ndim:
+        return read_only(np.array(dataset[name].values))
+    found = dataset[name].values if name in dataset.variables else dataset.attrs.get(name)
+    if found is None:
+        return None
+    number = np.asarray(found).item()
+    if name == "complete":
+        return bool(number)
+    # Fates are numbers, as some of them are channels.
+    return kind.codes[name](number) if name == "certificate" else number

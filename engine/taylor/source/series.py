@@ -1,0 +1,77 @@
+"""Series in time as lists of results of a straight-line program, their order, and their products."""
+
+from __future__ import annotations
+
+import functools
+import operator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, Protocol
+
+from engine.taylor.source.straight_line import StraightLine, Value
+
+ORDER = 19
+"""Order of the series; with `TOLERANCE` the fastest tried that keeps the energy error well below 1e-11 over 1e5 time units."""
+
+
+Series = Sequence[Value]
+
+Hessian = Mapping[tuple[int, int], tuple[Callable[[int], Value], bool]]
+"""{(0, 0), (0, 1), (1, 1): (coefficient k of the series of that second derivative of −V, whether it is not zero everywhere)}; the
+coefficients are to be asked for in turn."""
+
+
+PointFunctions = Mapping[str, Callable[[StraightLine], Mapping[str, Value]]]
+"""{name of a function: what appends it to a program with the inputs x and y, and returns its results by their names}."""
+
+
+class Structure(Hashable, Protocol):
+    """What the generated code of a potential depends on; hashable. For polynomials and for expressions there is one each."""
+
+    @property
+    def channels(self) -> int:
+        """How many gates ``step`` tests."""
+
+    @property
+    def can_hide(self) -> bool:
+        """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show."""
+
+    @property
+    def caution(self) -> float:
+        """By what the last coefficients are multiplied for the choice of the step size; at least 1."""
+
+    def orbit(self, program: StraightLine) -> tuple[Series, Series]:
+        """The series of x and y to `ORDER` from the inputs x0, x1, y0 and y1."""
+
+    def hessian(self, program: StraightLine) -> Hessian:
+        """The second derivatives of −V along the orbit from these inputs."""
+
+    def point_functions(self) -> PointFunctions:
+        """Functions of one point."""
+
+    def tabulate(self, definition: Any, entries: Sequence[Any]) -> list[float]:
+        """The values of the entries of the table for a potential of this structure."""
+
+
+def total(program: StraightLine, parts: Iterator[Value]) -> Value:
+    """The sum from left to right, each part computed just before it is added; 0.0 for no parts."""
+    first = next(parts, None)
+    return program.constant(0.0) if first is None else functools.reduce(operator.add, parts, first)
+
+
+def sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:
+    """a·b + c·d + …, nested so that each addition contracts into a multiply-add."""
+    return functools.reduce(operator.add, (left * right for left, right in pairs))
+
+
+def cauchy(left: Series, right: Series, k: int) -> Value:
+    """Coefficient k of the product of two series, or of half a square; the newest last, since the rest can start earlier."""
+    if left is right:
+        return sum_of_products(half_square(left, k))
+    return sum_of_products((left[j], right[k - j]) for j in sorted(range(k + 1), key=lambda j: max(j, k - j)))
+
+
+def half_square(series: Series, k: int) -> Iterator[tuple[Value, Value]]:
+    """The factors of the products whose sum is coefficient k of half the square of a series."""
+    if k % 2 == 0:
+        yield 0.5 * series[k // 2], series[k // 2]
+    yield from ((series[j], series[k - j]) for j in reversed(range((k + 1) // 2)))

@@ -1,0 +1,167 @@
+"""Flux through the exits of a well, and the phase-space volume inside: the decay rate of a well in which motion is mixed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from engine.exits.interior import find_outside_channels
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.potentials.potential import Potential
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.slices.default_window import default_window
+from engine.slices.planes import SPACE
+from engine.validation import checked_number, checks_types
+
+# Rows and columns of the points between which the edge of the interior is searched, and halvings of the distance to it. Of each
+# three rows the middle one serves the estimate of the error.
+_ROWS, _COLUMNS = 513, 256
+_HALVINGS = 40
+
+
+@dataclass(frozen=True, eq=False)
+class EscapeFlux(Result):
+    """Flux through each open exit at one energy, and the volume of the energy surface inside; dimensionless, arrays read-only.
+
+    Attributes
+    ----------
+    energy
+        h.
+    channels
+        (n,) numbers of the open exits.
+    flux
+        (n,) phase-space volume that leaves through each exit per unit of time, in the measure δ(H − h) dx dy dpx dpy.
+    area, area_error
+        Area of the interior in (x, y), and its estimated error.
+    """
+
+    energy: float
+    channels: np.ndarray
+    flux: np.ndarray
+    area: float
+    area_error: float = field(repr=False)
+
+    def numbers(self) -> dict[str, Any]:
+        """The energy, the volume, the total flux, and the decay rate and mean passage time of mixed motion."""
+        return {
+            "energy": self.energy,
+            "volume": self.volume,
+            "total_flux": self.total,
+            "decay_rate": self.decay_rate,
+            "mean_passage_time": self.mean_passage_time,
+        }
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Channel, flux and share of the flux of each open exit."""
+        return {"channel": self.channels, "flux": self.flux, "share": self.shares}
+
+    @property
+    def volume(self) -> float:
+        """Volume ∫ δ(H − h) dx dy dpx dpy of the energy surface inside: 2π times the area."""
+        return 2.0 * math.pi * self.area
+
+    @property
+    def total(self) -> float:
+        """Flux through all exits together."""
+        return float(self.flux.sum())
+
+    @property
+    def shares(self) -> np.ndarray:
+        """(n,) shares of the exits in the flux: of escapes if orbits forget their start before they leave."""
+        return self.flux / self.total if self.flux.size else self.flux
+
+    @property
+    def decay_rate(self) -> float:
+        """Flux over volume: the initial decay rate of starts spread evenly over the energy surface."""
+        return self.total / self.volume
+
+    @property
+    def mean_passage_time(self) -> float:
+        """Volume over flux: the mean time from entrance to exit of all orbits that enter; infinite if all exits are closed.
+
+        It is exact where orbits that never leave take no volume; otherwise those count as volume too.
+        """
+        return self.volume / self.total if self.flux.size else math.inf
+
+    def describe(self) -> str:
+        """The decay rate and the mean passage time in one sentence."""
+        if not self.flux.size:
+            return f"All exits are closed at h = {self.energy:.6g}."
+        return (
+            f"Flux {self.total:.4g} over volume {self.volume:.4g}: decay rate {self.decay_rate:.4g}, mean passage time "
+            f"{self.mean_passage_time:.4g}, if motion inside is mixed."
+        )
+
+
+@checks_types(potential=Potential)
+def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
+    """Compute the flux through all open exits and the volume of the energy surface inside them.
+
+    The flux through an exit is the action ∮ p·dq of its Lyapunov orbit (Waalkens, Burbanks & Wiggins 2005, J. Phys. A 38, L759;
+    for two degrees of freedom MacKay 1990, Phys. Lett. A 145, 425): the smallest one of all curves that close the exit. With two
+    degrees of freedom the momenta of each point inside have the volume 2π.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    energy
+        h, finite, dimensionless.
+
+    Returns
+    -------
+    The `EscapeFlux`; without exits at or below the escape energy.
+
+    Raises
+    ------
+    ValueError
+        If `energy` is not finite or below the well, or exits are not defined at it; see `find_lyapunov_orbits`.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, compute_flux
+    >>> flux = compute_flux(CASES["III"], 0.45)
+    >>> flux.flux.round(4).tolist(), round(flux.decay_rate, 4)
+    ([0.893, 0.893, 0.893, 0.893], 0.167)
+    """
+    h = checked_number("energy", energy)
+    if h <= float(potential.value(0.0, 0.0)):
+        raise ValueError(f"energy={h}: must be above the bottom of the well, {float(potential.value(0.0, 0.0)):.6g}")
+    orbits = find_lyapunov_orbits(potential, h)
+    # The mean over evenly spaced times of a period converges exponentially with their number.
+    actions = [orbit.period * float(np.mean(2.0 * (h - potential.value(orbit.x[:-1], orbit.y[:-1])))) for orbit in orbits]
+    area, error = _interior_area(potential, h)
+    channels = np.array([orbit.channel for orbit in orbits], np.int64)
+    return EscapeFlux(h, read_only(channels), read_only(np.array(actions)), area, error)
+
+
+def _interior_area(potential: Potential, h: float) -> tuple[float, float]:
+    """Area of the interior and its error, from the lengths of its parts on evenly spaced lines."""
+    box = default_window(potential, SPACE, h)
+    height = (box.ordinate_high - box.ordinate_low) / _ROWS
+    y = box.ordinate_low + height * (np.arange(_ROWS) + 0.5)
+    x = np.linspace(box.x_low, box.x_high, _COLUMNS)
+    inside = _is_inside(potential, h, *np.meshgrid(x, y))
+    lengths = np.zeros(_ROWS)
+    row, column = np.nonzero(inside[:, 1:] != inside[:, :-1])
+    within = np.where(inside[row, column], x[column], x[column + 1])
+    beyond = np.where(inside[row, column], x[column + 1], x[column])
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (within + beyond)
+        is_within = _is_inside(potential, h, middle, y[row])
+        within, beyond = np.where(is_within, middle, within), np.where(is_within, beyond, middle)
+    np.add.at(lengths, row, np.where(inside[row, column], within, -within))
+    area = float(lengths.sum()) * height
+    # The lengths end in square roots, so that a third of the rows has 3^1.5 times the error.
+    return area, abs(area - 3.0 * height * float(lengths[1::3].sum())) / (3.0**1.5 - 1.0)
+
+
+def _is_inside(potential: Potential, h: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether points are in the well, below the energy and inside all exits."""
+    inside: np.ndarray = (potential.value(x, y) <= h) & (find_outside_channels(potential, h, x, y) == 0)
+    return inside

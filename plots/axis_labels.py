@@ -1,0 +1,66 @@
+"""Ticks of axes, as distances from one of them where plain numbers would be too long."""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from typing import NamedTuple
+
+_FEWEST_TICKS = 3
+FINEST_PLAIN_STEP = -4
+"""Smaller tick steps than 10 to this power are labelled as distances from the middle tick: plain labels would overlap."""
+
+
+class Axis(NamedTuple):
+    """Name of an axis, and for each tick its position, 0 to 1 along the axis, and its label."""
+
+    name: str
+    ticks: list[tuple[float, str]]
+
+
+class Offset(NamedTuple):
+    """A number near the middle of an axis and a power of ten: labels are distances from the number in units of the power."""
+
+    base: Decimal
+    exponent: int
+
+    def describe(self, name: str) -> str:
+        """The labels as an expression in the variable of the axis."""
+        distance = f"({name} {'−' if self.base > 0 else '+'} {abs(self.base):f})" if self.base else name
+        return f"{distance} / 1e{self.exponent}"
+
+
+def find_offset(low: float, high: float, finest: int = FINEST_PLAIN_STEP) -> Offset | None:
+    """The offset of the labels of an axis between two numbers; None if its ticks are at least 10 to the power `finest` apart."""
+    step = _step(low, high)
+    exponent = step.adjusted()
+    if exponent >= finest:
+        return None
+    numbers = _multiples(low, high, step)
+    return Offset(numbers[len(numbers) // 2], exponent)
+
+
+def label_axis(name: str, low: float, high: float) -> Axis:
+    """Ticks at multiples of 1, 2 or 5 · 10^k between two numbers, three to eight of them, with exact labels.
+
+    If there is an offset of `find_offset`, the labels are distances from it, and the axis name says so.
+    """
+    values, offset = _multiples(low, high, _step(low, high)), find_offset(low, high)
+    if offset is None:
+        labels = [f"{value:f}" for value in values]
+    else:
+        labels = [f"{(value - offset.base).scaleb(-offset.exponent):f}" for value in values]
+        name = offset.describe(name)
+    positions = [float(value - Decimal(low)) / (high - low) for value in values]
+    return Axis(name, [(position, label.replace("-", "−")) for position, label in zip(positions, labels, strict=True)])
+
+
+def _step(low: float, high: float) -> Decimal:
+    """Distance of the ticks."""
+    most = (high - low) / _FEWEST_TICKS
+    exponent = math.floor(math.log10(most))
+    return Decimal(next((m for m in (5, 2) if m * 10.0**exponent <= most), 1)).scaleb(exponent)
+
+
+def _multiples(low: float, high: float, step: Decimal) -> list[Decimal]:
+    return [number * step for number in range(math.ceil(Decimal(low) / step), math.floor(Decimal(high) / step) + 1)]

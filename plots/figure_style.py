@@ -1,0 +1,90 @@
+"""Size, letters and formats of figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+LEGAL = {"width": (4.0, 100.0, "cm"), "dpi": (50.0, 1200.0, "pixels per inch"), "font_size": (4.0, 30.0, "points")}
+"""Smallest and largest value of each number of a style, and its unit."""
+
+CM_PER_INCH = 2.54
+POINTS_PER_INCH = 72.0
+
+
+class FigureFormat(StrEnum):
+    """Format of a figure, by file ending."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+
+
+@dataclass(frozen=True)
+class FigureStyle:
+    """How a figure is drawn; by default for the full width of a page of a paper.
+
+    Attributes
+    ----------
+    width
+        Width of the whole figure in cm, 4 to 100.
+    dpi
+        Pixels per inch of PNG files, 50 to 1200.
+    font_size
+        Of the names of axes, in points, 4 to 30; all other letters are in proportion.
+    titles
+        Whether panels have titles, and the figure its title and provenance.
+
+    Raises
+    ------
+    ValueError
+        If a number is not in its range.
+
+    Examples
+    --------
+    >>> FigureStyle(width=8.5, titles=False).columns(3)
+    1
+    """
+
+    width: float = 16.0
+    dpi: float = 300.0
+    font_size: float = 9.0
+    titles: bool = True
+
+    def __post_init__(self) -> None:
+        for name, (low, high, unit) in LEGAL.items():
+            if not low <= getattr(self, name) <= high:
+                raise ValueError(f"{name}={getattr(self, name)!r}: must be from {low:g} to {high:g} {unit}")
+
+    @property
+    def inches(self) -> float:
+        """Width in inches."""
+        return self.width / CM_PER_INCH
+
+    @property
+    def title_size(self) -> float:
+        """Font size of the title of a figure."""
+        return self.font_size * 7.0 / 6.0
+
+    @property
+    def small_size(self) -> float:
+        """Font size of tick labels."""
+        return self.font_size * 7.0 / 8.0
+
+    @property
+    def smallest_size(self) -> float:
+        """Font size of the provenance."""
+        return self.font_size * 3.0 / 4.0
+
+    def columns(self, panels: int) -> int:
+        """Columns into which square panels wrap, so that each is wide enough for its legend."""
+        most = max(1, int(self.inches * POINTS_PER_INCH // (_LEAST_PANEL * self.font_size)))
+        rows = -(-panels // most)
+        return -(-panels // rows)
+
+
+# Least width of a panel with its labels, in units of the font size.
+_LEAST_PANEL = 16.0
+
+SCREEN = FigureStyle(width=29.0, dpi=180.0, font_size=12.0)
+"""Of figures to be looked at on a screen: those of the reproduction and of notebooks."""

@@ -1,0 +1,94 @@
+"""Histories of an orbit reduced for drawing: the curve where it can be seen, and elsewhere its envelope and its mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+ENVELOPE_ALPHA = 0.3
+"""Opacity of envelopes, through which the mean is seen."""
+
+_BINS = 300
+"""Intervals of a history, of equal length in log t: about one pixel of the plots each."""
+
+_MOST_TURNS = 2
+"""More minima and maxima than these in an interval cannot be told apart."""
+
+_MOST_SAMPLES = 16
+"""Samples of the curve that are drawn in an interval."""
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """A quantity of an orbit against time.
+
+    Attributes
+    ----------
+    line
+        (t, value), each (n,): the curve itself, and where it oscillates too fast to be drawn its mean.
+    band
+        (t, low, high), each (m,): the envelope where `line` is the mean; empty if it is the curve everywhere.
+    """
+
+    line: tuple[np.ndarray, np.ndarray]
+    band: tuple[np.ndarray, np.ndarray, np.ndarray]
+
+    @property
+    def highest(self) -> float:
+        """The largest value; NaN without samples."""
+        return float(max([*self.line[1], *self.band[2]], default=np.nan))
+
+    @property
+    def outline(self) -> tuple[np.ndarray, np.ndarray]:
+        """t and value of the polygon around the envelope."""
+        t, low, high = self.band
+        return np.concatenate([t, t[::-1]]), np.concatenate([low, high[::-1]])
+
+
+def reduce_history(t: np.ndarray, values: np.ndarray, *, logarithmic: bool) -> History:
+    """Reduce a history for an axis of log t.
+
+    Parameters
+    ----------
+    t, values
+        (n,) times, increasing and above 0, and values.
+    logarithmic
+        Whether the axis of the values is logarithmic, so that the mean is the geometric one; they must be positive then.
+    """
+    if t.size <= _BINS:
+        return History((t, values), (t[:0], values[:0], values[:0]))
+    edges = np.unique(np.searchsorted(t, np.geomspace(t[0], t[-1], _BINS + 1)[:-1]))
+    fast = np.flatnonzero(np.add.reduceat(_turns(values), edges) > _MOST_TURNS)
+    first = int(fast[0]) if fast.size else edges.size
+    edges, slow_edges = edges[first:], edges[:first]
+    end = int(edges[0]) if edges.size else t.size
+    slow = _visible_samples(slow_edges, end)
+    times, low, high, mean = _envelope(t, values, edges, logarithmic=logarithmic)
+    return History((np.append(t[slow], times), np.append(values[slow], mean)), (times, low, high))
+
+
+def _turns(values: np.ndarray) -> np.ndarray:
+    """(n,) whether a value is a local minimum or maximum."""
+    rises = np.diff(values) > 0.0
+    return np.concatenate([[False], rises[1:] != rises[:-1], [False]])
+
+
+def _visible_samples(edges: np.ndarray, end: int) -> np.ndarray:
+    """Places of samples before `end`, evenly in each interval, and the last one."""
+    counts = np.diff(np.append(edges, end))
+    place = np.arange(end) - np.repeat(edges, counts)
+    stride = np.repeat(-(-counts // _MOST_SAMPLES), counts)
+    return np.flatnonzero((place % stride == 0) | (np.arange(end) == end - 1))
+
+
+def _envelope(t: np.ndarray, values: np.ndarray, edges: np.ndarray, *, logarithmic: bool) -> tuple[np.ndarray, ...]:
+    """Time, minimum, maximum and mean in each interval; the first time is its begin, the last one its end."""
+    if not edges.size:
+        return (t[:0],) * 4
+    ends = np.append(edges[1:], t.size)
+    times = t[(edges + ends) // 2]
+    times[0], times[-1] = t[edges[0]], t[-1]
+    scale = np.log(values) if logarithmic else values
+    mean = np.add.reduceat(scale, edges) / (ends - edges)
+    return times, np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges), np.exp(mean) if logarithmic else mean

@@ -1,0 +1,80 @@
+"""The logarithmic colour scale of escape times."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine import EscapeMap, Fate
+
+# Shares of the escape times below and above the scale.
+_LEFT_OUT = 0.01
+# The lowest end of a fitted scale: an orbit that starts at an exit escapes at once.
+_LEAST = 0.1
+# Scales that are as long as this, in powers of ten, end at round numbers, so that they seldom change from map to map.
+_LONG = 1.0
+_ROUND, _FINE = (1.0, 2.0, 5.0, 10.0), tuple(tenth / 10.0 for tenth in range(10, 101))
+
+
+@dataclass(frozen=True)
+class TimeScale:
+    """A scale of escape times; the colours at its ends stand for all shorter and all longer times.
+
+    Parameters
+    ----------
+    low, high
+        Ends of the scale, dimensionless times; 0 < low < high.
+
+    Raises
+    ------
+    ValueError
+        If the ends are not finite, not positive or not in this order.
+    """
+
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.low < self.high < math.inf:
+            raise ValueError(f"low={self.low}, high={self.high}: must be positive and finite, low below high")
+
+    def classes(self, times: np.ndarray, count: int) -> np.ndarray:
+        """Indices (n,) of the colours, of `count`, that stand for times (n,)."""
+        share = np.log(np.clip(times, self.low, self.high) / self.low) / math.log(self.high / self.low)
+        index: np.ndarray = np.minimum((share * count).astype(int), count - 1)
+        return index
+
+
+WITHOUT_ESCAPES = TimeScale(1.0, 100.0)
+"""The scale of a map without escapes."""
+
+
+def fitted_scale(frame: EscapeMap) -> TimeScale:
+    """The scale from the 1st to the 99th percentile of a map's escape times.
+
+    Its ends are rounded outward: to 1, 2 or 5 · 10^k, or to two digits if the percentiles differ by less than a factor of ten.
+    """
+    times = frame.escape_time[frame.fate > Fate.BOUNDED]
+    if times.size == 0:
+        return WITHOUT_ESCAPES
+    low, high = np.maximum(np.quantile(times, (_LEFT_OUT, 1.0 - _LEFT_OUT)), _LEAST)
+    steps = _ROUND if math.log10(high / low) >= _LONG else _FINE
+    lower, upper = _round(low, steps, up=False), _round(high, steps, up=True)
+    return TimeScale(lower, upper) if lower < upper else TimeScale(lower, _round(1.01 * upper, steps, up=True))
+
+
+def common_scale(frames: Iterable[EscapeMap]) -> TimeScale:
+    """The shortest scale that contains those of several maps."""
+    scales = [fitted_scale(frame) for frame in frames]
+    return TimeScale(min(scale.low for scale in scales), max(scale.high for scale in scales))
+
+
+def _round(number: float, steps: tuple[float, ...], *, up: bool) -> float:
+    """The next of steps · 10^k at or above a positive number, or at or below it."""
+    # The logarithm may round up to the next whole number, the notation with all digits does not.
+    power = 10.0 ** int(f"{number:.16e}".partition("e")[2])
+    candidates = [float(f"{step * power:.6g}") for step in steps]
+    return min(one for one in candidates if one >= number) if up else max(one for one in candidates if one <= number)

@@ -1,0 +1,76 @@
+// @ts-check
+import assert from "node:assert/strict"
+import {test} from "node:test"
+
+import {coordinate, count, number, percent, pixelDetails} from "../../../app/browser/hover_texts.js"
+
+const CODES = {bounded: 4, first: 5, firstCertificate: 10, ends: 9}
+const WORDS = {
+  certificates: ["integrated", "enclosed"],
+  characters: ["regular", "chaotic"],
+  trusts: ["not tested", "doubtful"],
+  fates: ["undecided", "failed", "outside", "forbidden", "bounded", "channel 1", "channel 2"],
+}
+const none = [new Uint8Array(1)]
+
+/** Two pixels: a bounded one and one that escapes. */
+const maps = {
+  fate: [Uint8Array.of(4, 6)],
+  escape_time: [Float32Array.of(NaN, 12.345678)],
+  crossings: [Uint8Array.of(0, 1)],
+  crossing_class: [Uint8Array.of(11, 6)],
+  character: none,
+  passage: none,
+  difference: none,
+  x: [-1],
+  y: [-1],
+  dw: [2],
+  dh: [1],
+}
+const other = {fate: [Uint8Array.of(5, 6)], x: [-1], y: [-1], dw: [2], dh: [1]}
+const details = (
+  /** @type {number} */ pixel,
+  /** @type {object} */ layers = {},
+  /** @type {object} */ doubts = {trust: []},
+  /** @type {object} */ compared = other,
+) => pixelDetails(pixel, {maps: {...maps, ...layers}, doubts, compared}, CODES, WORDS).split("\n")
+
+test("an escaping pixel has its time and crossings", () => {
+  assert.deepEqual(details(1), ["escape time 12.346", "1 upward crossing of y = 0"])
+})
+
+test("a bounded pixel has its certificate", () => {
+  assert.deepEqual(details(0), ["enclosed"])
+})
+
+test("layers add what they know of a pixel", () => {
+  const layers = {character: [Uint8Array.of(6, 0)], passage: [Uint8Array.of(5, 5 + 9 * 2 + 1)]}
+  assert.deepEqual(details(0, layers, {trust: [Uint8Array.of(1, 0)]}), [
+    "enclosed",
+    "chaotic",
+    "never entered: inside since −t_max",
+    "doubtful",
+  ])
+  assert.ok(details(1, layers).includes("entered through channel 2"))
+})
+
+test("a pixel that is compared has its end in the other view", () => {
+  const layers = {difference: [Uint8Array.of(6, 5)]}
+  assert.deepEqual(details(0, layers), ["enclosed", "other view: channel 1"])
+  assert.deepEqual(details(0, layers, {trust: []}, {...other, x: [-2]}), ["enclosed"])
+})
+
+test("an outcome that is no orbit has no details", () => {
+  assert.deepEqual(details(0, {fate: [Uint8Array.of(3, 6)]}), [""])
+})
+
+test("a coordinate distinguishes neighbouring pixels", () => {
+  assert.equal(coordinate(0.123456789, {start: 0, end: 1}), "0.123")
+  assert.equal(coordinate(0.123456789, {start: 0.1234567, end: 0.1234569}), "0.1234567890")
+})
+
+test("numbers have four digits, counts groups, shares three digits", () => {
+  assert.deepEqual([number(0.000012345), number(1234.56), number(0)], ["1.23e-5", "1235", "0"])
+  assert.deepEqual([count(1234567), count(12)], ["1 234 567", "12"])
+  assert.equal(percent(0.12345), "12.3 %")
+})

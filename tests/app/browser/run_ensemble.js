@@ -1,0 +1,31 @@
+// @ts-check
+/** Places, exits and passages of an ensemble at rising times, and its destinies; or the starts that a request draws. */
+
+import {Destinies} from "../../../app/browser/modules/destinies.js"
+import {Ensemble} from "../../../app/browser/modules/ensemble.js"
+import {drawStarts} from "../../../app/browser/modules/ensemble_starts.js"
+import {Integrator} from "../../../app/browser/modules/integrator.js"
+import {Interior} from "../../../app/browser/modules/interior.js"
+import {makePotential} from "../../../app/browser/modules/potential.js"
+import {input, module} from "./read_input.js"
+
+const {system, requests, wish, energy, states, times} = input
+const potential = makePotential(system.formula)
+const surroundings = {system, potential, interior: new Interior(potential)}
+const draw = (/** @type {any} */ request) => [...drawStarts(request, wish, surroundings)]
+
+function follow() {
+  const starts = Float64Array.from(states)
+  const ensemble = new Ensemble(new Integrator(system, module), energy, starts)
+  const frames = times.map((/** @type {number} */ time) => {
+    ensemble.advance(time)
+    const {x, y, channel, sectionX, sectionPx} = ensemble
+    return {x: [...x], y: [...y], channel: [...channel], sectionX: [...sectionX], sectionPx: [...sectionPx]}
+  })
+  const destinies = new Destinies(system, module, energy, starts, times.at(-1))
+  while (!destinies.complete) destinies.continue()
+  ensemble.advance(times[0])
+  return {frames, escapeTime: [...ensemble.escapeTime], destinies: [...destinies.channel], again: [...ensemble.x]}
+}
+
+console.log(JSON.stringify(requests ? requests.map(draw) : follow()))

@@ -1,0 +1,165 @@
+"""Many orbits in the browser: places of heyoka, exits of the server, starts that are spread evenly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import heyoka as hy
+import numpy as np
+import pytest
+
+from engine import Plane, Potential, System, classify_orbits, default_window, sample_starts
+from engine.exits.interior import find_outside_channels
+from engine.service import make_portable_system
+from tests.node import needs_node, run_node
+from tests.peers.taylor_heyoka import equations
+
+COUNT, FRAMES, LONGEST = 200, 50, 40.0
+SYSTEMS = [("I", 0.19), ("II", 0.22), ("III", 0.45)]
+# The browser paints places to a thousandth of a pixel; the steps are those of the server.
+PLACE_ERROR = 1e-8
+
+
+@dataclass(frozen=True)
+class Followed:
+    """An ensemble as the browser follows it, with what it was made of."""
+
+    potential: Potential
+    energy: float
+    states: np.ndarray
+    times: np.ndarray
+    frames: list[dict[str, np.ndarray]]
+    destinies: np.ndarray
+    again: np.ndarray
+
+
+@pytest.fixture(scope="module", params=SYSTEMS, ids=lambda system: system[0])
+def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Followed:
+    case, energy = request.param
+    potential = System(case).potential
+    assert potential.units.length == potential.units.time == 1.0
+    portable = make_portable_system(potential, System(case).energies.high)
+    states = sample_starts(potential, energy, COUNT, seed=3)
+    times = np.sort(np.random.default_rng(1).uniform(0.0, LONGEST, FRAMES))
+    data = {"system": portable.to_dict(), "module": portable.module, "energy": energy}
+    data |= {"states": states.ravel().tolist(), "times": times.tolist()}
+    found = run_node("run_ensemble.js", data, tmp_path_factory.mktemp("ensemble"))
+    frames = [{name: np.array(values, float) for name, values in frame.items()} for frame in found["frames"]]
+    return Followed(potential, energy, states, times, frames, np.array(found["destinies"]), np.array(found["again"], float))
+
+
+def positions_of_heyoka(potential: Potential, state: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """(n, 2) x and y at rising times."""
+    integrator = hy.taylor_adaptive(equations(potential), state.tolist(), tol=1e-16)
+    _, grid = integrator.propagate_grid(np.concatenate([[0.0], times]))[-2:]
+    positions: np.ndarray = grid[1:, :2]
+    return positions
+
+
+@needs_node
+def test_orbits_are_where_heyoka_has_them_until_they_leave(followed: Followed) -> None:
+    compared = 0
+    places = np.array([[frame["x"], frame["y"]] for frame in followed.frames])
+    for orbit in range(COUNT):
+        inside = np.array([frame["channel"][orbit] == 0 for frame in followed.frames])
+        times = followed.times[inside]
+        if not times.size:
+            continue
+        expected = positions_of_heyoka(followed.potential, followed.states[orbit], times)
+        found = places[inside, :, orbit]
+        # Chaos magnifies the error of a step, here at most by about exp(λ t) with λ < 0.3.
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=PLACE_ERROR)
+        compared += times.size
+    assert compared > COUNT * FRAMES / 10
+
+
+@needs_node
+def test_exits_are_those_of_the_server_at_each_time(followed: Followed) -> None:
+    outcomes = classify_orbits(followed.potential, followed.energy, followed.states, t_max=LONGEST)
+    for time, frame in zip(followed.times, followed.frames, strict=True):
+        clear = ~(np.abs(outcomes.escape_time - time) < 1e-6)
+        gone = np.where(outcomes.escape_time <= time, outcomes.fate, 0)
+        np.testing.assert_array_equal(frame["channel"][clear], gone[clear])
+    before_end = outcomes.escape_time < followed.times[-1] - 1e-6
+    np.testing.assert_array_equal(followed.destinies[before_end], outcomes.fate[before_end])
+
+
+@needs_node
+def test_an_earlier_time_begins_again_with_the_same_bits(followed: Followed) -> None:
+    np.testing.assert_array_equal(followed.again, followed.frames[0]["x"])
+
+
+@needs_node
+def test_passages_lie_on_the_section_at_the_energy(followed: Followed) -> None:
+    x, px = (followed.frames[-1][name] for name in ("sectionX", "sectionPx"))
+    passed = np.isfinite(x) & np.isfinite(px)
+    assert passed.sum() > COUNT / 2
+    left = followed.energy - followed.potential.value(x[passed], 0.0) - 0.5 * px[passed] ** 2
+    assert (left > 0.0).all()
+
+
+def request_for(where: str, **changes: Any) -> dict[str, Any]:
+    return {"where": where, "count": 4000, "seed": 1, "point": [0.1, 0.05], "radius": 0.01} | changes
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
+    system, energy = System("III"), 0.45
+    portable = make_portable_system(system.potential, system.energies.high)
+    view, well = (default_window(system.potential, plane, energy) for plane in (Plane.X_PX, Plane.X_Y))
+    names = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
+    wish = {
+        "slice": Plane.X_PX.to_dict(system.potential.units),
+        "energy": energy,
+        "window": dict(zip(names, vars(view).values(), strict=True)),
+    }
+    windows = {"x_y": {"energies": [energy, 2 * energy], "windows": 2 * [list(vars(well).values())]}}
+    requests = {
+        "well": request_for("well"),
+        "view": request_for("view"),
+        "disc": request_for("disc"),
+        "again": request_for("view"),
+        "other": request_for("view", seed=2),
+        "outside": request_for("disc", point=[5.0, 5.0]),
+    }
+    data = {"system": {**portable.to_dict(), "windows": windows}, "module": portable.module, "wish": wish}
+    found = run_node("run_ensemble.js", data | {"requests": list(requests.values())}, tmp_path_factory.mktemp("starts"))
+    return {name: np.array(states, float).reshape(-1, 4) for name, states in zip(requests, found, strict=True)}
+
+
+@needs_node
+def test_starts_are_inside_at_the_energy(drawn: dict[str, np.ndarray]) -> None:
+    potential = System("III").potential
+    for name in ("well", "view", "disc"):
+        states = drawn[name]
+        assert len(states) == 4000
+        np.testing.assert_allclose(potential.energy(states), 0.45, rtol=1e-12)
+        assert not find_outside_channels(potential, 0.45, *np.ascontiguousarray(states[:, :2].T)).any()
+    assert len(drawn["outside"]) == 0
+
+
+@needs_node
+def test_equal_seeds_give_equal_starts(drawn: dict[str, np.ndarray]) -> None:
+    np.testing.assert_array_equal(drawn["view"], drawn["again"])
+    assert not np.isin(drawn["view"][:, 0], drawn["other"][:, 0]).any()
+
+
+@needs_node
+def test_starts_in_the_well_are_spread_evenly_over_the_energy_surface(drawn: dict[str, np.ndarray]) -> None:
+    from scipy import stats
+
+    states, expected = drawn["well"], sample_starts(System("III").potential, 0.45, 4000, seed=9)
+    for column in (lambda each: each[:, 0], lambda each: each[:, 1], lambda each: np.arctan2(each[:, 3], each[:, 2])):
+        assert stats.ks_2samp(column(states), column(expected)).pvalue > 1e-3
+
+
+@needs_node
+def test_starts_on_a_disc_are_spread_evenly_around_its_point(drawn: dict[str, np.ndarray]) -> None:
+    window = default_window(System("III").potential, Plane.X_PX, 0.45)
+    x, px = drawn["disc"][:, 0] - 0.1, drawn["disc"][:, 2] - 0.05
+    share = np.hypot(x / (window.x_high - window.x_low), px / (window.ordinate_high - window.ordinate_low)) / 0.005
+    assert share.max() <= 1.0 + 1e-12
+    # Half of the area lies within 1/√2 of the radius.
+    assert np.mean(share < 1.0 / math.sqrt(2.0)) == pytest.approx(0.5, abs=0.04)

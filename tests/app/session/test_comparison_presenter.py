@@ -1,0 +1,94 @@
+"""The view in the controls is compared with another one: its map is requested, drawn, counted and removed."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from app.session.comparison_presenter import ComparisonPresenter
+from app.state.compared_view import ComparedView
+from app.state.view_state import ViewState
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, System, compute_map
+from engine.service import TYPED, Jobs
+from plots.image_columns import map_columns
+from tests.app.map_actions import make_maps
+from tests.app.session.session_lock import locked_by
+
+SPEC = MapSpec(CASES["I"], Plane.X_PX, 0.2, (56, 56), window=(-0.6, 0.6, -0.6, 0.6), t_max=100.0)
+OTHER = ComparedView(System("I"), Plane.X_PX, 0.3)
+
+
+class Session:
+    """The parts of a session that a comparison needs."""
+
+    def __init__(self, jobs: Jobs) -> None:
+        self.changed = threading.Condition()
+        self.said = [""]
+        self.state, self.maps = ViewState(case="I", energy=0.2, t_max=100.0), make_maps()
+        self.presenter = ComparisonPresenter(self.state, jobs, self.maps, self.said.append, locked_by(self.changed))
+
+    def show(self, frame: EscapeMap) -> None:
+        self.maps.show(frame, map_columns(frame))
+        self.presenter.follow(frame)
+
+    def wait_for(self, text: str) -> None:
+        with self.changed:
+            assert self.changed.wait_for(lambda: text in self.said[-1], 60), self.said
+
+
+@pytest.fixture(scope="module")
+def frame() -> EscapeMap:
+    return compute_map(SPEC)
+
+
+@pytest.fixture(scope="module")
+def jobs() -> Jobs:
+    return Jobs()
+
+
+@pytest.fixture
+def session(jobs: Jobs) -> Iterator[Session]:
+    made = Session(jobs)
+    yield made
+    made.presenter.close()
+
+
+def test_the_share_of_other_ends_is_that_of_two_maps(session: Session, frame: EscapeMap) -> None:
+    session.state.compared = OTHER
+    session.show(frame)
+    session.wait_for("starts end otherwise")
+    other = compute_map(OTHER.map_spec(CASES["I"], SPEC))
+    both = (frame.fate >= Fate.BOUNDED) & (other.fate >= Fate.BOUNDED)
+    differ = np.count_nonzero(both & (frame.fate != other.fate))
+    assert f"h = 0.3: {differ} of" in session.said[-1].replace("\u202f", "").replace(" 1 ", " 1")
+    np.testing.assert_array_equal(session.maps.compared.source.data["fate"][0], map_columns(other)["fate"][0])
+    assert session.maps.source.data["difference"][0].shape == (56, 56)
+
+
+def test_a_view_of_other_axes_is_shown_but_not_compared(session: Session, frame: EscapeMap) -> None:
+    session.state.compared = ComparedView(System("I"), Plane.X_Y, 0.2)
+    session.show(frame)
+    session.wait_for("pixels are not compared")
+    assert session.maps.compared.source.data["fate"][0].shape == (56, 56)
+    assert session.maps.source.data["difference"][0].size == 1
+
+
+def test_the_end_of_a_comparison_removes_its_pictures(session: Session, frame: EscapeMap) -> None:
+    session.state.compared = OTHER
+    session.show(frame)
+    session.wait_for("starts end otherwise")
+    session.state.compared = None
+    assert session.said[-1] == ""
+    assert session.maps.source.data["difference"][0].size == session.maps.compared.source.data["fate"][0].size == 1
+
+
+@pytest.mark.parametrize(("system", "plane"), [(System(TYPED, "x +"), Plane.X_PX), (System("I"), Plane.X_H)])
+def test_a_view_that_has_no_map_is_refused_in_a_sentence(
+    session: Session, frame: EscapeMap, system: System, plane: Plane
+) -> None:
+    session.state.compared = ComparedView(system, plane, 0.2)
+    session.show(frame)
+    session.wait_for("There is no other view to compare with: ")

@@ -1,0 +1,76 @@
+"""The player of many orbits follows the view state, writes to it, and gets the decay rate of mixed motion."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from app.browser.ensemble_player import EnsemblePlayer
+from app.session.watch_presenter import WatchPresenter
+from app.state.view_state import Analysis, ViewState
+from app.state.watched_starts import StartsFrom, WatchedStarts
+from engine import CASES, Plane, compute_flux
+from engine.service import Jobs, prepare_for_maps
+from tests.app.session.session_lock import locked_by
+
+
+class Session:
+    """The parts of a session that the player needs."""
+
+    def __init__(self, jobs: Jobs, **chosen: Any) -> None:
+        self.changed = threading.Condition()
+        self.state = ViewState(case="III", energy=0.45, analysis=Analysis.WATCH, **chosen)
+        self.presenter = WatchPresenter(self.state, jobs, locked_by(self.changed))
+        (player,) = self.presenter.build()
+        assert isinstance(player, EnsemblePlayer)
+        self.player = player
+
+    def send(self, **choice: Any) -> None:
+        self.presenter._take({"where": "view", "count": 1000, "seed": 4, "radius": -3, **choice})
+
+
+@pytest.fixture(scope="module")
+def jobs() -> Jobs:
+    return Jobs()
+
+
+@pytest.fixture
+def session(jobs: Jobs) -> Iterator[Session]:
+    made = Session(jobs, starts=((0.1, 0.2), (0.3, 0.1)), chosen=1)
+    yield made
+    made.presenter.close()
+
+
+def test_the_player_has_the_choices_of_the_state(session: Session) -> None:
+    session.state.watched = WatchedStarts(StartsFrom.DISC, 20000, 7, -4.5)
+    player = session.player
+    assert (player.where, player.count, player.seed, player.radius) == ("disc", 20000, 7, -4.5)
+    assert player.point == [0.3, 0.1]
+    session.state.starts = ()
+    assert player.point == []
+
+
+def test_a_choice_in_the_browser_changes_the_state(session: Session) -> None:
+    session.send()
+    assert session.state.watched == WatchedStarts(StartsFrom.VIEW, 1000, 4, -3.0)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"where": "moon"}, {"count": 7}, {"seed": -1}, {"radius": 3}, {"radius": None}, {"count": "1"}]
+)
+def test_messages_that_are_not_expected_change_nothing(session: Session, wrong: dict[str, Any]) -> None:
+    session.send(**wrong)
+    assert session.state.watched == WatchedStarts()
+
+
+def test_the_player_gets_the_rate_of_mixed_motion(session: Session) -> None:
+    prepare_for_maps(CASES["III"])
+    expected = compute_flux(CASES["III"], 0.45).decay_rate
+    with session.changed:
+        session.presenter.request_rate()
+        assert session.changed.wait_for(lambda: session.player.rate == expected, 60)
+    session.state.plane = Plane.X_H
+    assert session.player.rate == 0.0

@@ -1,0 +1,47 @@
+"""Each measure of the basins names its region; the box can be removed where they stand."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from app.views.analysis.basin_measures import BasinMeasuresView
+from engine import (
+    CASES,
+    MapSpec,
+    Window,
+    compute_basin_entropy,
+    compute_map,
+    compute_statistics,
+    compute_wada_test,
+    fit_decay_laws,
+)
+from engine.service import BasinMeasures
+
+
+@pytest.fixture
+def view() -> BasinMeasuresView:
+    shown = BasinMeasuresView(lambda: None, lambda text: None, lambda: None)
+    frame = compute_map(MapSpec(CASES["II"], "x_px", 0.25, (40, 40), t_max=100.0))
+    shown.show_basins(BasinMeasures(compute_basin_entropy(frame), compute_wada_test(frame)))
+    shown.show_laws(fit_decay_laws(compute_statistics(frame), frame.spec.t_max))
+    return shown
+
+
+def regions(view: BasinMeasuresView) -> list[str]:
+    text = re.sub(r"<span[^>]*popover>.*?</span>", "", view.text.object)
+    return re.findall(r"in the (whole view|box)", re.sub(r"<[^>]*>", "", text))
+
+
+def test_without_a_box_all_measures_are_those_of_the_whole_view(view: BasinMeasuresView) -> None:
+    assert regions(view) == ["whole view"] * 3
+    assert not view.whole.visible
+
+
+def test_the_measures_of_a_map_are_those_of_the_box(view: BasinMeasuresView) -> None:
+    view.show_box(Window(0.0, 0.1, 0.0, 0.1))
+    assert regions(view) == ["box"] * 3
+    assert view.whole.visible
+    view.show_box(None)
+    assert regions(view) == ["whole view"] * 3

@@ -1,0 +1,55 @@
+"""Ranges report the window where a hand leaves them, and end at double precision."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.views.maps.map_ranges import MapRanges
+from engine import CASES, MapSpec, Plane, Window
+
+HOME = MapSpec(CASES["I"], Plane.X_PX, 0.19)
+
+
+def test_reversed_ranges_are_no_window() -> None:
+    zooms: list[Window | None] = []
+    ranges = MapRanges(zooms.append, lambda: None)
+    ranges.follow(HOME.find_window())
+    for start, end in ((0.2, 0.1), (0.1, 0.2)):
+        ranges.x.update(start=start, end=end)
+        ranges.end_gesture()
+    assert [(zoom.x_low, zoom.x_high) for zoom in zooms if zoom] == [(0.1, 0.2)]
+
+
+def test_the_window_of_the_whole_interior_is_no_zoom() -> None:
+    zooms: list[Window | None] = []
+    ranges = MapRanges(zooms.append, lambda: None)
+    ranges.set_home(HOME)
+    home = HOME.find_window()
+    ranges.follow(Window(0.1, 0.2, 0.1, 0.2))
+    ranges.x.update(start=home.x_low, end=home.x_high)
+    ranges.ordinate.update(start=home.ordinate_low, end=home.ordinate_high)
+    ranges.end_gesture()
+    assert zooms == [None]
+
+
+@pytest.mark.parametrize("corner", [(0.0, 0.0), (0.1149, 0.3006), (-0.45, -0.4)])
+def test_the_smallest_window_can_be_computed_and_one_a_tenth_of_it_cannot(corner: tuple[float, float]) -> None:
+    ranges = MapRanges(lambda window: None, lambda: None)
+    ranges.set_home(HOME)
+
+    def window(share: float) -> Window:
+        x, ordinate = corner
+        return Window(x, x + share * ranges.x.min_interval, ordinate, ordinate + share * ranges.ordinate.min_interval)
+
+    smallest = window(1.0)
+    assert MapSpec(HOME.potential, HOME.plane, HOME.energy, window=smallest).find_window() == smallest
+    with pytest.raises(ValueError, match="double precision ends here"):
+        MapSpec(HOME.potential, HOME.plane, HOME.energy, window=window(0.1)).find_window()
+
+
+def test_the_magnification_is_that_of_the_width() -> None:
+    ranges = MapRanges(lambda window: None, lambda: None)
+    ranges.set_home(HOME)
+    home = HOME.find_window()
+    ranges.follow(Window(0.0, 0.01 * (home.x_high - home.x_low), 0.0, 0.1))
+    assert ranges.magnification == pytest.approx(100.0)

@@ -1,0 +1,120 @@
+"""Pictures stand side by side, or one of them large above the others."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.state.view_state import PICTURES
+from app.views.components.plots import FigurePane
+from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED
+from app.views.maps.picture_grid import SHORT_TITLES, PictureGrid
+from plots.map_images import ON_DEMAND
+from tests.app.map_actions import make_maps
+
+ALWAYS = [*PICTURES_ALONE]
+
+
+def grid(*on_demand: str, chosen: list[str] | None = None) -> PictureGrid:
+    maps = make_maps(choose=(chosen if chosen is not None else []).append)
+    maps.show_pictures([*PICTURES_ALONE, *on_demand])
+    return maps.grid
+
+
+def panes(of: PictureGrid) -> list[FigurePane]:
+    return [part for part in of.layout().objects if isinstance(part, FigurePane)]
+
+
+def named(of: PictureGrid, css_class: str) -> list[str]:
+    return [pane.object.name for pane in panes(of) if css_class in pane.object.css_classes]
+
+
+def test_every_picture_has_a_short_title() -> None:
+    assert tuple(SHORT_TITLES) == PICTURES
+
+
+@pytest.mark.parametrize("on_demand", [(), ("origins",), tuple(ON_DEMAND)])
+def test_pictures_on_demand_are_on_the_page_while_they_are_shown(on_demand: tuple[str, ...]) -> None:
+    assert sorted(pane.object.name for pane in panes(grid(*on_demand))) == sorted([*ALWAYS, *on_demand])
+
+
+def test_two_views_stand_side_by_side_before_the_well_and_their_difference() -> None:
+    maps = make_maps()
+    maps.show_pictures(PICTURES_COMPARED)
+    assert [pane.object.name for pane in panes(maps.grid)] == ["basins", "compared", "well", "differences"]
+    assert not maps.grid.layout().css_classes[1:]
+
+
+def test_one_picture_is_enlarged_and_the_others_have_no_axes() -> None:
+    pictures = grid()
+    pictures.enlarge("times")
+    assert named(pictures, "picked") == ["times"]
+    assert named(pictures, "small") == [name for name in ALWAYS if name != "times"]
+    assert "enlarged" in pictures.layout().css_classes
+    for pane in panes(pictures):
+        assert pane.object.below[0].visible == pane.object.left[0].visible == (pane.object.name == "times")
+
+
+def test_of_many_pictures_one_is_twice_as_large_and_the_others_have_no_axes() -> None:
+    pictures = grid(*ON_DEMAND)
+    assert "many" in pictures.layout().css_classes
+    assert named(pictures, "picked") == ["origins"]
+    assert len(named(pictures, "compact")) == len(ALWAYS) + len(ON_DEMAND) - 1
+    assert not any(pane.object.left[0].visible for pane in panes(pictures) if pane.object.name != "origins")
+
+
+@pytest.mark.parametrize(("on_demand", "largest"), [((), "basins"), (("characters",), "characters"), (("origins",), "origins")])
+def test_the_largest_picture_is_that_of_the_layer_that_is_on(on_demand: tuple[str, ...], largest: str) -> None:
+    assert named(grid(*on_demand), "picked") == [largest]
+
+
+def test_an_enlarged_picture_stands_above_a_row_of_many_others() -> None:
+    pictures = grid(*ON_DEMAND)
+    pictures.enlarge("origins")
+    assert "many" not in pictures.layout().css_classes
+    assert len(named(pictures, "small")) == len(ALWAYS) + len(ON_DEMAND) - 1
+
+
+def test_all_pictures_are_shown_again_as_before() -> None:
+    pictures = grid()
+    before = [(pane.object.css_classes, pane.object.min_border_left) for pane in panes(pictures)]
+    pictures.enlarge("well")
+    pictures.enlarge("")
+    assert [(pane.object.css_classes, pane.object.min_border_left) for pane in panes(pictures)] == before
+    assert "enlarged" not in pictures.layout().css_classes
+
+
+def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_comes() -> None:
+    maps = make_maps()
+    maps.show_pictures(PICTURES_ALONE)
+    maps.grid.enlarge("origins")
+    assert "enlarged" not in maps.grid.layout().css_classes
+    maps.show_pictures([*PICTURES_ALONE, "origins"])
+    assert named(maps.grid, "picked") == ["origins"]
+
+
+def test_the_picker_of_a_touch_device_offers_the_pictures_and_reports_the_choice() -> None:
+    chosen: list[str] = []
+    pictures = grid("origins", chosen=chosen)
+    pictures.begin_touch()
+    assert pictures.layout().objects[0] is pictures.picker
+    assert list(pictures.picker.options.values()) == [*ALWAYS, "origins"]
+    assert pictures.picker.value == "origins"
+    pictures.picker.value = "basins"
+    assert chosen == ["basins"]
+
+
+def test_the_picker_follows_the_picture_that_is_enlarged() -> None:
+    chosen: list[str] = []
+    pictures = grid(chosen=chosen)
+    pictures.begin_touch()
+    pictures.enlarge("well")
+    assert pictures.picker.value == "well"
+    assert chosen == []
+
+
+def test_the_picture_of_a_layer_that_shows_nothing_is_not_the_largest() -> None:
+    pictures = grid("characters")
+    pictures.mark_empty("characters", empty=True)
+    assert named(pictures, "picked") == ["basins"]
+    pictures.mark_empty("characters", empty=False)
+    assert named(pictures, "picked") == ["characters"]

@@ -1,0 +1,76 @@
+"""The histories of several orbits share one time axis."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from bokeh.models import ColumnDataSource
+from bokeh.plotting import figure
+
+from app.views.orbits.orbit_plots import OrbitPlots
+from engine import CASES, integrate_orbit
+from plots.orbit_curves import OrbitCurves, compute_orbit_curves, restrict_curves
+
+NAMES = ("sali", "exponent", "r2")
+
+
+def curves_of(state: tuple[float, ...], t_max: float) -> OrbitCurves:
+    return compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], state, t_max))
+
+
+@pytest.fixture(scope="module")
+def drawings() -> list[OrbitCurves]:
+    """A bounded orbit of t = 1e5 and one that escapes at t = 15."""
+    return [curves_of((-0.46, 0.0, 0.0, 0.2), 1e5), curves_of((0.1, 0.0, 0.05, 0.6), 1e5)]
+
+
+@pytest.fixture
+def plots() -> OrbitPlots:
+    return OrbitPlots(lambda interval: None)
+
+
+def figures(plots: OrbitPlots) -> dict[str, figure]:
+    return {pane.object.name: pane.object for pane in plots.build()}
+
+
+def data(plot: figure, name: str) -> dict[str, Any]:
+    (source,) = [one.data_source for one in plot.renderers if one.data_source.name == name]
+    assert isinstance(source, ColumnDataSource)
+    return dict(source.data)
+
+
+def test_all_histories_have_one_logarithmic_time_axis(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+    drawn = figures(plots)
+    plots.show(drawings, chosen=1)
+    assert [type(drawn[name].xaxis[0]).__name__ for name in NAMES] == ["LogAxis"] * 3
+    assert len({id(drawn[name].x_range) for name in NAMES}) == 1
+    assert drawn["r2"].x_range.end == drawings[0].orbit.t[-1]
+
+
+def test_a_long_orbit_that_is_not_chosen_keeps_its_curve(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+    drawn = figures(plots)
+    plots.show(drawings, chosen=1)
+    lines, bands = data(drawn["r2"], "r2_histories"), data(drawn["r2"], "r2_bands")
+    assert (lines["slot"], bands["slot"][:2]) == ([0, 1], [0, 1])
+    times, values = lines["xs"][0], lines["ys"][0]
+    early = times < 15.0
+    expected = drawings[0].orbit.r2[np.searchsorted(drawings[0].orbit.t.astype(np.float32), times[early])]
+    np.testing.assert_allclose(values[early], expected, rtol=1e-6)
+    assert bands["xs"][0].max() == times[-1] == np.float32(drawings[0].orbit.t[-1])
+    assert np.isnan(bands["xs"][1]).all()
+    assert bands["alpha"][0] < lines["alpha"][0] < lines["alpha"][1] == 1.0
+
+
+def test_an_interval_is_that_of_all_histories(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+    drawn = figures(plots)
+    plots.show([restrict_curves(one, 5.0, 12.0) for one in drawings], 0, (5.0, 12.0))
+    assert (drawn["r2"].x_range.start, drawn["sali"].x_range.end) == (5.0, 12.0)
+
+
+def test_an_interval_after_the_end_of_an_orbit_shows_the_others(plots: OrbitPlots, drawings: list[OrbitCurves]) -> None:
+    drawn = figures(plots)
+    plots.show([restrict_curves(one, 100.0, 200.0) for one in drawings], 1, (100.0, 200.0))
+    assert (drawn["r2"].x_range.start, drawn["r2"].x_range.end) == (100.0, 200.0)
+    assert data(drawn["r2"], "r2_histories")["xs"][1].size == 0

@@ -1,0 +1,139 @@
+"""The figure of the moment of the click is made without blocking the event loop; what is wrong is said in a sentence."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import Any
+
+import pytest
+
+from app.job_clients.orbit_requests import ChosenOrbit
+from app.state.view_state import ViewState
+from app.views.components.file_saver import FileSaver
+from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Shown, figure_choices
+from app.views.panels.figure_form import FigureForm
+from engine import (
+    CASES,
+    CurvesSpec,
+    EscapeMap,
+    MapSpec,
+    Plane,
+    compute_curves,
+    compute_map,
+    compute_regularity,
+    integrate_orbit,
+)
+from plots.figure_style import FigureFormat, FigureStyle
+from plots.map_analyses import MapAnalyses
+from plots.orbit_curves import compute_orbit_curves
+from tests.app.other_loop import run_on_new_loop
+
+BEGINS = {FigureFormat.PNG: b"\x89PNG", FigureFormat.SVG: b"<?xml", FigureFormat.PDF: b"%PDF"}
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    return compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.19, (15, 15), t_max=1e2))
+
+
+@pytest.fixture(scope="module")
+def shown(escape_map: EscapeMap) -> Shown:
+    """Everything that can be drawn."""
+    curves = compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), 100.0))
+    orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
+    analyses = MapAnalyses(regularity=compute_regularity(escape_map))
+    return Shown(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
+
+
+@pytest.fixture
+def saved(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bytes]]:
+    """Files that are sent to the browser from now on."""
+    files: list[tuple[str, bytes]] = []
+    monkeypatch.setattr(FileSaver, "save", lambda saver, name, content: files.append((name, content)))
+    return files
+
+
+@pytest.fixture
+def form(shown: Shown) -> FigureForm:
+    made = FigureForm(ViewState(case="I", energy=0.19), FileSaver(), lambda ending: f"escapes{ending}", lambda copied: None)
+    made.show(shown)
+    return made
+
+
+def test_what_is_shown_can_be_drawn(shown: Shown) -> None:
+    state = ViewState(case="I", energy=0.19)
+    assert list(figure_choices(Shown(), state)) == []
+    maps = [ALL_MAPS, "Basins of escape", "Escape time", "Crossings of y = 0"]
+    assert list(figure_choices(Shown(shown.frame), state)) == [*maps, "The well in (x, y)", "Statistics"]
+    others = ["Regular or chaotic", "The well in (x, y)", "Orbits", "Statistics", "Curves against energy"]
+    assert list(figure_choices(shown, state)) == [*maps, *others]
+
+
+@pytest.mark.parametrize("format", FigureFormat)
+def test_each_figure_can_be_made_in_each_format(format: FigureFormat, shown: Shown) -> None:
+    for make in figure_choices(shown, ViewState(case="I", energy=0.19)).values():
+        assert make(format, FigureStyle(8.5, 60.0)).startswith(BEGINS[format])
+
+
+def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
+    loop_has_run = threading.Event()
+
+    def make() -> bytes:
+        assert loop_has_run.wait(30), "the event loop was blocked"
+        return b"figure"
+
+    async def save() -> None:
+        asyncio.get_running_loop().call_later(0.05, loop_has_run.set)
+        await form.make(make, sent.append)
+
+    sent: list[bytes | None] = []
+    run_on_new_loop(save)
+    assert sent == [b"figure"]
+
+
+def test_files_are_named_after_the_figure(form: FigureForm) -> None:
+    assert form.figure()[0] == ""
+    form.what.value = "The well in (x, y)"
+    assert form.figure()[0] == "-the-well-in-x-y"
+
+
+def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: Shown, saved: list[tuple[str, bytes]]) -> None:
+    form.what.value = "Regular or chaotic"
+    form.show(Shown())
+    assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
+    form.save.clicks += 1
+    assert form.text.object == "Regular or chaotic: this is not computed yet."
+    assert not saved
+    form.show(shown)
+    assert set(FIGURES) - set(form.what.options) == {"Origin and exit"}
+
+
+@pytest.mark.parametrize(("name", "number"), [("width", 1.0), ("dpi", 5000.0), ("font_size", 0.0)])
+def test_an_illegal_number_is_named(name: str, number: float, form: FigureForm, saved: list[tuple[str, bytes]]) -> None:
+    form.type(name, number)
+    form.save.clicks += 1
+    assert form.text.object.startswith(f"{name}={number!r}: must be from ")
+    assert not saved
+
+
+def test_too_many_pixels_are_named(form: FigureForm) -> None:
+    _, make = form.figure()
+    style = FigureStyle(100.0, 1200.0)
+
+    def draw() -> Any:
+        return make(FigureFormat.PNG, style)
+
+    sent: list[bytes | None] = []
+    run_on_new_loop(lambda: form.make(draw, sent.append))
+    assert form.text.object.startswith("dpi=1200: must be at most ")
+    assert sent == [None]
+
+
+def test_an_image_that_cannot_be_made_is_not_copied(form: FigureForm, monkeypatch: pytest.MonkeyPatch) -> None:
+    sent: list[bytes | None] = []
+    monkeypatch.setattr(form.copy, "send", sent.append)
+    form.type("width", 1.0)
+    form.copy._receive({"wanted": True})
+    assert sent == [None]
+    assert form.text.object.startswith("width=1.0: must be from ")

@@ -1,0 +1,58 @@
+"""Two views side by side in the browser: linked in window and cursor, with the pixels that differ."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from playwright.sync_api import expect
+
+from engine import CASES, MapSpec, Plane, compute_map
+from plots.image_columns import difference_column, map_columns
+from plots.palette import PAPER, rgba
+from tests.browser.conftest import QUICK
+from tests.browser.explorer_page import ExplorerPage
+
+# Whether a canvas of the preview shows both equal and other ends; its pixels are opaque where the ends are other ones.
+_DIFFERENCE_IN_PREVIEW = """colour => {
+    const inside = root => [...root.querySelectorAll("*")].flatMap(one => [one, ...within(one.shadowRoot)])
+    const within = root => root ? inside(root) : []
+    const canvases = inside(document).filter(one => one.dataset?.energy && one.style.display != "none")
+    return canvases.some(canvas => {
+        const {data} = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
+        let found = 0
+        for (let k = 0; k < data.length; k += 4) found += colour.every((part, j) => data[k + j] === part)
+        return found > 1000
+    })
+}"""
+
+
+def test_another_energy_is_compared_with_the_view_that_was_kept(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=QUICK)
+    explorer.page.get_by_label("Compare with this view", exact=True).click()
+    explorer.wait_for_data("compared_map", "data.fate[0].length > 1")
+    explorer.page.wait_for_url("**with_h=0.19**")
+    explorer.type_number("Exact h", "0.3")
+    explorer.wait_for_data("maps", "data.complete[0] && data.energy[0] == 0.3 && data.difference[0].length > 1")
+    x, y, dw, dh = (explorer.column(name) for name in ("x", "y", "dw", "dh"))
+    specs = [MapSpec(CASES["I"], Plane.X_PX, h, (112, 112), (x, x + dw, y, y + dh), t_max=100.0) for h in (0.3, 0.19)]
+    expected = difference_column(*(map_columns(compute_map(spec)) for spec in specs))["difference"][0]
+    np.testing.assert_array_equal(explorer.column("difference"), expected)
+    expect(explorer.text("starts end otherwise")).to_be_visible()
+    explorer.press("Swap the views")
+    explorer.page.wait_for_url("**with_h=0.3**")
+    explorer.wait_for_data("maps", "data.complete[0] && data.energy[0] == 0.19 && data.difference[0].length > 1")
+    np.testing.assert_array_equal(explorer.column("difference") == 6, expected == 6)
+
+
+def test_the_comparison_follows_the_slider_without_the_server(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=f"{QUICK}&with_case=I&with_plane=x_px&with_h=0.19")
+    explorer.wait_for_data("maps", "data.difference[0].length > 1")
+    explorer.drag_energy_to(0.5, let_go=False)
+    explorer.page.wait_for_function(_DIFFERENCE_IN_PREVIEW, arg=rgba([PAPER.difference_entries[1].colour])[0].tolist())
+    explorer.page.mouse.up()
+
+
+def test_a_link_with_a_system_that_is_refused_says_so(open_explorer: Callable[..., ExplorerPage]) -> None:
+    explorer = open_explorer(link=f"{QUICK}&with_V=x%2B&with_case=typed&with_h=0.2")
+    expect(explorer.text("There is no other view to compare with")).to_be_visible()

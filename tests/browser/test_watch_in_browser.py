@@ -1,0 +1,69 @@
+"""Many orbits leave the well in the browser: played, stepped, moved in time, and the same again from the link."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import expect
+
+from engine import CASES, classify_orbits, sample_starts
+from tests.browser.conftest import QUICK
+from tests.browser.explorer_page import ExplorerPage
+
+OpenExplorer = Callable[..., ExplorerPage]
+_INSIDE = re.compile(r"inside: (\d+) ")
+
+
+def inside(explorer: ExplorerPage) -> int:
+    text = explorer.page.get_by_role("cell", name="inside:").inner_text()
+    found = _INSIDE.search(text)
+    assert found is not None
+    return int(found.group(1))
+
+
+def move_time_to(explorer: ExplorerPage, share: float) -> None:
+    explorer.page.get_by_label("Time of the orbits").fill(str(round(1000 * share)))
+
+
+def test_the_well_drains_while_it_is_watched(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
+    play = explorer.page.get_by_role("button", name="Watch them leave")
+    expect(play).to_be_enabled()
+    assert inside(explorer) == 1000
+    play.click()
+    expect(explorer.page.get_by_role("button", name="Pause")).to_be_visible()
+    expect(explorer.page.get_by_role("cell", name=re.compile(r"inside: [1-9]\d\d "))).to_be_visible()
+    explorer.page.get_by_role("button", name="Pause").click()
+    expect(play).to_be_visible()
+
+
+def test_as_many_orbits_have_left_as_of_other_starts_in_the_well(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,5000,1,-2")
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    move_time_to(explorer, 0.2)
+    expect(explorer.text("t = 20.0")).to_be_visible()
+    fate = classify_orbits(CASES["I"], 0.19, sample_starts(CASES["I"], 0.19, 20000, seed=5), t_max=20.0).fate
+    expected = float((fate <= 0).mean())
+    # Four standard errors of 5 000 orbits.
+    assert abs(inside(explorer) / 5000 - expected) < 4.0 * (expected * (1.0 - expected) / 5000) ** 0.5
+
+
+def test_the_link_brings_back_the_same_orbits(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=view,1000,1,-2")
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    explorer.press("Other starts")
+    explorer.page.wait_for_url("**watch=view,1000,2**")
+    move_time_to(explorer, 0.1)
+    expect(explorer.text("t = 10.0")).to_be_visible()
+    again = open_explorer(link=explorer.page.url[explorer.page.url.index("?") :])
+    expect(again.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    move_time_to(again, 0.1)
+    expect(again.text("t = 10.0")).to_be_visible()
+    assert inside(again) == inside(explorer)
+
+
+def test_a_slice_of_several_energies_says_why_there_is_nothing_to_watch(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link="?case=I&plane=x_h&t_max=100&resolution=112&analysis=watch")
+    expect(explorer.text("Choose a slice of one energy")).to_be_visible()
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_disabled()

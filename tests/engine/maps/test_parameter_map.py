@@ -1,0 +1,168 @@
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engine import (
+    CASES,
+    Coordinate,
+    EscapeMap,
+    Fate,
+    MapSpec,
+    ParameterAxis,
+    Slice,
+    System,
+    Trust,
+    TrustMap,
+    compute_map,
+    compute_origin_fates,
+    compute_regularity,
+    compute_trust,
+    compute_uncertainty_exponent,
+    find_divergent_start,
+)
+from engine.maps.parameter_map import find_lines
+from tests.engine.slices.test_parameter_family import THIRD_EXIT
+
+C = Coordinate
+EPSILON = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
+SPEC = MapSpec(CASES["I"], Slice(C.X, EPSILON), 0.2, (24, 12), t_max=2e3)
+FREQUENCY = ParameterAxis("omega_1", 0.4, 1.5, System("III"))
+TURNED = MapSpec(CASES["III"], Slice(FREQUENCY, C.PX, fixed=((C.X, 0.1),)), 0.5, (7, 16), t_max=1e3)
+
+
+@pytest.fixture(scope="module")
+def along_epsilon() -> EscapeMap:
+    return compute_map(SPEC)
+
+
+def ordinary_map(spec: MapSpec, axis: ParameterAxis, value: float) -> EscapeMap:
+    """The starts at one value of the parameter as a map of that potential, made without a parameter."""
+    potential = axis.system.with_parameter(axis.key, value).potential
+    window = spec.find_window()
+    if spec.plane.parameter_axis == 1:
+        part = (window.x_low, window.x_high, -1.0, 1.0)
+        return compute_map(MapSpec(potential, Slice(spec.plane.abscissa, C.PX), spec.energy, (24, 1), part, spec.t_max))
+    part = (0.1 - 1.0, 0.1 + 1.0, window.ordinate_low, window.ordinate_high)
+    return compute_map(MapSpec(potential, Slice(C.X, spec.plane.ordinate), spec.energy, (1, 16), part, spec.t_max))
+
+
+def assert_equal_outcomes(one: EscapeMap, other: EscapeMap) -> None:
+    np.testing.assert_array_equal(one.fate, other.fate)
+    np.testing.assert_array_equal(one.crossings[one.fate > 0], other.crossings[one.fate > 0])
+    np.testing.assert_allclose(one.escape_time, other.escape_time, rtol=1e-6)
+
+
+def test_rows_are_maps_of_their_potentials(along_epsilon: EscapeMap) -> None:
+    for line in find_lines(SPEC):
+        assert line is not None
+        row = line.place[0].start
+        expected = ordinary_map(SPEC, EPSILON, float(along_epsilon.ordinate[row]))
+        assert_equal_outcomes(line.of(along_epsilon), expected)
+
+
+def test_columns_are_maps_of_their_potentials() -> None:
+    found = compute_map(TURNED)
+    for column, line in enumerate(find_lines(TURNED)):
+        assert line is not None
+        # Of time units that differ: the frequency changes by more than 2.
+        assert_equal_outcomes(line.of(found), ordinary_map(TURNED, FREQUENCY, float(found.x[column])))
+
+
+def test_orbits_below_the_escape_energy_of_their_potential_are_bounded(along_epsilon: EscapeMap) -> None:
+    # The escape energy of case I is 1/(8 ε²).
+    below = 0.125 / along_epsilon.ordinate**2 > 0.2
+    assert 0 < below.sum() < below.size
+    assert np.all(np.isin(along_epsilon.fate[below], (Fate.BOUNDED, Fate.FORBIDDEN)))
+    assert np.all(np.any(along_epsilon.fate[~below] > 0, axis=1))
+
+
+def test_channels_keep_their_numbers_along_the_parameter() -> None:
+    spec = MapSpec(THIRD_EXIT.system.potential, Slice(C.X, THIRD_EXIT), 0.16, (16, 8), t_max=500.0)
+    found = compute_map(spec)
+    assert set(found.fractions()) == {1, 2, 3, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED}
+    # The exit at the left is open for b < −0.34; y → −y exchanges the other two.
+    left = found.ordinate < -0.35
+    assert np.any(found.fate[left] == 3)
+    assert set(np.unique(found.fate[~left & (found.ordinate > -0.33)])) - {Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE} == {1, 2}
+
+
+def test_frames_show_fewer_orbits_undecided_and_end_with_the_map(along_epsilon: EscapeMap) -> None:
+    frames: list[EscapeMap] = []
+    compute_map(SPEC, on_frame=frames.append)
+    assert frames[-1].complete
+    np.testing.assert_array_equal(frames[-1].fate, along_epsilon.fate)
+    assert all(frame.spec == SPEC for frame in frames)
+
+
+def test_a_longer_time_continues_a_map(along_epsilon: EscapeMap) -> None:
+    shorter = compute_map(replace(SPEC, t_max=50.0))
+    assert np.any(shorter.fate != along_epsilon.fate)
+    continued = compute_map(SPEC, resume=shorter)
+    np.testing.assert_array_equal(continued.fate, along_epsilon.fate)
+    np.testing.assert_array_equal(continued.escape_time, along_epsilon.escape_time)
+
+
+def test_a_cancelled_map_is_continued(along_epsilon: EscapeMap) -> None:
+    cancel = threading.Event()
+    stopped = compute_map(SPEC, on_frame=lambda frame: cancel.set(), cancel=cancel)
+    assert not stopped.complete
+    np.testing.assert_array_equal(compute_map(SPEC, resume=stopped).escape_time, along_epsilon.escape_time)
+
+
+def test_trust_and_character_are_those_of_the_lines(along_epsilon: EscapeMap) -> None:
+    trust, character = compute_trust(along_epsilon), compute_regularity(along_epsilon)
+    assert trust.complete
+    assert character.complete
+    for line in find_lines(SPEC):
+        assert line is not None
+        np.testing.assert_array_equal(character.character[line.place], compute_regularity(line.of(along_epsilon)).character)
+        alone = compute_trust(line.of(along_epsilon)).trust
+        tested = alone != Trust.LIKE_NEIGHBOURS
+        # Neighbours in other lines make more pixels be tested.
+        np.testing.assert_array_equal(trust.trust[line.place][tested], alone[tested])
+
+
+def test_analyses_in_progress_are_of_the_whole_map(along_epsilon: EscapeMap, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("engine.maps.parameter_map._PAUSE", 0.0)
+    frames: list[TrustMap] = []
+    trust = compute_trust(along_epsilon, on_frame=frames.append)
+    assert len(frames) > 1
+    for frame in frames:
+        assert frame.spec is along_epsilon.spec
+        assert not frame.complete
+        arrived = frame.trust != Trust.NOT_APPLICABLE
+        np.testing.assert_array_equal(frame.trust[arrived], trust.trust[arrived])
+
+
+def test_origins_along_a_parameter_are_those_of_the_lines() -> None:
+    spec = replace(SPEC, resolution=(16, 4), t_max=200.0)
+    origins = compute_origin_fates(spec)
+    np.testing.assert_array_equal(origins.origin, compute_map(replace(spec, backward=True)).fate)
+
+
+def test_a_divergent_start_is_found_in_the_same_system() -> None:
+    found = find_divergent_start(CASES["I"], SPEC.plane, 0.2, 0.05, 1.5, t_max=200.0)
+    assert found is not None
+    assert found.ordinate == 1.5
+
+
+def test_a_value_without_a_system_has_forbidden_starts() -> None:
+    spec = replace(SPEC, window=(-0.5, 0.5, -0.5, 1.5), resolution=(8, 8), t_max=100.0)
+    found = compute_map(spec)
+    assert found.complete
+    assert np.all(found.fate[found.ordinate < 0.01] == Fate.FORBIDDEN)
+    assert np.any(found.fate[found.ordinate > 0.01] > Fate.FORBIDDEN)
+
+
+def test_an_axis_of_another_system_is_refused() -> None:
+    with pytest.raises(ValueError, match="its parameter is one of another system"):
+        MapSpec(CASES["II"], SPEC.plane, 0.2)
+
+
+def test_pairs_of_starts_in_two_systems_are_refused() -> None:
+    with pytest.raises(ValueError, match="must be on a slice of one potential"):
+        compute_uncertainty_exponent(SPEC)

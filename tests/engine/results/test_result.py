@@ -1,0 +1,103 @@
+"""Datasets of results: indexed by different values, with units, and written as NetCDF and read back unchanged."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from engine import (
+    CASES,
+    MapSpec,
+    Plane,
+    Result,
+    classify_orbits,
+    compute_basin_entropy,
+    compute_birkhoff_digits,
+    compute_map,
+    compute_separation,
+    compute_statistics,
+    compute_wada_test,
+    find_divergent_start,
+    find_lyapunov_orbits,
+    find_stable_manifolds,
+    fit_decay_laws,
+    integrate_orbit,
+    judge_orbit,
+    parse_formula,
+    review_potential,
+    sample_starts,
+)
+
+POTENTIAL, STATE = CASES["I"], (0.1, 0.0, 0.05, 0.6)
+
+
+@functools.cache
+def orbit() -> Result:
+    return integrate_orbit(POTENTIAL, STATE, t_max=10.0)
+
+
+RESULTS: dict[str, Callable[[], Result | None]] = {
+    "potential": lambda: POTENTIAL,
+    "review": lambda: review_potential(POTENTIAL),
+    "review of a degenerate potential": lambda: review_potential(parse_formula("x⁴ + y⁴")),
+    "review of a curve of critical points": lambda: review_potential(parse_formula("(x² + y² − 1)²")),
+    "orbit": orbit,
+    "verdict": lambda: judge_orbit(integrate_orbit(POTENTIAL, STATE, t_max=10.0)),
+    "outcomes": lambda: classify_orbits(POTENTIAL, 0.2, sample_starts(POTENTIAL, 0.2, 50), t_max=20.0),
+    "Lyapunov orbit": lambda: find_lyapunov_orbits(POTENTIAL, 0.2)[0],
+    "manifolds": lambda: find_stable_manifolds(POTENTIAL, 0.19, images=1),
+    "separation": lambda: compute_separation(POTENTIAL, STATE, (0.1, 0.0, 0.05, 0.60001), 10.0),
+    "digits": lambda: compute_birkhoff_digits(POTENTIAL, (0.1, 0.0, 0.05, 0.3), 2e3),
+    "divergent start": lambda: find_divergent_start(POTENTIAL, Plane.X_PX, 0.2, 0.1, 0.0, 50.0),
+    "statistics": lambda: compute_statistics(compute_map(SPEC)),
+    "decay laws": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), resamples=500),
+    "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
+    "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
+}
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.5, (20, 20), t_max=50.0)
+
+
+@functools.cache
+def dataset(name: str) -> xr.Dataset:
+    result = RESULTS[name]()
+    assert result is not None
+    return result.to_xarray()
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_no_index_has_equal_values(name: str) -> None:
+    for index in dataset(name).indexes.values():
+        assert index.is_unique
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_number_has_a_unit_or_a_meaning(name: str) -> None:
+    without = [str(key) for key, one in dataset(name).variables.items() if one.dtype.kind in "iuf" and not one.attrs]
+    assert without == []
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_netcdf_holds_the_dataset(name: str, tmp_path: Path) -> None:
+    dataset(name).to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
+    with xr.open_dataset(tmp_path / "result.nc", engine="h5netcdf") as found:
+        xr.testing.assert_equal(found.load(), dataset(name))
+        assert found.attrs.keys() == dataset(name).attrs.keys()
+
+
+def test_path_of_a_lyapunov_orbit_has_its_times() -> None:
+    exit_orbit = find_lyapunov_orbits(POTENTIAL, 0.2)[1]
+    path = exit_orbit.to_xarray()
+    start = np.array([exit_orbit.x[0], exit_orbit.y[0], 0.0, 0.0])
+    along = integrate_orbit(POTENTIAL, start, t_max=1.0).to_xarray().interp(t=path["t"][:20])
+    np.testing.assert_allclose(path["y"][:20], along["y"], atol=1e-4)
+    assert float(path["t"][-1]) == exit_orbit.period
+
+
+def test_codes_say_what_they_mean() -> None:
+    assert dataset("outcomes")["fate"].attrs["codes"].startswith("0: bounded; -1: forbidden")
+    assert dataset("outcomes").sizes == {"orbit": 50}

@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from engine import CASES, Coordinate, Fate, MapSpec, ParameterAxis, Plane, Slice, System, compute_map, sample_starts
+from engine.exits.interior import find_outside_channels
+
+ALONG = Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I")))
+
+
+@pytest.mark.parametrize("plane", [None, Plane.X_PX, Plane.Y_PY, Plane.TANGENTIAL])
+@pytest.mark.parametrize("name", CASES)
+def test_starts_have_the_energy_and_are_inside(name: str, plane: Slice | None) -> None:
+    starts = sample_starts(CASES[name], 0.4, 500, plane=plane)
+    np.testing.assert_allclose(CASES[name].energy(starts), 0.4, atol=1e-14)
+    assert starts.shape == (500, 4)
+    assert not find_outside_channels(CASES[name], 0.4, *np.ascontiguousarray(starts[:, :2].T)).any()
+
+
+def test_the_energy_surface_is_covered_uniformly() -> None:
+    potential, energy = CASES["III"], 0.4
+    starts = sample_starts(potential, energy, 20_000, seed=3)
+    # Shares of the quadrants of a grid of points inside, and of the directions of the velocity.
+    side = np.linspace(-1.6, 1.6, 801)
+    x, y = (axis.ravel() for axis in np.meshgrid(side, side))
+    inside = (potential.value(x, y) <= energy) & (find_outside_channels(potential, energy, x, y) == 0)
+    near = np.hypot(x, y)[inside] < 0.5
+    assert stats.binomtest(int((np.hypot(*starts[:, :2].T) < 0.5).sum()), 20_000, near.mean()).pvalue > 1e-3
+    angle = np.arctan2(starts[:, 3], starts[:, 2])
+    assert stats.kstest(angle, stats.uniform(-np.pi, 2 * np.pi).cdf).pvalue > 1e-3
+
+
+def test_shares_of_a_sample_of_a_slice_are_those_of_its_map() -> None:
+    starts = sample_starts(CASES["I"], 0.2, 4000, plane=Plane.X_PX, seed=2)
+    escapes = compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.2, (120, 120), t_max=500.0))
+    upper = escapes.ordinate > 0.2
+    expected = (escapes.fate[upper] >= Fate.BOUNDED).sum() / escapes.interior.sum()
+    assert stats.binomtest(int((starts[:, 2] > 0.2).sum()), 4000, expected).pvalue > 1e-3
+
+
+def test_equal_seeds_give_equal_starts() -> None:
+    one, same, other = (sample_starts(CASES["II"], 0.2, 50, seed=seed) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(one, same)
+    assert np.any(one != other)
+
+
+def test_starts_are_in_the_window() -> None:
+    starts = sample_starts(CASES["I"], 0.2, 300, plane=Plane.X_PX, window=(0.1, 0.2, -0.3, 0.0))
+    assert np.all((starts[:, 0] > 0.1) & (starts[:, 0] < 0.2) & (starts[:, 2] > -0.3) & (starts[:, 2] < 0.0))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"count": 0}, "count=0: must be"),
+        ({"seed": -1}, "seed=-1: must be"),
+        ({"plane": Plane.X_H}, "must have no axis h"),
+        ({"plane": ALONG}, "must be on a slice of one potential"),
+        ({"window": (5.0, 6.0, 5.0, 6.0)}, "nothing of it is inside"),
+        ({"energy": np.nan}, "energy=nan: must be"),
+    ],
+)
+def test_what_has_no_sample_is_refused(options: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        sample_starts(**{"potential": CASES["I"], "energy": 0.2, "count": 10} | options)  # type: ignore[arg-type]

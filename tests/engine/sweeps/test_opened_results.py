@@ -1,0 +1,195 @@
+"""Results that are written to files come back equal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from engine import (
+    CASES,
+    POTENTIALS,
+    Coordinate,
+    Direction,
+    EscapeMap,
+    MapSpec,
+    ParameterAxis,
+    Plane,
+    Potential,
+    Result,
+    Slice,
+    SweepSpec,
+    System,
+    classify_orbits,
+    compute_basin_entropy,
+    compute_birkhoff_digits,
+    compute_map,
+    compute_origin_fates,
+    compute_regularity,
+    compute_separation,
+    compute_statistics,
+    compute_trust,
+    compute_uncertainty_exponent,
+    compute_wada_test,
+    find_divergent_start,
+    fit_decay_laws,
+    integrate_orbit,
+    open_result,
+    parse_formula,
+    review_potential,
+    run_sweep,
+    sample_starts,
+)
+
+C = Coordinate
+III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
+SPEC = MapSpec(III, Plane.X_PX, 0.36, (12, 10), t_max=200.0)
+TYPED = parse_formula("½(x² + 1.21y²) − 0.123456789012345x²y − 0.1a x³", parameters={"a": 0.7})
+
+SPECS = {
+    "paper": SPEC,
+    "window": replace(SPEC, window=(-0.3, 0.1, -0.2, 0.4)),
+    "backward": replace(SPEC, backward=True, certify=False),
+    "energies": MapSpec(III, Plane.X_H, (0.2, 0.5), (8, 8), t_max=50.0),
+    "tangential": MapSpec(POTENTIALS["HH"], Plane.TANGENTIAL, 0.2, (8, 8), t_max=50.0),
+    "held": MapSpec(TYPED, Slice(C.X, C.PX, C.PY, -1, ((C.Y, 0.1),)), 0.5, (8, 8), t_max=50.0),
+    "oblique": MapSpec(III, Slice(Direction("u", x=1.0, py=0.3), C.Y), 0.36, (8, 8), t_max=50.0),
+    "parameter": MapSpec(CASES["I"], Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (6, 6), t_max=50.0),
+}
+
+RESULTS: dict[str, Callable[[], Result | None]] = {
+    "regularity": lambda: compute_regularity(compute_map(replace(SPEC, t_max=1200.0))),
+    "trust": lambda: compute_trust(compute_map(SPEC)),
+    "origins": lambda: compute_origin_fates(SPEC),
+    "map with trust": lambda: compute_map(SPEC, with_trust=True),
+    "escaping orbit": lambda: integrate_orbit(TYPED, STATE, t_max=50.0),
+    "bounded orbit": lambda: integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0),
+    "outcomes": lambda: classify_orbits(III, 0.36, sample_starts(III, 0.36, 20), t_max=50.0),
+    "separation": lambda: compute_separation(III, STATE, (0.1, 0.0, 0.05, 0.60001), 10.0),
+    "digits": lambda: compute_birkhoff_digits(CASES["I"], (0.1, 0.0, 0.05, 0.3), 2e3),
+    "divergent start": lambda: find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.0, 50.0),
+    "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
+    "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
+}
+
+
+def to_netcdf(result: Result, folder: Path) -> Path:
+    result.to_xarray().to_netcdf(folder / "result.nc", engine="h5netcdf")
+    return folder / "result.nc"
+
+
+def to_zarr(result: Result, folder: Path) -> Path:
+    result.to_xarray().to_zarr(folder / "result.zarr", consolidated=False, zarr_format=3)
+    return folder / "result.zarr"
+
+
+WRITERS: dict[str, Callable[[Result, Path], Path]] = {"NetCDF": to_netcdf, "Zarr": to_zarr}
+
+
+def assert_equal(found: Any, wanted: Any) -> None:
+    """Equal to the last bit, but for the integration state, which files do not hold."""
+    assert type(found) is type(wanted)
+    for field in fields(wanted):
+        one, other = getattr(found, field.name), getattr(wanted, field.name)
+        if isinstance(other, np.ndarray):
+            np.testing.assert_array_equal(one, other, err_msg=field.name)
+            assert one.dtype == other.dtype
+            assert not one.flags.writeable
+        elif field.name != "batch":
+            assert type(one) is type(other), field.name
+            assert one == other or (one != one and other != other), field.name
+
+
+@pytest.mark.parametrize("how", WRITERS)
+@pytest.mark.parametrize("name", SPECS)
+def test_map_comes_back(name: str, how: str, tmp_path: Path) -> None:
+    wanted = compute_map(SPECS[name])
+    found = open_result(str(WRITERS[how](wanted, tmp_path)))
+    assert_equal(found, wanted)
+    assert found.fractions() == wanted.fractions()
+    assert found.spec.potential.name == wanted.spec.potential.name
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_map_of_a_random_potential_comes_back(seed: int, tmp_path: Path) -> None:
+    random = np.random.default_rng(seed)
+    terms = ((2, 0, 0.5), (0, 2, 0.5), *((i, 3 - i, float(c)) for i, c in enumerate(random.uniform(-0.5, 0.5, 4))))
+    potential = Potential(f"random {seed}", terms)
+    wanted = compute_map(MapSpec(potential, Plane.X_PX, 1.1 * potential.escape_energy, (6, 5), t_max=50.0))
+    assert_equal(open_result(to_netcdf(wanted, tmp_path)), wanted)
+
+
+@pytest.mark.parametrize("how", WRITERS)
+@pytest.mark.parametrize("name", RESULTS)
+def test_result_comes_back(name: str, how: str, tmp_path: Path) -> None:
+    wanted = RESULTS[name]()
+    assert wanted is not None
+    assert_equal(open_result(WRITERS[how](wanted, tmp_path)), wanted)
+
+
+SWEEP = SweepSpec(III, Plane.X_PX, (0.3, 0.36, 0.5), (30, 30), t_max=200.0)
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("sweeps") / "maps.zarr"
+    run_sweep(SWEEP, path)
+    return path
+
+
+def test_sweep_comes_back_as_its_dataset(store: Path) -> None:
+    xr.testing.assert_identical(
+        open_result(store), run_sweep(SweepSpec(III, Plane.X_PX, (0.3, 0.36, 0.5), (30, 30), t_max=200.0), store)
+    )
+
+
+@pytest.mark.parametrize("h", [0.3, 0.36, 0.5])
+def test_measures_and_analyses_take_a_map_of_a_sweep(h: float, store: Path) -> None:
+    window = tuple(open_result(store).attrs["window"])
+    one, wanted = open_result(store).sel(h=h), compute_map(MapSpec(III, Plane.X_PX, h, (30, 30), window, 200.0))
+    assert compute_basin_entropy(one) == compute_basin_entropy(wanted)
+    assert compute_wada_test(one).describe() == compute_wada_test(wanted).describe()
+    assert compute_statistics(one).shares == compute_statistics(wanted).shares
+    assert fit_decay_laws(one, resamples=500).describe() == fit_decay_laws(wanted, resamples=500).describe()
+    assert_equal(compute_regularity(one), compute_regularity(wanted))
+    assert_equal(compute_trust(one), compute_trust(wanted))
+
+
+def test_several_maps_are_no_map(store: Path) -> None:
+    with pytest.raises(ValueError, match=r"labels: a dataset of several maps; must be one of them, such as dataset.sel"):
+        compute_basin_entropy(open_result(store))
+
+
+def test_a_dataset_of_something_else_is_no_map() -> None:
+    with pytest.raises(ValueError, match=r"frame=.*: must be an EscapeMap, or a dataset of one"):
+        compute_statistics(integrate_orbit(III, STATE, 5.0).to_xarray())  # type: ignore[arg-type]
+
+
+def test_an_opened_map_cannot_be_resumed_but_says_so(tmp_path: Path) -> None:
+    opened = open_result(to_netcdf(compute_map(SPEC), tmp_path))
+    assert isinstance(opened, EscapeMap)
+    with pytest.raises(ValueError, match="resume"):
+        compute_map(replace(SPEC, t_max=400.0), resume=opened)
+
+
+def test_a_potential_whose_terms_are_not_understood_is_refused(tmp_path: Path) -> None:
+    dataset = compute_map(SPEC).to_xarray().assign_attrs(terms="0.5 x^2 + something")
+    dataset.to_netcdf(tmp_path / "result.nc", engine="h5netcdf")
+    with pytest.raises(ValueError, match="formula"):
+        open_result(tmp_path / "result.nc")
+
+
+def test_a_file_of_another_result_is_named(tmp_path: Path) -> None:
+    path = to_netcdf(review_potential(III), tmp_path)
+    with pytest.raises(ValueError, match="holds PotentialReview; must hold"):
+        open_result(path)
+    xr.Dataset({"a": 1}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    with pytest.raises(ValueError, match="holds no result"):
+        open_result(tmp_path / "other.nc")
+    with pytest.raises(OSError, match=r"missing\.nc"):
+        open_result(tmp_path / "missing.nc")

@@ -1,0 +1,102 @@
+"""Flux through the exits and volume inside: against quadrature, the limit at the saddle, escapes of random starts, and units."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy import integrate
+
+from engine import (
+    CASES,
+    POTENTIALS,
+    Plane,
+    Potential,
+    classify_orbits,
+    compute_flux,
+    default_window,
+    find_lyapunov_orbits,
+    sample_starts,
+)
+from engine.exits.interior import find_outside_channels
+
+HENON_HEILES = POTENTIALS["HH"]
+SYSTEMS = [(CASES["I"], 0.19), (CASES["II"], 0.25), (CASES["III"], 0.45), (CASES["III"], 0.27), (HENON_HEILES, 0.2)]
+each_system = pytest.mark.parametrize(("potential", "energy"), SYSTEMS)
+
+
+@each_system
+def test_flux_is_the_integral_over_the_exit_of_all_outward_velocities(potential: Potential, energy: float) -> None:
+    # Per length of the exit: ∫ (v·n)₊ δ(H − h) dpx dpy = 2 √(2 (h − V)).
+    for orbit, flux in zip(find_lyapunov_orbits(potential, energy), compute_flux(potential, energy).flux, strict=True):
+        path = orbit.half_path
+        lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+        speed = np.sqrt(2.0 * np.clip(energy - potential.value(*path.T), 0.0, None))
+        assert flux == pytest.approx(2.0 * integrate.trapezoid(speed, lengths), rel=1e-3)
+
+
+@each_system
+def test_straight_lines_across_an_exit_have_more_flux(potential: Potential, energy: float) -> None:
+    orbit = find_lyapunov_orbits(potential, energy)[0]
+    ends = orbit.half_path[[0, -1]]
+    s = np.linspace(0.0, 1.0, 2001)[:, None]
+    speed = np.sqrt(2.0 * np.clip(energy - potential.value(*((1.0 - s) * ends[0] + s * ends[1]).T), 0.0, None))
+    chord = float(np.hypot(*(ends[1] - ends[0])))
+    assert compute_flux(potential, energy).flux[0] <= 2.0 * chord * integrate.trapezoid(speed, s[:, 0]) * (1.0 + 1e-4)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_just_above_the_saddle_the_flux_is_that_of_an_oscillator(case: str) -> None:
+    potential = CASES[case]
+    above = 1e-6
+    across = np.linalg.eigvalsh(potential.hessian_matrix(*potential.saddles[0]))[1]
+    flux = compute_flux(potential, potential.escape_energy + above).flux
+    np.testing.assert_allclose(flux, 2.0 * math.pi * above / math.sqrt(across), rtol=1e-4)
+
+
+def test_the_area_inside_is_that_of_a_disc_where_the_well_is_nearly_round() -> None:
+    # With V = ½ r² − r³ f(θ) it is 2πh + 12 h² ∫ f² dθ + …; for case I the integral of cos² θ sin⁴ θ is π/8.
+    h = 0.01
+    found = compute_flux(CASES["I"], h)
+    assert found.area == pytest.approx(2.0 * math.pi * h * (1.0 + 0.75 * h), rel=5e-4)
+    assert (found.decay_rate, found.mean_passage_time, found.flux.size) == (0.0, math.inf, 0)
+
+
+@each_system
+def test_area_agrees_with_the_share_of_random_points(potential: Potential, energy: float) -> None:
+    found, window = compute_flux(potential, energy), default_window(potential, Plane.X_Y, energy)
+    random = np.random.default_rng(5)
+    x, y = (
+        random.uniform(window.x_low, window.x_high, 100_000),
+        random.uniform(window.ordinate_low, window.ordinate_high, 100_000),
+    )
+    inside = (potential.value(x, y) <= energy) & (find_outside_channels(potential, energy, x, y) == 0)
+    whole = (window.x_high - window.x_low) * (window.ordinate_high - window.ordinate_low)
+    error = math.sqrt(inside.mean() * (1.0 - inside.mean()) / inside.size)
+    assert found.area / whole == pytest.approx(inside.mean(), abs=4.0 * error)
+    assert found.area_error < 1e-3 * found.area
+
+
+@each_system
+def test_starts_on_the_energy_surface_leave_at_the_rate_of_flux_over_volume(potential: Potential, energy: float) -> None:
+    count, time = 50_000, 0.5
+    fate = classify_orbits(potential, energy, sample_starts(potential, energy, count, seed=2), t_max=time).fate
+    found = compute_flux(potential, energy)
+    for channel, flux in zip(found.channels, found.flux, strict=True):
+        expected = flux * time / found.volume
+        assert np.mean(fate == channel) == pytest.approx(expected, abs=4.0 * math.sqrt(expected / count))
+
+
+def test_flux_and_volume_follow_the_units() -> None:
+    length, energy = 3.0, 0.7
+    scaled = Potential("scaled", tuple((i, j, c * energy / length ** (i + j)) for i, j, c in CASES["II"].terms))
+    one, other = compute_flux(CASES["II"], 0.25), compute_flux(scaled, 0.25 * energy)
+    np.testing.assert_allclose(other.flux, one.flux * length * math.sqrt(energy), rtol=1e-9)
+    assert other.volume == pytest.approx(one.volume * length**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("energy", [math.nan, 0.0, -1.0])
+def test_energies_below_the_well_are_refused(energy: float) -> None:
+    with pytest.raises(ValueError, match="energy="):
+        compute_flux(CASES["I"], energy)

@@ -1,0 +1,79 @@
+"""A user's script: it runs with the wheel, and `mypy --strict` finds the types of what it calls."""
+
+from __future__ import annotations
+
+from typing import assert_type
+
+import numpy as np
+
+from escape_explorer import (
+    CASES,
+    POTENTIALS,
+    BasinEntropy,
+    DecayLaws,
+    EscapeMap,
+    Execution,
+    Fate,
+    IndicatorVerdict,
+    MapSpec,
+    Orbit,
+    Outcomes,
+    Plane,
+    Potential,
+    RegularityMap,
+    SweepPlan,
+    SweepSpec,
+    WadaTest,
+    Window,
+    classify_orbits,
+    compute_basin_entropy,
+    compute_crossing_statistics,
+    compute_map,
+    compute_regularity,
+    compute_statistics,
+    compute_wada_test,
+    evaluate_indicators,
+    find_lyapunov_orbits,
+    find_stable_manifolds,
+    fit_decay_laws,
+    integrate_orbit,
+    parse_formula,
+    plan_sweep,
+    sample_starts,
+    trace_zero_velocity_curve,
+)
+
+EDGES = (-1.0, 1.0, -1.0, 1.0)
+
+
+def measure(potential: Potential, energy: float) -> tuple[BasinEntropy, WadaTest]:
+    """Measures of the basins of a small map."""
+    spec = MapSpec(potential, Plane.X_PX, energy, resolution=(60, 60), window=EDGES, t_max=1e3)
+    assert_type(spec.find_window(), Window)
+    escapes = compute_map(spec)
+    assert_type(escapes, EscapeMap)
+    assert_type(escapes.fractions(), dict[int, float])
+    assert_type(compute_regularity(escapes), RegularityMap)
+    assert_type(fit_decay_laws(compute_statistics(escapes, EDGES), resamples=500), DecayLaws)
+    return compute_basin_entropy(escapes), compute_wada_test(escapes)
+
+
+def follow(potential: Potential, energy: float) -> Orbit:
+    """The first of ten random starts, followed to its escape."""
+    starts = sample_starts(potential, energy, 10, plane=Plane.X_Y, window=EDGES, seed=1)
+    assert_type(classify_orbits(potential, energy, starts, t_max=1e3, execution=Execution()), Outcomes)
+    orbit = integrate_orbit(potential, starts[0], t_max=1e3)
+    assert_type(evaluate_indicators(orbit), tuple[IndicatorVerdict, ...])
+    assert_type(orbit.fate, int)
+    return orbit
+
+
+entropy, wada = measure(CASES["III"], 0.45)
+print(entropy.describe(), wada.describe())
+print(follow(parse_formula("½(x² + y²) − x²y"), 0.2).fate >= Fate.BOUNDED)
+assert_type(plan_sweep(SweepSpec(POTENTIALS["HH"], Plane.X_PX, np.linspace(0.2, 0.3, 2), window=EDGES, t_max=100.0)), SweepPlan)
+table = compute_crossing_statistics(CASES["III"], Plane.X_PX, np.array([0.3, 0.4]), (20, 20), 100.0, window=EDGES)
+print(table["escaped_share"].values)
+print([orbit.period for orbit in find_lyapunov_orbits(CASES["I"], 0.19)])
+print(len(find_stable_manifolds(CASES["I"], 0.19, images=1, window=EDGES).arcs))
+print(len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, EDGES)))

@@ -1,0 +1,83 @@
+"""Reduced histories look like the curve: itself where it can be seen, elsewhere its envelope and its mean."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import CASES, integrate_orbit
+from plots.histories import History, reduce_history
+from plots.orbit_curves import compute_orbit_curves, restrict_curves
+
+TIMES = np.linspace(0.02, 1e4, 400_000)
+
+
+@pytest.fixture(scope="module")
+def oscillation() -> History:
+    return reduce_history(TIMES, 1.0 + np.cos(2.0 * TIMES), logarithmic=False)
+
+
+def test_early_oscillations_are_drawn_themselves(oscillation: History) -> None:
+    times, values = oscillation.line
+    early = times < 10.0
+    np.testing.assert_array_equal(values[early], 1.0 + np.cos(2.0 * times[early]))
+    assert (np.ptp(values[early]), oscillation.band[0].min() > 10.0) == (pytest.approx(2.0, abs=1e-3), True)
+
+
+def test_late_oscillations_are_an_envelope_with_its_mean(oscillation: History) -> None:
+    times, low, high = oscillation.band
+    late = times > 500.0
+    np.testing.assert_allclose(low[late], 0.0, atol=1e-3)
+    np.testing.assert_allclose(high[late], 2.0, atol=1e-3)
+    np.testing.assert_allclose(oscillation.line[1][oscillation.line[0] > 500.0], 1.0, atol=0.1)
+
+
+def test_a_history_has_few_points_and_its_whole_duration(oscillation: History) -> None:
+    times = oscillation.line[0]
+    assert times.size < 6000
+    assert (times[0], times[-1], oscillation.band[0][-1]) == (TIMES[0], TIMES[-1], TIMES[-1])
+    assert np.all(np.diff(times) > 0.0)
+
+
+def test_a_single_peak_is_within_the_envelope() -> None:
+    values = 1.0 + np.cos(2.0 * TIMES)
+    values[312_345] = 5.0
+    assert reduce_history(TIMES, values, logarithmic=False).highest == 5.0
+
+
+def test_a_curve_without_oscillations_has_no_envelope() -> None:
+    history = reduce_history(TIMES, np.exp(-1e-3 * TIMES), logarithmic=True)
+    assert history.band[0].size == 0
+    np.testing.assert_array_equal(history.line[1], np.exp(-1e-3 * history.line[0]))
+
+
+def test_the_mean_of_a_logarithmic_axis_is_geometric() -> None:
+    history = reduce_history(TIMES, np.exp(np.sin(2.0 * TIMES)), logarithmic=True)
+    assert history.line[1][-1] == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("samples", [0, 1, 50])
+def test_a_short_history_is_not_changed(samples: int) -> None:
+    history = reduce_history(TIMES[:samples], TIMES[:samples], logarithmic=False)
+    np.testing.assert_array_equal(history.line, (TIMES[:samples], TIMES[:samples]))
+    assert (history.outline[0].size, samples or np.isnan(history.highest)) == (0, samples or True)
+
+
+def test_each_orbit_is_reduced_over_its_own_time() -> None:
+    """Of a long orbit the early oscillations are drawn, as those of a short one beside it."""
+    potential, bounded, escaping = CASES["I"], (-0.46, 0.0, 0.0, 0.2), (0.1, 0.0, 0.05, 0.6)
+    for state, t_max in ((bounded, 1e5), (escaping, 1e5)):
+        curves = compute_orbit_curves(potential, integrate_orbit(potential, state, t_max))
+        times, values = curves.r2.line
+        assert times[-1] == curves.orbit.t[-1]
+        early = times < min(15.0, float(times[-1]))
+        np.testing.assert_array_equal(values[early], curves.orbit.r2[np.searchsorted(curves.orbit.t, times[early])])
+        assert np.diff(times[early]).max() < 0.3
+
+
+def test_a_short_interval_of_a_long_orbit_is_the_curve_itself() -> None:
+    orbit = integrate_orbit(CASES["I"], (-0.46, 0.0, 0.0, 0.2), 1e5)
+    part = restrict_curves(compute_orbit_curves(CASES["I"], orbit), 9e4, 9.01e4)
+    inside = (orbit.t >= 9e4) & (orbit.t <= 9.01e4)
+    np.testing.assert_array_equal(part.r2.line[1], orbit.r2[inside])
+    assert part.r2.band[0].size == 0
