@@ -8,7 +8,6 @@ from html import escape
 from typing import Any
 
 import numpy as np
-import panel as pn
 
 from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
@@ -18,6 +17,7 @@ from app.state.glossary import with_terms
 from app.state.view_state import IMAGES, SYSTEM, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView
 from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
+from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from engine import (
     Curves,
@@ -80,7 +80,7 @@ class AnalysisPresenter:
         # All images that are computed.
         self._manifolds: StableManifolds | None = None
         self._notes: dict[str, str] = {}
-        self.notes = pn.pane.HTML("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
+        self.notes = TextPane("", name="notes", sizing_mode="stretch_width", margin=(0, 10), css_classes=["notes"])
         self.measures = BasinMeasuresView(locked(self._measure), on_copy, locked(lambda: state.param.update(box=None)))
         state.param.watch(lambda event: self.measures.show_box(event.new), "box")
         self.measures.show_box(state.box)

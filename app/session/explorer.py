@@ -36,6 +36,7 @@ from app.views.components.analysis_choice import AnalysisTabs
 from app.views.components.collapsible_section import Drawers, Fold, Stack
 from app.views.components.notice import Notice
 from app.views.components.progress import ProgressView
+from app.views.components.texts import TextPane
 from app.views.maps.map_plots import MapActions, MapsView
 from app.views.maps.map_toolbar import MapToolbar
 from app.views.panels.accessible_table import AccessibleTable
@@ -230,9 +231,9 @@ class Explorer:
 
     def _build_help(self) -> list[pn.viewable.Viewable]:
         return [
-            pn.pane.HTML(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
+            TextPane(f"<h3>Keys</h3>{key_legend()}", sizing_mode="stretch_width", margin=(0, 10)),
             equations_pane(self.state),
-            *Fold("Terms", lambda: [pn.pane.HTML(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),
+            *Fold("Terms", lambda: [TextPane(glossary_list(), sizing_mode="stretch_width", margin=(0, 10))]).parts(),
             *self.accessible_table.fold.parts(),
         ]
 

@@ -72,7 +72,7 @@ class OrbitPresenter:
         self._show_restricted = locked(self._on_restricted)
         actions = OrbitActions(
             add=locked(on_start),
-            choose=lambda place: state.param.update(chosen=place),
+            choose=locked(self._choose),
             remove=locked(lambda: state.remove_start(state.chosen)),
             clear=locked(lambda: state.param.update(starts=(), chosen=0)),
             find_divergent_start=locked(lambda: self._divergent_start.search()),
@@ -121,6 +121,11 @@ class OrbitPresenter:
 
     def _end_message(self) -> None:
         self.controls.end_message(has_orbits=bool(self._state.starts))
+
+    def _choose(self, place: int) -> None:
+        # Orbits may have been removed since.
+        if place < len(self._state.starts):
+            self._state.chosen = place
 
     def _open_plane(self) -> None:
         """Open the section at the energy, or the value of the parameter, of the chosen orbit, with that orbit."""

@@ -78,11 +78,11 @@ _DIFFERENCE = """expected => {
     return null
 }"""
 
-# Waits for a step back: before it is taken, a further one would be counted from the old entry, and could leave the page.
-_GO = """steps => steps > 0 ? history.go(steps) : new Promise(done => {
-    addEventListener("popstate", () => done(), {once: true})
-    history.go(steps)
-})"""
+# Waits for the step, from whose entry a further one is counted; a new entry ends it.
+_GO = """steps => {
+    const target = navigation.entries()[navigation.currentEntry.index + steps]
+    if (target?.sameDocument) return navigation.traverseTo(target.key).finished.then(() => null, () => null)
+}"""
 
 # The end of waiting: the page agrees, or its address is another one.
 _AGREEMENT = f"""expected => {{
@@ -186,8 +186,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
 
     def move(steps: int) -> None:
         """Go through the browser's history, without leaving the page."""
-        if page.evaluate("() => history.state?.entry ?? 0") + steps >= 0:
-            page.evaluate(_GO, steps)
+        page.evaluate(_GO, steps)
 
     def click() -> None:
         x_low, x_high, low, high = explorer.ranges("basins")
@@ -197,7 +196,7 @@ def actions(explorer: ExplorerPage, chance: random.Random) -> Mapping[str, Calla
     def show_preset() -> None:
         preset = chance.choice(QUICK)
         explorer.press("Gallery")
-        page.get_by_role("button", name=preset.title).first.click()
+        page.locator(".gallery:not(.few)").get_by_role("button", name=preset.title).first.click()
         explorer.press("Close")
         # Pressed while the drawer is still open, its button would close it again.
         expect(explorer.button("Close")).to_be_hidden()

@@ -16,6 +16,7 @@ from app.views.components.chart_hover import chart_hover
 from app.views.components.copy_button import copy_button, number_rows
 from app.views.components.legends import legend
 from app.views.components.plots import set_decades, set_range, square_figure
+from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button
 from engine import DecayLaws, EscapeFlux, Result, UncertaintyExponent, Window
 from engine.service import BasinMeasures, LawFit
@@ -49,7 +50,7 @@ class BasinMeasuresView:
     def __init__(self, on_exponent: Callable[[], None], on_copy: Callable[[str], None], on_whole: Callable[[], None]) -> None:
         self.button = button("Measure the uncertainty exponent", on_exponent)
         self.whole = button(COUNT_WHOLE, on_whole, visible=False)
-        self.text = pn.pane.HTML("", name="measures", sizing_mode="stretch_width")
+        self.text = TextPane("", name="measures", sizing_mode="stretch_width")
         self.copy = copy_button(self._rows, on_copy)
         self._sentences: dict[str, str] = {}
         self._results: dict[str, Result] = {}
@@ -176,7 +177,7 @@ class BasinMeasuresView:
 
     def _law_legend(self) -> pn.viewable.Viewable:
         entries = [Entry("starts", MEASURED), *(Entry(law, colour) for law, colour in LAW_COLOURS.items())]
-        return pn.pane.HTML(legend(entries), margin=(0, 10))
+        return TextPane(legend(entries), margin=(0, 10))
 
     def _rows(self) -> list[tuple[str, str, str]]:
         """The numbers of all measures, at full precision."""

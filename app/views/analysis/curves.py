@@ -15,6 +15,7 @@ from app.views.components.chart_hover import chart_hover
 from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
+from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from engine import Curves, System
 from engine.service import PARAMETERS
@@ -80,7 +81,7 @@ class CurvesView:
         self.running = False
         self.button = button(START, on_sweep, width=180, align="end")
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
-        self.text = pn.pane.HTML(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
+        self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._axis = Range1d(0.0, 1.0)
         # Automatic ranges would warn in the browser as long as there are no numbers.
         self._values = {name: Range1d(*_FIRST_RANGE.get(name, (0.0, 1.0))) for name in TITLES}
@@ -88,7 +89,7 @@ class CurvesView:
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
         self._energy = 0.0
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
-        self._legend = pn.pane.HTML(margin=(0, 10))
+        self._legend = TextPane(margin=(0, 10))
         self._figures: list[figure] = []
         self._plots = pn.Column(sizing_mode="stretch_width", margin=0, styles=FULL_HEIGHT, css_classes=["curves"], visible=False)
 
@@ -253,7 +254,7 @@ def _is_dashed(code: int) -> bool:
 
 
 def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
-    return pn.pane.HTML(legend(Entry(label, colour) for label, colour in entries.items()), margin=(0, 10))
+    return TextPane(legend(Entry(label, colour) for label, colour in entries.items()), margin=(0, 10))
 
 
 def _progress(curves: Curves) -> str:

@@ -13,7 +13,8 @@ from app.browser.formula_box import FormulaBox
 from app.browser.parameter_slider import ParameterSlider
 from app.state.system_review import SystemReview
 from app.views.components.flex_row import flex_row
-from app.views.components.widgets import StatusPane, button
+from app.views.components.texts import StatusPane, TextPane
+from app.views.components.widgets import button
 from engine import PotentialReview, System, write_formula
 from engine.service import (
     CATALOGUE,
@@ -75,20 +76,20 @@ class PotentialPanel:
         self.formula = FormulaBox(
             self._take_text, label="V(x, y) =", placeholder=_PLACEHOLDER, sizing_mode="stretch_width", margin=(5, 0)
         )
-        self.typeset = pn.pane.HTML("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
+        self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
         self.move = button("Use this well, moved to the origin", self._move, visible=False, margin=(8, 0))
         self.sliders = {name: self._make_slider(name) for name in PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
         self.reset = button("Reset to 1", lambda: self._choose(System(self.shown.case, self.shown.formula)), margin=(8, 0))
-        self.facts = pn.pane.HTML("", sizing_mode="stretch_width", margin=0)
+        self.facts = TextPane("", sizing_mode="stretch_width", margin=0)
         self._show(used.system)
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Parts of a column, those of fixed height first, so that none moves while the formula is typed."""
-        parameters = pn.pane.HTML("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 0), sizing_mode="stretch_width")
+        parameters = TextPane("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 0), sizing_mode="stretch_width")
         buttons = flex_row(self.reset, self.move, gap="8px")
         return [
             self.known,

@@ -15,6 +15,7 @@ from app.views.components.chart_hover import chart_hover
 from app.views.components.copy_button import copy_button
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent, percent_range
+from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
 from plots.palette import PAPER, Palette
@@ -48,7 +49,7 @@ class StatisticsView:
         self._frame: EscapeMap | None = None
         self._box: Window | None = None
         self._active = False
-        self.table = pn.pane.HTML("", name="statistics", sizing_mode="stretch_width")
+        self.table = TextPane("", name="statistics", sizing_mode="stretch_width")
         self.whole = button(COUNT_WHOLE, on_whole, visible=False)
         self.copy = copy_button(self._rows, on_copy)
 

@@ -8,6 +8,7 @@ from html import escape
 import panel as pn
 
 from app.state.view_state import IMAGE_CHOICES, LAYERS, Analysis, ViewState
+from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 
 LAYER_LABELS = {
@@ -82,7 +83,7 @@ class ComparisonSwitch:
     def __init__(self, state: ViewState, compare: Callable[[bool], None], swap: Callable[[], None]) -> None:
         self._state, self._on = state, ["Compare with this view"]
         self.switch = Switches(label="Comparison", options=self._on, value=self._value(), margin=(0, 10, 4, 10))
-        self.view = pn.pane.HTML("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
+        self.view = TextPane("", sizing_mode="stretch_width", margin=(0, 10), css_classes=["quiet"])
         self.swap = button("Swap the views", swap, kind="light", margin=(2, 10))
         self.switch.param.watch(lambda event: self._take(bool(event.new), compare), "value")
         state.param.watch(lambda event: self._follow(), "compared")

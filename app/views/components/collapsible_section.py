@@ -8,6 +8,7 @@ from typing import Any
 import panel as pn
 
 from app.views.components.flex_row import FULL_HEIGHT
+from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
@@ -135,7 +136,7 @@ class Drawers(Stack):
 
     def _with_head(self, title: str, build: Build) -> Build:
         def build_all() -> list[pn.viewable.Viewable]:
-            head = pn.pane.HTML(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=(5, 0))
+            head = TextPane(f"<h2>{title}</h2>", sizing_mode="stretch_width", margin=(5, 0))
             close = button("Close", lambda: self.show(None), kind="light", margin=0)
             return [pn.Row(head, close, sizing_mode="stretch_width", margin=0), *build()]
 

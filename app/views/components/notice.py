@@ -10,6 +10,8 @@ import panel as pn
 from bokeh.document import Document
 from bokeh.models import CustomJS
 
+from app.views.components.texts import TextPane
+
 CONNECTION_LOST = "The connection to the server is lost. Reload this page: its address holds the view."
 NAME = "notice"
 """Name of the Bokeh model, by which the server finds it in a document."""
@@ -23,7 +25,7 @@ pane.setv({text: html}, {sync: false})
 """
 
 
-class _NamedPane(pn.pane.HTML):
+class _NamedPane(TextPane):
     """A pane whose Bokeh model has the name that `show_lasting_notice` and the browser look for."""
 
     def _get_properties(self, doc: Document) -> dict[str, Any]:

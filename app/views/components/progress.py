@@ -12,6 +12,7 @@ import panel as pn
 from app.state.glossary import with_terms
 from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.components.numbers import grouped, percent
+from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import Certificate, EscapeMap, Fate
 from engine.service import format_number
@@ -38,7 +39,7 @@ class ProgressView:
         # Time and undecided share at the beginning of the last stage.
         self._last_stage: tuple[float, float] | None = None
         self.bar = pn.indicators.Progress(value=0, sizing_mode="stretch_width", height=3, margin=0, css_classes=["progress"])
-        self.text = pn.pane.HTML("", name="progress", margin=0, css_classes=["status"])
+        self.text = TextPane("", name="progress", margin=0, css_classes=["status"])
         self.button = button(STOP, self._press, margin=0, styles=keep_place(shown=False), css_classes=["solid", "stop"])
 
     def layout(self) -> list[pn.viewable.Viewable]:

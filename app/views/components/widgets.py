@@ -32,27 +32,11 @@ class SegmentedControl(_NamedGroup, pn.widgets.RadioBoxGroup):
         super().__init__(inline=True, **({"css_classes": ["segmented"]} | options))
 
 
-class OrbitList(_NamedGroup, pn.widgets.RadioBoxGroup):
-    """Radio buttons drawn as rows, each with the colour of an orbit, given by the CSS variables --orbit-1 and so on."""
-
-    _role = "radiogroup"
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(inline=False, css_classes=["orbit-list"], sizing_mode="stretch_width", **options)
-
-
 class Switches(_NamedGroup, pn.widgets.CheckBoxGroup):
     """Checkboxes drawn as switches; `value` lists those that are on."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(inline=True, css_classes=["switches"], **options)
-
-
-class StatusPane(pn.pane.HTML):
-    """Text whose changes screen readers read out when they have finished what they are reading."""
-
-    def _get_properties(self, doc: Document | None) -> dict[str, Any]:
-        return {**super()._get_properties(doc), "html_attributes": {"role": "status"}}
 
 
 def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **options: Any) -> pn.widgets.Button:

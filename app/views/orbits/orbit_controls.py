@@ -9,13 +9,15 @@ from html import escape
 
 import panel as pn
 
+from app.browser.orbit_list import OrbitList
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.glossary import with_terms
 from app.views.components.collapsible_section import Fold
 from app.views.components.copy_button import copy_button, number_rows
 from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.numbers import grouped
-from app.views.components.widgets import OrbitList, button
+from app.views.components.texts import TextPane
+from app.views.components.widgets import button
 from engine import Coordinate, IndicatorVerdict, Orbit, Slice
 from engine.service import SECTION
 from plots.orbit_curves import initial_state
@@ -50,30 +52,28 @@ class OrbitControls:
         self.x = pn.widgets.TextInput(label="x", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.ordinate = pn.widgets.TextInput(label="px", value="0", max_length=_LONGEST_NUMBER, width=_BOX)
         self.button = button("Integrate", self._submit, kind="primary", align="end")
-        # On the page from the start: a list that changes while Bokeh is still building its view fails in the browser.
-        self.choice = OrbitList(label="Orbits", options=[], visible=False)
+        self.list = OrbitList(self._choose, visible=False)
         self.divergent_start = button("Find its twin", actions.find_divergent_start, margin=0)
         self.remove = button("Remove", actions.remove, margin=0)
         self.clear = button("Clear all", actions.clear, margin=0)
         self.open_plane = button("", actions.open_plane, margin=0)
-        self.interval = pn.pane.HTML("", name="interval", margin=0, css_classes=["quiet"])
+        self.interval = TextPane("", name="interval", margin=0, css_classes=["quiet"])
         self._all_times = button("Whole orbit", actions.show_all_times, margin=0, visible=False)
         self._interval_row = flex_row(self.interval, self._all_times, justify="space-between", align="center")
         self._interval_row.param.update(margin=(0, 10), css_classes=["interval"])
-        self.note = pn.pane.HTML(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
-        self.text = pn.pane.HTML("", name="verdict", sizing_mode="stretch_width", margin=(0, 10), css_classes=["verdict"])
-        self.values = pn.pane.HTML("", name="values", sizing_mode="stretch_width", margin=(0, 10))
-        self.indicators = pn.pane.HTML("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
+        self.note = TextPane(HINT, name="note", sizing_mode="stretch_width", margin=(0, 10), css_classes=["note"])
+        self.text = TextPane("", name="verdict", sizing_mode="stretch_width", margin=(0, 10), css_classes=["verdict"])
+        self.values = TextPane("", name="values", sizing_mode="stretch_width", margin=(0, 10))
+        self.indicators = TextPane("", name="indicators", sizing_mode="stretch_width", margin=(0, 10))
         self._verdicts: Sequence[IndicatorVerdict] = ()
         self.copy = copy_button(self._rows, actions.copy)
-        self.choice.param.watch(lambda event: self._choose(event.new), "value")
         for box in (self.x, self.ordinate):
             box.param.watch(lambda event: self._submit(), "enter_pressed")
 
     def entry(self) -> list[pn.viewable.Viewable]:
         """The hint or message, the boxes to type a start, and the list of the orbits."""
         boxes = Fold("Type a start", lambda: [flex_row(self.x, self.ordinate, self.button, align="end")])
-        return [self.note, *boxes.parts(), self.choice]
+        return [self.note, *boxes.parts(), self.list]
 
     def head(self, playback: pn.viewable.Viewable) -> pn.viewable.Viewable:
         """Buttons, the fate of the chosen one in a line, and the player."""
@@ -98,7 +98,7 @@ class OrbitControls:
 
     def set_palette(self, palette: Palette) -> None:
         """Set the colours of the orbits' numbers."""
-        self.choice.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
+        self.list.styles = {f"--orbit-{place + 1}": colour for place, colour in enumerate(palette.orbits)}
 
     def show_interval(self, interval: tuple[float, float] | None, duration: float) -> None:
         """Show which part of the duration is in view; None is the whole duration."""
@@ -127,11 +127,8 @@ class OrbitControls:
     def show(self, orbits: Sequence[ChosenOrbit], chosen: int) -> None:
         """Show the list of orbits, and the values and verdict of the chosen one."""
         self._shown = (tuple(orbits), chosen)
-        self.choice.param.update(
-            options={_row(orbits, place): place for place in range(len(orbits))},
-            value=chosen if orbits else None,
-            visible=bool(orbits),
-        )
+        rows = [_row(orbits, place) for place in range(len(orbits))]
+        self.list.param.update(rows=rows, chosen=chosen, visible=bool(orbits))
         if not orbits:
             return
         one = orbits[chosen]
@@ -149,8 +146,8 @@ class OrbitControls:
         verdicts = [(one.name, repr(one.value), str(one.conclusion or "no verdict")) for one in self._verdicts]
         return [*number_rows("start", start), *number_rows("orbit", orbit.numbers()), *verdicts]
 
-    def _choose(self, place: int | None) -> None:
-        if place is not None and place != self._shown[1]:
+    def _choose(self, place: int) -> None:
+        if place != self._shown[1]:
             self._actions.choose(place)
 
     def _submit(self) -> None:

@@ -7,6 +7,7 @@ import panel as pn
 from bokeh.models import ColumnDataSource, Line, Range1d
 
 from app.views.components.plots import HISTORY_ASPECT, set_decades, set_range, square_figure
+from app.views.components.texts import TextPane
 from engine import Separation
 from plots.palette import PAPER, Palette
 
@@ -21,7 +22,7 @@ class SeparationPlot:
     def __init__(self) -> None:
         self._times, self._distances = Range1d(0.0, 10.0), Range1d(LEAST, 10.0)
         self._source = ColumnDataSource({"t": [], "distance": []}, name="separation_source")
-        self._pair = pn.pane.HTML(_ALONE, name="pair", margin=(0, 10), css_classes=["quiet"])
+        self._pair = TextPane(_ALONE, name="pair", margin=(0, 10), css_classes=["quiet"])
         self._line = Line(x="t", y="distance", line_width=1.5, line_color=PAPER.orbits[1])
 
     def build(self) -> pn.viewable.Viewable:

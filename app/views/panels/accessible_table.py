@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from html import escape
 from math import isfinite
 
-import panel as pn
-
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import grouped, percent
+from app.views.components.texts import TextPane
 from engine import EscapeMap, Fate, compute_statistics
 from engine.service import format_time
 
@@ -23,7 +22,7 @@ class AccessibleTable:
         self._state = state
         self._frame: EscapeMap | None = None
         self._orbits: Sequence[ChosenOrbit] = ()
-        self.text = pn.pane.HTML("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
+        self.text = TextPane("", name="accessible-table", sizing_mode="stretch_width", margin=(0, 10))
         self.fold = Fold("This page as a table", lambda: [self.text])
         self.fold.button.on_click(lambda event: self._write())
 

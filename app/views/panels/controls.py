@@ -15,6 +15,7 @@ from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed
 from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.number_box import NumberBox
+from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 from engine import CASES, Plane, Slice
 from engine.service import EnergyRange
@@ -79,7 +80,7 @@ class Controls:
         # Panel chooses the first option in place of none when it makes a widget.
         self.plane.value = self._plane()
         self.axes = button(AXES, actions.choose_slice, kind="light", css_classes=["half"], margin=(8, 10, 8, 4))
-        self.ticks = pn.pane.HTML(sizing_mode="stretch_width", height=24, margin=(0, 10))
+        self.ticks = TextPane(sizing_mode="stretch_width", height=24, margin=(0, 10))
         self.energy = EnergySlider(
             self._take_energy, name="energy", sizing_mode="stretch_width", margin=(0, 10), css_classes=["energy"]
         )
@@ -93,7 +94,7 @@ class Controls:
             css_classes=["half"],
             margin=(0, 0, 0, 10),
         )
-        self.facts = pn.pane.HTML(margin=(6, 10), sizing_mode="stretch_width")
+        self.facts = TextPane(margin=(6, 10), sizing_mode="stretch_width")
         self.layers = LayerSwitches(state)
         self.comparison = ComparisonSwitch(state, actions.compare, actions.swap)
         layers = Fold("Layers", lambda: [*self.layers.parts(), *self.comparison.parts()], is_open=True)

@@ -12,6 +12,7 @@ from app.job_clients.orbit_requests import ChosenOrbit
 from app.runtime.process_state import process_state
 from app.state.view_state import ViewState
 from app.views.components.file_saver import FileSaver
+from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_choices import Shown
@@ -54,9 +55,9 @@ class Downloads:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """The buttons, in a column."""
-        hint = pn.pane.HTML(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
+        hint = TextPane(f"<span class='quiet'>{NOT_ALLOWED}</span>", visible=self.embed.disabled)
         files = [self.maps, self.orbits, self.curves, self.script]
-        titles = [pn.pane.HTML(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data")]
+        titles = [TextPane(f"<h3>{title}</h3>", margin=(6, 10, 0, 10)) for title in ("Figure", "Data")]
         return [self.link, self.embed, hint, titles[0], *self.figure.build(), titles[1], *files, self.saver]
 
     @property

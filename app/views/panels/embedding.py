@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from html import escape
 
-import panel as pn
-
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
+from app.views.components.texts import TextPane
 
 NOT_ALLOWED = "This server lets no other page embed it."
 
@@ -36,7 +35,7 @@ class OpenLink:
     """The link in an embedded page that opens its view in a tab of its own."""
 
     def __init__(self) -> None:
-        self.pane = pn.pane.HTML("", margin=0, css_classes=["open-explorer"])
+        self.pane = TextPane("", margin=0, css_classes=["open-explorer"])
 
     def show(self, link: str) -> None:
         """Lead to a view; `link` as of `app.state.permalink.write_link`."""

@@ -7,6 +7,7 @@ from html import escape
 import panel as pn
 
 from app.state.view_state import SYSTEM, ViewState
+from app.views.components.texts import TextPane
 from plots.mathml import equations
 
 
@@ -16,6 +17,6 @@ def equations_pane(state: ViewState) -> pn.viewable.Viewable:
     def html() -> str:
         return f"<h3>Equations: {escape(state.system.title)}</h3>{equations(state.potential)}"
 
-    pane = pn.pane.HTML(html(), margin=(0, 10), sizing_mode="stretch_width")
+    pane = TextPane(html(), margin=(0, 10), sizing_mode="stretch_width")
     state.param.watch(lambda *events: pane.param.update(object=html()), list(SYSTEM))
     return pane

@@ -14,7 +14,8 @@ from app.browser.image_copier import ImageCopier
 from app.state.view_state import ViewState
 from app.views.components.file_saver import FileSaver
 from app.views.components.number_box import NumberBox
-from app.views.components.widgets import SegmentedControl, StatusPane, Switches, button
+from app.views.components.texts import StatusPane
+from app.views.components.widgets import SegmentedControl, Switches, button
 from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, Shown, figure_choices
 from plots.figure_style import FigureFormat, FigureStyle
 

@@ -13,7 +13,7 @@ import panel as pn
 from app.state.view_state import SYSTEM, ViewState
 from app.views.components.flex_row import flex_row
 from app.views.components.number_box import NumberBox
-from app.views.components.widgets import StatusPane
+from app.views.components.texts import StatusPane, TextPane
 from engine import Coordinate, ParameterAxis, Slice
 from engine.service import AXIS_NAMES, PARAMETERS, default_range
 
@@ -59,7 +59,7 @@ class SlicePanel:
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Parts of a column."""
-        hint = pn.pane.HTML(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
+        hint = TextPane(f"<p class='quiet'>{_HINT}</p>", sizing_mode="stretch_width", margin=0)
         return [hint, *self.axes, self.ranges, self.mode, self.held, self.message]
 
     def follow(self) -> None:

@@ -1,0 +1,30 @@
+// @ts-check
+/**
+ * The orbits as rows, of which one is chosen: radio buttons, each with the colour of its orbit.
+ *
+ * @param {{model: any, el: HTMLElement}} component
+ */
+export function render({model, el}) {
+  el.className = "orbit-rows"
+  el.setAttribute("role", "radiogroup")
+  el.setAttribute("aria-label", model.label)
+  const add_row = () => {
+    const [row, radio] = [document.createElement("label"), document.createElement("input")]
+    const place = el.children.length
+    Object.assign(radio, {type: "radio", name: "orbit"})
+    radio.addEventListener("change", () => model.send_msg({chosen: place}))
+    row.append(radio, document.createElement("span"))
+    el.append(row)
+  }
+  const follow = () => {
+    while (el.children.length > model.rows.length) el.lastElementChild?.remove()
+    while (el.children.length < model.rows.length) add_row()
+    for (const [place, text] of model.rows.entries()) {
+      const [radio, label] = /** @type {any} */ (el.children[place]).children
+      radio.checked = place === model.chosen
+      label.textContent = text
+    }
+  }
+  model.on(["rows", "chosen"], follow)
+  follow()
+}

@@ -1,0 +1,42 @@
+"""The list of the chosen orbits.
+
+Radio buttons of Bokeh fail when their choice changes while their view is being built, as it does when a click opens the tab.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+
+class OrbitList(JSComponent):
+    """Radio buttons drawn as rows, each with the colour of an orbit, given by the CSS variables --orbit-1 and so on.
+
+    Parameters
+    ----------
+    on_choose
+        Called with the place of the row that is chosen, without the session's lock.
+    **options
+        Parameters of the component.
+    """
+
+    label = param.String(default="Orbits")
+    rows = param.List(item_type=str, doc="text of each row")
+    chosen = param.Integer(default=0, bounds=(0, None), doc="place of the row that is chosen")
+
+    _esm = Path(__file__).with_name("orbit_list.js")
+
+    def __init__(self, on_choose: Callable[[int], None], **options: Any) -> None:
+        super().__init__(sizing_mode="stretch_width", css_classes=["orbit-list"], **options)
+        self._on_choose = on_choose
+        self.on_msg(lambda event: self._receive(event.data))
+
+    def _receive(self, message: Any) -> None:
+        # Messages come from a browser: ignore what is not expected.
+        match message:
+            case {"chosen": int(place)} if not isinstance(place, bool) and 0 <= place < len(self.rows):
+                self._on_choose(place)

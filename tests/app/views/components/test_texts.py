@@ -1,0 +1,29 @@
+"""Panes of text keep their stylesheets when the text changes, also while they are off the page."""
+
+from __future__ import annotations
+
+import panel as pn
+import pytest
+from bokeh.document import Document
+from bokeh.models import ImportedStyleSheet
+from panel.io.resources import LOCAL_DIST
+
+from app.views.components.texts import StatusPane, TextPane
+
+
+@pytest.mark.parametrize("kind", [TextPane, StatusPane])
+@pytest.mark.parametrize("is_on_the_page", [True, False])
+def test_a_new_text_changes_no_stylesheet(kind: type[TextPane], is_on_the_page: bool) -> None:
+    pane, document = kind("before"), Document()
+    # As in a document of the server.
+    document.template_variables["dist_url"] = LOCAL_DIST
+    column = pn.Column(pane)
+    root = column.get_root(document)
+    document.add_root(root)
+    model = root.children[0]
+    before = [sheet.url for sheet in model.stylesheets if isinstance(sheet, ImportedStyleSheet)]
+    if not is_on_the_page:
+        document.remove_root(root)
+    pane.object = "after"
+    assert model.text == "after"
+    assert [sheet.url for sheet in model.stylesheets if isinstance(sheet, ImportedStyleSheet)] == before
