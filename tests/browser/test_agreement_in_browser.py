@@ -72,6 +72,7 @@ def test_buttons_are_enabled_shortly_after_their_orbits_were_cleared(explorer: E
     expect(explorer.button("Play the orbits")).to_be_hidden()
 
 
+@pytest.mark.slow
 def test_switches_follow_the_state_after_a_gallery_entry(explorer: ExplorerPage) -> None:
     expect_switches(explorer, {"trust", "judge", "origins"})
     preset = next(preset for preset in PRESETS if preset.case == "III" and preset.window is not None)

@@ -71,6 +71,7 @@ def test_origins_have_a_picture_and_a_key(explorer: ExplorerPage) -> None:
     assert passage[same][0] not in passage[(origins.origin != 1) | (origins.fate != 1)]
 
 
+@pytest.mark.slow
 def test_regular_and_chaotic_orbits_can_be_distinguished(explorer: ExplorerPage) -> None:
     # An energy with bounded orbits of both kinds.
     explorer.pick("I")
@@ -142,6 +143,7 @@ def test_a_bounded_orbit_is_judged_by_three_indicators(open_explorer: OpenExplor
     explorer.wait_for_data("exponent_histories", "data.xs.length == 1 && data.ys[0].length > 100")
 
 
+@pytest.mark.slow
 def test_a_link_sets_the_switches(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=VIEW + "&trust=yes&origins=yes&analysis=measures")
     for label, on in (("Pixels to trust", True), ("Origin and exit", True), ("Stable manifolds", False)):

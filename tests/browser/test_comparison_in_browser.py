@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
@@ -45,6 +46,7 @@ def test_another_energy_is_compared_with_the_view_that_was_kept(open_explorer: C
     np.testing.assert_array_equal(explorer.column("difference") == 6, expected == 6)
 
 
+@pytest.mark.slow
 def test_the_comparison_follows_the_slider_without_the_server(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=f"{QUICK}&with_case=I&with_plane=x_px&with_h=0.19")
     explorer.wait_for_data("maps", "data.difference[0].length > 1")

@@ -52,6 +52,7 @@ def test_ticks_are_distances_from_a_stated_number_and_the_frame_stays_square(exp
     assert abs(width - height) <= 1
 
 
+@pytest.mark.slow
 def test_the_wheel_stops_at_the_limit(explorer: ExplorerPage, window: Window) -> None:
     middle = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
     for _ in range(12):

@@ -78,6 +78,7 @@ def test_every_preset_has_a_card_and_pictures_are_loaded(explorer: ExplorerPage)
     close(explorer, "Gallery")
 
 
+@pytest.mark.slow
 def test_a_card_opens_its_view(explorer: ExplorerPage) -> None:
     window = ZOOMED.window
     assert window is not None

@@ -109,6 +109,7 @@ def test_one_picture_fills_the_frame(page: Page, host: str, server: str) -> None
     assert [button.inner_text() for button in frame.get_by_role("button").all() if button.is_visible()] == ["?"]
 
 
+@pytest.mark.slow
 def test_a_wheel_zooms_and_the_history_of_the_page_around_has_no_entry(page: Page, host: str, server: str) -> None:
     frame = embed(page, host, frame_code(server))
     wait_until_complete(frame)
@@ -144,6 +145,7 @@ def test_the_link_opens_the_view_of_the_moment(page: Page, host: str, server: st
     expect(whole.get_by_role("button", name="Share", exact=True)).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_code_of_the_drawer_embeds_the_picture(page: Page, host: str, server: str) -> None:
     page.goto(f"{server}?case=II&t_max=100&resolution=112&focus=times")
     wait_until_complete(page.main_frame)

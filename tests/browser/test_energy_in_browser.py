@@ -101,6 +101,7 @@ def test_the_energy_can_be_played_and_stopped_without_the_server_between(explore
     explorer.wait_until_done()
 
 
+@pytest.mark.slow
 def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=f"{QUICK}&window=0.1,0.3,0.0,0.2")
     explorer.drag_energy_to(0.6, let_go=False)
@@ -180,6 +181,7 @@ def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: Exp
     explorer.wait_for_view("case=III", "h=0.6&")
 
 
+@pytest.mark.slow
 def test_the_number_before_can_be_typed_for_another_case(explorer: ExplorerPage) -> None:
     exact_energy(explorer).press("ControlOrMeta+a")
     exact_energy(explorer).press_sequentially("0.19")

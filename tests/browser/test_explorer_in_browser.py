@@ -179,6 +179,7 @@ def begin_a_long_map(explorer: ExplorerPage) -> None:
     explorer.wait_for_new_pixels()
 
 
+@pytest.mark.slow
 def test_a_map_can_be_stopped_and_continued(explorer: ExplorerPage) -> None:
     begin_a_long_map(explorer)
     explorer.press("Stop")
@@ -222,6 +223,7 @@ def test_an_invalid_link_gives_a_warning_and_shows_the_rest(open_explorer: Calla
     assert page.locator("img[src=x]").count() == 0
 
 
+@pytest.mark.slow
 def test_two_sessions_are_independent(for_orbits: ExplorerPage, explorer: ExplorerPage) -> None:
     before = for_orbits.column("fate")
     explorer.pick("III")

@@ -114,6 +114,7 @@ def test_enter_on_a_button_sets_no_orbit(explorer: ExplorerPage) -> None:
     assert not explorer.model_data("starts").get("x")
 
 
+@pytest.mark.slow
 def test_the_first_view_invites_to_six_others(explorer: ExplorerPage) -> None:
     card = explorer.page.get_by_role("button", name="A sticky orbit")
     expect(explorer.page.locator("[role=toolbar] button")).to_have_count(6)

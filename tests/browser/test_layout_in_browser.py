@@ -171,6 +171,7 @@ def test_a_tap_on_a_phone_integrates_an_orbit(phone: ExplorerPage) -> None:
     phone.return_home()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("width", "touch"),
     [(1600, False), pytest.param(1280, False, marks=pytest.mark.slow), pytest.param(420, True, marks=pytest.mark.slow)],
@@ -216,6 +217,7 @@ def test_the_legends_have_the_colours_of_the_palette(explorer: ExplorerPage, pal
     assert legend(explorer, "crossings") == {entry.label: entry.colour for entry in colours.crossing_entries}
 
 
+@pytest.mark.slow
 def test_the_legends_follow_case_and_plane(explorer: ExplorerPage) -> None:
     explorer.pick("III")
     expect(explorer.page.locator(".foot[data-picture=basins]")).to_contain_text("4")
@@ -265,6 +267,7 @@ def test_a_key_enlarges_a_picture_and_shows_all_again(explorer: ExplorerPage) ->
     explorer.page.wait_for_function(f"() => ({_FIGURES})().basins[4] == {side}")
 
 
+@pytest.mark.slow
 def test_a_mode_of_dragging_acts_on_all_maps(explorer: ExplorerPage) -> None:
     toolbars = explorer.page.evaluate(
         "names => new Set(names.map(name => Bokeh.documents[0].get_model_by_name(name).toolbar)).size", list(MAPS)

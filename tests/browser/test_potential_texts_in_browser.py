@@ -20,6 +20,7 @@ WELL_ELSEWHERE = "((x-1)^2 + y^2)/2 - (x-1)y^2"
 SMALL = "resolution=112&t_max=1000"
 
 
+@pytest.mark.slow
 def test_a_refused_potential_stays_in_the_box_and_its_well_can_be_used(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"?case=I&h=0.25&{SMALL}")
     explorer.press("Other …")

@@ -47,6 +47,7 @@ def test_the_maps_follow_the_text_and_an_error_leaves_them(explorer: ExplorerPag
     explorer.press("Close")
 
 
+@pytest.mark.slow
 def test_a_refused_text_is_there_when_the_drawer_opens_again(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=QUICK)
     box = open_box(explorer)
@@ -107,6 +108,7 @@ def test_a_link_with_an_invalid_potential_gives_a_message_and_shows_case_one(ope
     expect(explorer.text("Case I")).to_be_visible()
 
 
+@pytest.mark.slow
 def test_a_formula_with_functions_has_maps_orbits_and_a_slider(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link="?resolution=112&t_max=100&letters=c:0.6&V=" + urllib.parse.quote(PLUMMER))
     explorer.wait_until_done()

@@ -31,6 +31,7 @@ def test_a_launch_angle_is_chosen_as_an_axis(explorer: ExplorerPage) -> None:
     np.testing.assert_array_equal(explorer.column("fate"), map_columns(found)["fate"][0])
 
 
+@pytest.mark.slow
 def test_an_orbit_along_a_parameter_opens_the_plane_of_its_system(explorer: ExplorerPage) -> None:
     explorer.press("Axes …")
     explorer.page.get_by_label("Vertical axis").select_option(label="ε")

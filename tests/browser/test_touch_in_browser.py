@@ -67,6 +67,7 @@ def test_one_finger_scrolls_the_page_and_leaves_the_map(open_explorer: Callable[
     assert phone.page.url == address
 
 
+@pytest.mark.slow
 def test_one_finger_moves_the_map_if_the_user_wants(explorer: ExplorerPage) -> None:
     before = window(explorer)
     explorer.set_drag("Move")
@@ -78,6 +79,7 @@ def test_one_finger_moves_the_map_if_the_user_wants(explorer: ExplorerPage) -> N
     explorer.pick("Scroll")
 
 
+@pytest.mark.slow
 def test_two_fingers_that_move_the_same_way_move_the_map(explorer: ExplorerPage) -> None:
     before, middle = window(explorer), middle_of(explorer)
     move_fingers(explorer, ((-50, 0), (-10, -60)), ((50, 0), (90, -60)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, classify_orbits, sample_starts
@@ -49,6 +50,7 @@ def test_as_many_orbits_have_left_as_of_other_starts_in_the_well(open_explorer: 
     assert abs(inside(explorer) / 5000 - expected) < 4.0 * (expected * (1.0 - expected) / 5000) ** 0.5
 
 
+@pytest.mark.slow
 def test_the_link_brings_back_the_same_orbits(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=view,1000,1,-2")
     expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()

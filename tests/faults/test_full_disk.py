@@ -54,6 +54,7 @@ def test_failed_write_keeps_the_existing_file(tmp_path: Path, run_limited: Calla
 SWEEP = ("sweep", "I", "--energy", "0.19", "--energy", "0.2", "--resolution", "80", "--t-max", "5", "--store", "store.zarr")
 
 
+@pytest.mark.slow
 def test_sweep_can_be_resumed_after_a_full_disk(tmp_path: Path, run_limited: Callable[..., Finished]) -> None:
     full = run_limited(6000, tmp_path, *SWEEP)
     assert full.code == FAILED, full.err

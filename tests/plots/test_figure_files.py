@@ -48,7 +48,7 @@ def curves() -> Curves:
     return compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), 100.0))
 
 
-@pytest.fixture(params=["maps", "orbit", "orbits", "curves"])
+@pytest.fixture(params=["maps", "orbits", *(pytest.param(name, marks=pytest.mark.slow) for name in ("orbit", "curves"))])
 def draw(request: pytest.FixtureRequest, escape_map: EscapeMap, orbits: list[OrbitCurves], curves: Curves) -> Draw:
     """A function that draws one of the figures."""
     drawers: dict[str, Draw] = {

@@ -101,6 +101,7 @@ def _default_sigint() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.slow
 def test_server_answers_during_compilation_and_is_ready_afterwards(served: Served) -> None:
     served.wait_for("/liveness", 200)
     status, text, _ = served.get("/readiness")
@@ -184,7 +185,10 @@ def test_log_is_json_without_tracebacks(served: Served) -> None:
 
 
 @pytest.mark.usefixtures("_default_sigint")
-@pytest.mark.parametrize("command", [PANEL, ("cli", "serve")], ids=["panel serve", "escape-explorer serve"])
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(PANEL, marks=pytest.mark.slow, id="panel serve"), pytest.param(("cli", "serve"), id="escape-explorer serve")],
+)
 def test_ctrl_c_stops_the_server_during_a_computation(tmp_path: Path, command: tuple[str, ...]) -> None:
     with serving(tmp_path / "log", *command) as server:
         server.wait_for("/liveness", 200)

@@ -52,6 +52,7 @@ async def _serve(started: Event, stopped: Event, occupy: Callable[[], None]) -> 
     finish_shutdown(state)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("occupy", [compute_in_python, call_into_c])
 def test_process_with_an_occupied_event_loop_ends_in_time(occupy: Callable[[], None]) -> None:
     assert not end_by_signal(signal.SIGTERM, occupy)

@@ -80,6 +80,7 @@ def test_continuation_finds_the_same_orbit_as_the_search_from_the_saddle(name: s
     assert continued.half_period == pytest.approx(direct.half_period, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["C6", *(pytest.param(name, marks=pytest.mark.slow) for name in ("C7", "C8"))])
 def test_rotated_channels_have_rotated_exits(name: str) -> None:
     # The first starts of the search lie on walls of other channels.
@@ -96,6 +97,7 @@ def half_of(potential: Potential, orbit: LyapunovOrbit, end: int) -> np.ndarray:
     return path[:2].T
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("potential", "factor"), [(FLAT, 1.02), (BENT_FIRST_WALL, 1.5)])
 def test_orbits_shot_from_both_ends_are_the_same_in_the_middle(potential: Potential, factor: float) -> None:
     for orbit in orbits_of(potential, factor):
@@ -103,6 +105,7 @@ def test_orbits_shot_from_both_ends_are_the_same_in_the_middle(potential: Potent
         np.testing.assert_allclose(half_of(potential, orbit, 100), orbit.half_path[:49:-1], rtol=0, atol=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["I", "II", "III", "C5", "C6", "C7", "C8"])
 def test_exits_are_found_up_to_ten_times_the_escape_energy(name: str) -> None:
     potential = POTENTIALS[name]

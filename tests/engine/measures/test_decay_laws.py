@@ -178,6 +178,7 @@ def test_the_time_unit_scales_kappa_and_not_gamma() -> None:
 # Intervals and p values.
 
 
+@pytest.mark.slow
 def test_intervals_have_the_width_of_the_scatter_and_good_coverage(many: tuple[float, list[LawFit]]) -> None:
     rate, fits = many
     half_width = np.mean([fitted.high - fitted.low for fitted in fits]) / 2.0

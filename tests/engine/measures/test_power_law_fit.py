@@ -79,6 +79,7 @@ def test_a_smooth_boundary_has_exponent_one() -> None:
     assert fit.high - fit.low < 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("alpha", [0.02, 0.35])
 def test_the_interval_has_95_percent_coverage(alpha: float) -> None:
     assert 0.92 <= coverage(200, alpha, lambda random: law(alpha, 0.6)) <= 0.995
@@ -88,6 +89,7 @@ def test_the_interval_has_good_coverage_for_scattered_shares() -> None:
     assert coverage(150, 0.2, lambda random: law(0.2, 0.5) * np.exp(0.08 * random.normal(size=17))) > 0.85
 
 
+@pytest.mark.slow
 def test_the_interval_has_good_coverage_for_saturating_shares() -> None:
     assert coverage(100, 0.25, lambda random: law(0.25, 2.0, 1e-4)) > 0.9
 

@@ -171,6 +171,7 @@ ALONG = CurvesSpec(
 )
 
 
+@pytest.mark.slow
 def test_curves_along_a_parameter_are_measured_on_maps_of_each_value() -> None:
     curves = compute_curves(ALONG)
     assert curves.values.tolist() == [-0.5, -0.2, 0.1]

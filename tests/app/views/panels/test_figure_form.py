@@ -70,7 +70,10 @@ def test_what_is_shown_can_be_drawn(shown: Shown) -> None:
     assert list(figure_choices(shown, state)) == [*maps, *others]
 
 
-@pytest.mark.parametrize("format", FigureFormat)
+@pytest.mark.parametrize(
+    "format",
+    [FigureFormat.PNG, *(pytest.param(format, marks=pytest.mark.slow) for format in (FigureFormat.PDF, FigureFormat.SVG))],
+)
 def test_each_figure_can_be_made_in_each_format(format: FigureFormat, shown: Shown) -> None:
     for make in figure_choices(shown, ViewState(case="I", energy=0.19)).values():
         assert make(format, FigureStyle(8.5, 60.0)).startswith(BEGINS[format])

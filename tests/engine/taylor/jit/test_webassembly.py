@@ -62,7 +62,7 @@ def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon:
 
 
 @needs_node
-@pytest.mark.parametrize("name", POTENTIALS)
+@pytest.mark.parametrize("name", [*CASES, "typed", pytest.param("functions", marks=pytest.mark.slow)])
 def test_the_step_is_the_native_one_to_rounding(name: str, tmp_path: Path) -> None:
     potential, horizon = POTENTIALS[name].in_well_units, 9.8
     states, gates = starts(potential), exit_gates(exit_curves(potential, ENERGY))

@@ -25,7 +25,7 @@ TEXTS = (
     "½log(x² + y² + 0.6) − 0.1x³ cos(x + 2y)",
     "(x² + y² + 1)^0.7 − x² y /(1 + y²) + sin(x)³",
 )
-each_text = pytest.mark.parametrize("text", TEXTS)
+each_text = pytest.mark.parametrize("text", [*TEXTS[:2], *(pytest.param(text, marks=pytest.mark.slow) for text in TEXTS[2:])])
 
 
 def states_of(count: int) -> np.ndarray:
