@@ -90,6 +90,7 @@ PANEL = ("panel", "serve", "app")
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     with serving(tmp_path_factory.mktemp("served") / "log", *PANEL) as server:
+        server.wait_for("/liveness", 200)
         yield server
 
 
@@ -101,9 +102,7 @@ def _default_sigint() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
-@pytest.mark.slow
 def test_server_answers_during_compilation_and_is_ready_afterwards(served: Served) -> None:
-    served.wait_for("/liveness", 200)
     status, text, _ = served.get("/readiness")
     assert (status, json.loads(text)["sentence"]) in {(503, "The integrators are being compiled."), (200, "Ready.")}
     served.wait_for("/readiness", 200)
