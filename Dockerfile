@@ -7,7 +7,7 @@ ENV UV_PROJECT_ENVIRONMENT=/opt/venv UV_LINK_MODE=copy UV_NO_CACHE=1 UV_PYTHON_D
 WORKDIR /srv/escape-explorer
 # Install the dependencies before copying the sources, so that this layer is cached when only the sources change.
 COPY pyproject.toml README.md LICENSE ./
-RUN uv sync --no-dev --no-install-project
+RUN uv sync --no-dev --extra page --no-install-project
 COPY hatch_build.py ./
 COPY engine engine
 COPY plots plots
@@ -15,7 +15,7 @@ COPY app app
 COPY reproduction reproduction
 COPY cli cli
 COPY escape_explorer escape_explorer
-RUN uv sync --no-dev && /opt/venv/bin/python -m compileall -q app cli engine escape_explorer plots reproduction
+RUN uv sync --no-dev --extra page && /opt/venv/bin/python -m compileall -q app cli engine escape_explorer plots reproduction
 
 FROM ${BASE}
 COPY --from=build /opt/venv /opt/venv

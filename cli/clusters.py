@@ -46,10 +46,11 @@ def cluster_executor(scheduler: str | None, local_workers: int | None, threads: 
 
 
 def _connect(scheduler: str | None, local_workers: int | None) -> Client:
-    try:
-        import distributed
-    except ModuleNotFoundError:
-        raise ModuleNotFoundError("a cluster needs Dask: pip install 'escape-explorer[cluster]'") from None
+    from engine.service import require_package
+
+    require_package("distributed", "cluster")
+    import distributed
+
     if scheduler is not None:
         return distributed.Client(scheduler)  # type: ignore[no-untyped-call]
     with _ignoring_ctrl_c():

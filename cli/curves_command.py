@@ -78,6 +78,9 @@ def draw_curves(
 def _content(curves: Curves, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with this ending."""
     if ending == "nc":
+        from engine.service import require_package
+
+        require_package("h5netcdf", "files")
         return bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
     if ending == "csv":
         head, rows = _tabulate(curves)

@@ -33,6 +33,11 @@ def serve_page(
     show: Annotated[bool, typer.Option("--show", help="Open the page in a browser.")] = False,
 ) -> None:
     """Serve the page until Ctrl-C or SIGTERM; environment variables ESCAPE_EXPLORER_… set its limits (docs/operation.md)."""
+    if importlib.util.find_spec("panel") is None:
+        # The engine is slow to import.
+        from engine.service import require_package
+
+        require_package("panel", "page")
     command = serve_arguments(port, address, origin or [], show)
     environment = server_environment()
     if os.name == "posix":

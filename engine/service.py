@@ -46,6 +46,7 @@ from engine.potentials.potential import PARAMETER_RANGES
 from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED
 from engine.potentials.validation_report import CriticalPoint, PointKind
 from engine.results.codes import describe_codes
+from engine.results.extras import require_package
 from engine.results.wording import format_number, format_time, format_whole, short_fraction
 from engine.slices.energies import common_energy, highest_energy
 from engine.slices.limiting_curves import trace_equipotentials
@@ -159,6 +160,7 @@ __all__ = [
     "prepare_kernels",
     "read_slice",
     "regularity_job",
+    "require_package",
     "run_map",
     "seconds_until_ready_for_maps",
     "short_fraction",

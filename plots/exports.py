@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from importlib import metadata
 
 from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, System, judge_orbit
-from engine.service import TYPED
+from engine.service import TYPED, require_package
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 
 MOST_ROWS = 100_000
@@ -19,6 +19,7 @@ _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
     """NetCDF-4 file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
+    require_package("h5netcdf", "files")
     dataset = analyses.add_to(frame.to_xarray())
     # Shuffled and compressed, a map has a quarter of the size and is written faster.
     encoding = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars}

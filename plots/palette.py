@@ -102,9 +102,11 @@ class Palette:
     def escape_time(self) -> tuple[str, ...]:
         """256 colours, from fast to slow escapes."""
         # Slow to import, and needed for pictures only.
-        from bokeh.palettes import Cividis256, interp_palette
+        from matplotlib import colormaps
+        from matplotlib.colors import LinearSegmentedColormap, to_hex
 
-        return tuple(interp_palette(list(self.times), 256) if self.times else reversed(Cividis256))
+        scale = LinearSegmentedColormap.from_list("times", self.times) if self.times else colormaps["cividis_r"]
+        return tuple(to_hex(scale(place)) for place in range(256))
 
     @cached_property
     def outcomes(self) -> dict[Fate, Entry]:

@@ -42,6 +42,7 @@ from engine.service import (
     SPACE,
     RadiusEnvelope,
     SuperStickySearch,
+    require_package,
 )
 from plots.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
@@ -95,6 +96,7 @@ def to_html(result: Result) -> str:
 
 def to_holoviews(result: Result) -> Any:
     """The HoloViews element of `engine.results.result.Result.to_holoviews`."""
+    require_package("holoviews", "page")
     import holoviews as hv
 
     if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):

@@ -18,6 +18,7 @@ from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.uncertainty_exponent import UncertaintyExponent
 from engine.results.arrays import read_only
+from engine.results.extras import require_package
 from engine.results.result import Result
 from engine.sweeps.zarr_store import DONE
 from engine.trajectories.chaos_indicators import BirkhoffDigits
@@ -77,10 +78,12 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     import xarray as xr
 
     if (Path(path) / _ZARR).exists():
+        require_package("zarr", "files")
         stored: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
         if "result" not in stored.attrs and DONE in stored:
             return stored.drop_vars(DONE)
         return _read(path, stored)
+    require_package("h5netcdf", "files")
     with xr.open_dataset(path, engine="h5netcdf") as opened:
         return _read(path, opened)
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from engine.maps.result import EscapeMap
+from engine.results.extras import require_package
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +41,7 @@ class SweepStore:
     """
 
     def __init__(self, path: Path) -> None:
+        require_package("zarr", "files")
         # Slow to import, and seldom used.
         import zarr
 
@@ -167,6 +169,7 @@ def _create_group(
     attributes: dict[str, Any],
     chunk_rows: int,
 ) -> None:
+    require_package("zarr", "files")
     # Slow to import, and seldom used.
     import zarr
 

@@ -97,4 +97,4 @@ def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: P
     monkeypatch.setitem(sys.modules, "distributed", None)
     code, _, err = run(*SWEEP, "--local-cluster", 1, "--store", tmp_path / "store.zarr")
     assert code == FAILED
-    assert err == "escape-explorer: a cluster needs Dask: pip install 'escape-explorer[cluster]'\n"
+    assert err == "escape-explorer: distributed is not installed: pip install 'escape-explorer[cluster]'\n"

@@ -1,0 +1,49 @@
+"""The library without any extra: it computes and draws, and names the extra of what is missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import escape_explorer
+from escape_explorer import CASES, MapSpec, Plane, SweepSpec, compute_map, integrate_orbit, open_result, run_sweep
+
+PROGRAM = str(Path(sys.executable).with_name("escape-explorer"))
+
+
+def check_refusal(call: Callable[[], Any], package: str, extra: str) -> None:
+    """Check that a call names the package and the extra that it needs."""
+    try:
+        call()
+    except ModuleNotFoundError as error:
+        assert str(error) == f"{package} is not installed: pip install 'escape-explorer[{extra}]'", error
+    else:
+        raise AssertionError(f"{package} is there")
+
+
+def run_program(*arguments: str) -> str:
+    """What a command writes to its error stream."""
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True).stderr
+
+
+def main() -> None:
+    """Compute, draw and ask for what is missing."""
+    escapes = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (40, 40), t_max=100.0))
+    escapes.plot()
+    escapes.to_xarray()
+    integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 2e4).plot()
+    run_program("map", "I", "--energy", "0.3", "--resolution", "20", "--t-max", "100", "--output", "map.png")
+    assert Path("map.png").stat().st_size > 1000
+    Path("map.nc").touch()
+    check_refusal(escapes.to_holoviews, "holoviews", "page")
+    check_refusal(lambda: escape_explorer.Explorer, "panel", "page")
+    check_refusal(lambda: open_result("map.nc"), "h5netcdf", "files")
+    check_refusal(lambda: run_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.3,), (9, 9), t_max=10.0), "sweep.zarr"), "zarr", "files")
+    assert "pip install 'escape-explorer[page]'" in run_program("serve")
+
+
+if __name__ == "__main__":
+    main()
