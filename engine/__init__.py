@@ -68,6 +68,7 @@ from engine.trajectories.chaos_indicators import (
 from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
+from engine.trajectories.sampled_orbits import SampledOrbits, sample_orbits
 from engine.trajectories.section_crossings import find_section_crossings
 from engine.trajectories.separation import Separation, compute_separation
 from engine.trajectories.trajectory import Orbit, integrate_orbit
@@ -105,6 +106,7 @@ __all__ = [
     "Regularity",
     "RegularityMap",
     "Result",
+    "SampledOrbits",
     "Separation",
     "ShareFit",
     "Slice",
@@ -150,6 +152,7 @@ __all__ = [
     "plan_sweep",
     "review_potential",
     "run_sweep",
+    "sample_orbits",
     "sample_starts",
     "start_states",
     "trace_zero_velocity_curve",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,9 +16,10 @@ from engine.results.result import Result
 from engine.slices.axes import Coordinate, ParameterAxis
 from engine.slices.parameter_family import parameter_family
 from engine.slices.slice import Slice
+from engine.slices.slice_text import write_slice
 from engine.sweeps.curve_points import CurvePoint, CurvePointSpec, compute_curve_point
 from engine.sweeps.energy_grid import checked_sweep
-from engine.validation import checked_count, short_repr
+from engine.validation import checked_count, checks_types, short_repr
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -112,6 +114,22 @@ class CurvesSpec:
         map_spec = MapSpec(potential, self.plane, self._energy_at(value), self.resolution, t_max=self.t_max)
         return CurvePointSpec(map_spec, self.exponent, value, numbers, self.channels)
 
+    def provenance(self) -> dict[str, Any]:
+        """The request in plain values, with the integrator and the package version."""
+        made_by = self.point(self.values[0]).map_spec.provenance()
+        differing = ("energy", "window", "default_window") if self.along is None else ("window", "default_window", "terms")
+        along, system = "", None
+        if self.along is not None:
+            along, system = write_slice(Slice(Coordinate.X, self.along))[0], asdict(self.along.system)
+        return {
+            **{name: value for name, value in made_by.items() if name not in differing},
+            "requested": self.values,
+            "exponent": int(self.exponent),
+            "refine": self.refine,
+            "along": along,
+            "along_system": json.dumps(system),
+        }
+
     def _energy_at(self, value: float) -> float:
         return value if self.energy is None else self.energy
 
@@ -164,11 +182,10 @@ class Curves(Result):
         variables: dict[str, Any] = {"share": ((spec.name, "fate"), self.shares)}
         variables |= {name: (spec.name, self.curve(name)) for name in _CURVES}
         coordinates = {spec.name: self.values, "fate": np.arange(spec.channels + 1)}
-        made_by = spec.point(spec.values[0]).map_spec.provenance()
-        dropped = ("energy", "window") if spec.along is None else ("window", "terms")
-        return xr.Dataset(variables, coordinates, {name: made_by[name] for name in made_by if name not in dropped})
+        return xr.Dataset(variables, coordinates, {"result": type(self).__name__, **spec.provenance()})
 
 
+@checks_types(spec=CurvesSpec, earlier=(Curves, type(None)))
 @shows_progress("curves")
 def compute_curves(
     spec: CurvesSpec,
@@ -191,8 +208,8 @@ def compute_curves(
     measure
         Replaces `compute_curve_point`, for example to use a cache; None to compute all values.
     earlier
-        Curves whose points are not measured again, such as those of an interrupted call, which `on_frame` received, or with fewer
-        values; their request must be the same but for `values` and `refine`.
+        Curves whose points are not measured again, such as those of an interrupted call, which `on_frame` received, those of a
+        file (`open_result`), or with fewer values; their request must be the same but for `values` and `refine`.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,9 +21,12 @@ from engine.measures.uncertainty_exponent import UncertaintyExponent
 from engine.results.arrays import read_only
 from engine.results.extras import require_package
 from engine.results.result import Result
+from engine.sweeps.curves import Curves
+from engine.sweeps.stored_curves import read_curves
 from engine.sweeps.zarr_store import DONE
 from engine.trajectories.chaos_indicators import BirkhoffDigits
 from engine.trajectories.nearest_divergent_start import DivergentStart
+from engine.trajectories.sampled_orbits import SampledOrbits
 from engine.trajectories.separation import Separation
 from engine.trajectories.trajectory import Orbit
 from engine.validation import checks_types
@@ -34,9 +38,11 @@ _KINDS: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
         EscapeMap, RegularityMap, TrustMap, OriginFateMap, Orbit, Outcomes, Separation, BirkhoffDigits, DivergentStart,
-        BasinEntropy, UncertaintyExponent,
+        BasinEntropy, UncertaintyExponent, Curves, SampledOrbits,
     )
 }  # fmt: skip
+# Of results with a field that is neither a number nor an array nor a request of maps.
+_READERS: dict[Any, Callable[[xr.Dataset], Result]] = {EscapeMap: read_map, Curves: read_curves}
 _ZARR = "zarr.json"
 
 
@@ -51,10 +57,10 @@ def open_result(path: str | os.PathLike[str]) -> Any:
 
     Returns
     -------
-    An equal result: an `EscapeMap`, `RegularityMap`, `TrustMap`, `OriginFateMap`, `Orbit`, `Outcomes`, `Separation`,
-    `BirkhoffDigits`, `DivergentStart`, `BasinEntropy` or `UncertaintyExponent`. A map has no integration state and cannot be
-    resumed. Of a sweep the dataset of `run_sweep`, read on access; measures and analyses take one of its maps,
-    ``dataset.sel(h=0.3)``.
+    An equal result: an `EscapeMap`, `RegularityMap`, `TrustMap`, `OriginFateMap`, `Orbit`, `SampledOrbits`, `Outcomes`,
+    `Separation`, `BirkhoffDigits`, `DivergentStart`, `BasinEntropy`, `UncertaintyExponent`, or `Curves`, which `compute_curves`
+    takes as `earlier`. A map has no integration state and cannot be resumed. Of a sweep the dataset of `run_sweep`, read on
+    access; measures and analyses take one of its maps, ``dataset.sel(h=0.3)``.
 
     Raises
     ------
@@ -95,8 +101,8 @@ def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Result:
         raise ValueError(
             f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}, or a sweep. xarray opens it"
         )
-    if kind is EscapeMap:
-        return read_map(dataset)
+    if kind in _READERS:
+        return _READERS[kind](dataset)
     values = {each.name: _value(kind, each.name, dataset) for each in fields(kind)}
     found: Result = kind(**{name: value for name, value in values.items() if value is not None})
     return found

@@ -15,6 +15,7 @@ from engine import (
     CASES,
     POTENTIALS,
     Coordinate,
+    CurvesSpec,
     Direction,
     EscapeMap,
     MapSpec,
@@ -28,6 +29,7 @@ from engine import (
     classify_orbits,
     compute_basin_entropy,
     compute_birkhoff_digits,
+    compute_curves,
     compute_map,
     compute_origin_fates,
     compute_regularity,
@@ -43,8 +45,10 @@ from engine import (
     parse_formula,
     review_potential,
     run_sweep,
+    sample_orbits,
     sample_starts,
 )
+from engine.service import CurvePoint, CurvePointSpec
 
 C = Coordinate
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
@@ -69,12 +73,20 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "map with trust": lambda: compute_map(SPEC, with_trust=True),
     "escaping orbit": lambda: integrate_orbit(TYPED, STATE, t_max=50.0),
     "bounded orbit": lambda: integrate_orbit(III, (0.05, 0.0, 0.0, 0.1), t_max=50.0),
+    "sampled orbits": lambda: sample_orbits(III, sample_starts(III, 0.36, 5), [0.0, 2.0, 9.0]),
     "outcomes": lambda: classify_orbits(III, 0.36, sample_starts(III, 0.36, 20), t_max=50.0),
     "separation": lambda: compute_separation(III, STATE, (0.1, 0.0, 0.05, 0.60001), 10.0),
     "digits": lambda: compute_birkhoff_digits(CASES["I"], (0.1, 0.0, 0.05, 0.3), 2e3),
     "divergent start": lambda: find_divergent_start(III, Plane.X_PX, 0.45, 0.1, 0.0, 50.0),
     "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
+}
+
+PARAMETER = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
+CURVES = {
+    "energy": CurvesSpec(III, Plane.X_PX, (0.3, 0.36), (12, 12), 100.0, refine=1),
+    "one value": CurvesSpec(TYPED, Slice(C.X, C.PX, C.PY, -1), (0.5,), (8, 8), 50.0, exponent=False),
+    "parameter": CurvesSpec(CASES["I"], Plane.X_Y, (0.8, 1.0), (10, 10), 50.0, False, PARAMETER, 0.2),
 }
 
 
@@ -130,6 +142,31 @@ def test_result_comes_back(name: str, how: str, tmp_path: Path) -> None:
     wanted = RESULTS[name]()
     assert wanted is not None
     assert_equal(open_result(WRITERS[how](wanted, tmp_path)), wanted)
+
+
+def made_up(one: CurvePointSpec) -> CurvePoint:
+    """A point whose numbers all differ, and differ between values."""
+    numbers = {each.name: one.value + place for place, each in enumerate(fields(CurvePoint)) if each.name != "shares"}
+    shares = tuple(one.value * place for place in range(one.channels + 1))
+    return CurvePoint(**numbers | {"value": one.value, "shares": shares, "islands": 3})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("how", WRITERS)
+@pytest.mark.parametrize("name", CURVES)
+def test_curves_come_back_and_go_on(name: str, how: str, tmp_path: Path) -> None:
+    wanted = compute_curves(CURVES[name], measure=made_up)
+    found = open_result(WRITERS[how](wanted, tmp_path))
+    assert found.spec == wanted.spec
+    assert found.points == wanted.points
+    more = replace(wanted.spec, values=(*wanted.spec.values, wanted.spec.values[-1] * 1.1), refine=0)
+    measured: list[float] = []
+
+    def measure(one: CurvePointSpec) -> CurvePoint:
+        measured.append(one.value)
+        return made_up(one)
+
+    compute_curves(more, earlier=found, measure=measure)
+    assert measured == [more.values[-1]]
 
 
 SWEEP = SweepSpec(III, Plane.X_PX, (0.3, 0.36, 0.5), (30, 30), t_max=200.0)

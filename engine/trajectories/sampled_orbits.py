@@ -1,0 +1,166 @@
+"""Paths of many orbits at chosen times, in one result."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from engine.dynamics.classification import Outcomes
+from engine.dynamics.fates import Fate
+from engine.dynamics.orbit_steps import record_orbit
+from engine.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
+from engine.exits.lyapunov_orbits import exit_curves
+from engine.potentials.compiled import kernels_of
+from engine.potentials.potential import Potential
+from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME
+from engine.results.arrays import read_only
+from engine.results.result import Result
+from engine.taylor.kernels.dense_output import sample_path
+from engine.trajectories.trajectory import MAX_ORBIT_TIME
+from engine.validation import LARGEST_NUMBER, checked_array, checked_t_max, checks_types, short_repr
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_STATE = 4
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SampledOrbits(Result):
+    """The paths of n orbits at m times each, dimensionless; arrays are read-only.
+
+    Attributes
+    ----------
+    t
+        (n, m) times.
+    x, y, px, py
+        (n, m) states at these times; NaN after the escape.
+    fate, escape_time, crossings
+        (n,) outcome of each orbit until its last time, as in `Outcomes`.
+    energy
+        (n,) h of each orbit.
+    """
+
+    t: np.ndarray = field(metadata=TIME)
+    x: np.ndarray = field(metadata=LENGTH)
+    y: np.ndarray = field(metadata=LENGTH)
+    px: np.ndarray = field(metadata=MOMENTUM)
+    py: np.ndarray = field(metadata=MOMENTUM)
+    fate: np.ndarray
+    escape_time: np.ndarray = field(metadata=TIME)
+    crossings: np.ndarray
+    energy: np.ndarray = field(metadata=ENERGY)
+    codes: ClassVar = {"fate": Fate}
+    row_dimension: ClassVar = "orbit"
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """The outcome and the energy of each orbit."""
+        return {name: getattr(self, name) for name in ("fate", "escape_time", "crossings", "energy")}
+
+    def to_xarray(self) -> xr.Dataset:
+        """All orbits with the dimensions (orbit, sample); it can be written as NetCDF and Zarr."""
+        paths = {name: (("orbit", "sample"), getattr(self, name), {"units": "1"}) for name in ("x", "y", "px", "py", "t")}
+        return super().to_xarray().assign(paths).set_coords("t")
+
+
+@shows_progress("orbits")
+@checks_types(potential=Potential, execution=Execution)
+def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: Execution = DEFAULT_EXECUTION) -> SampledOrbits:
+    """Integrate many orbits, of any energies, and give their states at chosen times.
+
+    The states are those of the Taylor series of the steps, without interpolation; fates and escape times are those of
+    `classify_orbits`.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    states
+        (n, 4) x, y, px, py at t = 0; finite, dimensionless.
+    times
+        (m,) times for all orbits, or (n, m) times of each; ascending, from 0 to at most 1e7, the last one above 0; dimensionless.
+    execution
+        How the computation runs.
+
+    Returns
+    -------
+    `SampledOrbits`. `to_xarray` has the dimensions (orbit, sample).
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        If cancelled.
+    ValueError
+        If a state is not finite, or the times are not ascending.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from escape_explorer import CASES, sample_orbits, sample_starts
+    >>> starts = sample_starts(CASES["III"], 0.45, 100, seed=1)
+    >>> orbits = sample_orbits(CASES["III"], starts, np.linspace(0.0, 20.0, 5))
+    >>> np.isfinite(orbits.x).sum(axis=0).tolist()
+    [100, 41, 31, 28, 25]
+    """
+    states, times = _checked_starts(states), checked_array("times", times)
+    times = _checked_times(times, len(states), potential)
+    units, well = potential.units, potential.in_well_units
+    # Compiled before the threads begin.
+    kernels_of(well)
+    futures = [
+        execution.submit(_sample_orbit, well, start / units.state, row / units.time)
+        for start, row in zip(states, times, strict=True)
+    ]
+    rows = []
+    for place, future in enumerate(futures):
+        if execution.is_cancelled:
+            for waiting in futures[place:]:
+                waiting.cancel()
+        execution.raise_if_cancelled()
+        rows.append(execution.collect(future))
+        execution.report(lambda place=place: (place + 1) / len(futures))  # type: ignore[misc]
+    return units.restore(_join(well, states / units.state, times / units.time, rows))
+
+
+def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
+    """(4, m) states of one orbit, and its outcome; in units of the well."""
+    curves = exit_curves(potential, float(potential.energy(start)))
+    recorded = record_orbit(potential, start, curves, times[-1], SERIAL_EXECUTION)
+    path = np.full((_STATE, times.size), np.nan)
+    if len(recorded.steps):
+        reached = int(np.searchsorted(times, recorded.t_end, side="right"))
+        path[:, :reached] = sample_path(kernels_of(potential), recorded.steps, times[:reached])
+    else:
+        # It starts outside.
+        path[:, times == 0.0] = start[:, None]
+    return path, recorded.outcomes
+
+
+def _join(potential: Potential, states: np.ndarray, times: np.ndarray, rows: list[Any]) -> SampledOrbits:
+    """The results of all orbits in units of the well."""
+    paths = np.array([path for path, _ in rows]).reshape(len(rows), _STATE, times.shape[1])
+    ends = (np.concatenate([getattr(outcome, name) for _, outcome in rows]) for name in ("fate", "escape_time", "crossings"))
+    arrays = (times, *paths.transpose(1, 0, 2), *ends, np.atleast_1d(potential.energy(states)))
+    return SampledOrbits(*(read_only(np.ascontiguousarray(array)) for array in arrays))
+
+
+def _checked_starts(states: Any) -> np.ndarray:
+    array = checked_array("states", states)
+    if array.ndim != 2 or array.shape[1] != _STATE or not len(array) or not np.all(np.abs(array) <= LARGEST_NUMBER):
+        raise ValueError(
+            f"states={short_repr(states)}: must be (n, 4) finite numbers x, y, px, py, at most {LARGEST_NUMBER:g} in magnitude"
+        )
+    return array
+
+
+def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.ndarray:
+    """(n, m) times."""
+    rows = np.array(np.broadcast_to(times, (count, times.size))) if times.ndim == 1 else times
+    has_shape = rows.ndim == 2 and len(rows) == count and rows.size > 0
+    if not (has_shape and (rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
+        raise ValueError(f"times of shape {times.shape}: must be ascending from 0, (m,) or ({count}, m)")
+    for last in (rows[:, -1].min(), rows[:, -1].max()):
+        checked_t_max(float(last), MAX_ORBIT_TIME, lambda: potential.exact_time_unit, name="last time")
+    return rows
