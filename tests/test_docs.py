@@ -139,7 +139,9 @@ def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
     assert not any(cell.get("outputs") for cell in cells)
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/long-runs.md", "docs/slices.md", "docs/start.md", *EXAMPLE_FILES])
+@pytest.mark.parametrize(
+    "name", ["README.md", "docs/long-runs.md", "docs/slices.md", "docs/start.md", "docs/ten-minutes.md", *EXAMPLE_FILES]
+)
 def test_document_for_users_recommends_public_names_only(name: str) -> None:
     words = set(re.findall(r"\w+", (ROOT / name).read_text(encoding="utf-8")))
     assert words & set(service.__all__) == set()
