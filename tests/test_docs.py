@@ -102,6 +102,13 @@ def test_formulas_are_mathml(small_site: Path) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_formulas_in_lines_have_no_escapes(page: Path) -> None:
+    """GitHub takes a backslash before a sign, such as that of a thin space, for Markdown."""
+    text = re.sub(r"```.*?```|`[^`]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert re.findall(r"\$[^$\n]*\\[^a-zA-Z\n][^$\n]*\$", text) == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
 def test_files_named_in_text_exist(page: Path) -> None:
     named = re.findall(r"`((?:app|benchmarks|cli|docs|engine|examples|tests)/[\w./-]*)`", page.read_text(encoding="utf-8"))
     assert [name for name in named if not (ROOT / name).exists()] == []
