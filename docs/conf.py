@@ -12,18 +12,28 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from docutils import nodes
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.util.docutils import SphinxDirective
+
+from app.state.glossary import GLOSSARY
+
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
+    from sphinx.writers.html5 import HTML5Translator
 
 project = "Escape Explorer"
 author = "The Escape Explorer developers"
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
 root_doc = "docs/index"
-include_patterns = ["*.md", "docs/*.md", "benchmarks/README.md", "examples/tutorial.ipynb"]
+include_patterns = ["*.md", "docs/*.md", "docs/api/*.md", "benchmarks/README.md", "examples/tutorial.ipynb"]
 exclude_patterns = [".*", "README.md", "site"]
 
 myst_heading_anchors = 3
+# Formulas are written as on GitHub: $…$ in a line, blocks fenced as `math`.
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = ["math"]
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 # A loaded machine, with an empty cache of kernels.
@@ -32,6 +42,7 @@ nb_execution_timeout = 300
 nb_output_stderr = "remove"
 
 default_role = "py:obj"
+autosummary_generate = False
 autodoc_default_options = {"members": True, "member-order": "bysource"}
 python_maximum_signature_line_length = 100
 napoleon_attr_annotations = False
@@ -41,11 +52,31 @@ napoleon_custom_sections = ["Returns"]
 html_theme = "furo"
 html_title = project
 html_extra_path = ["redirect"]
+html_static_path = ["static"]
+html_css_files = ["formulas.css"]
+# Browsers show MathML without a program; MathJax would come from another host.
+html_math_renderer = "mathml"
 
 
 def setup(app: Sphinx) -> None:
-    """Docstrings that the extensions do not find or misread are set after them."""
+    """Add formulas as MathML and the list of terms; set docstrings after the extensions, which do not find or misread some."""
+    app.add_html_math_renderer("mathml", (_write_formula, None), (_write_formula, None))
+    app.add_directive("terms", Terms)
     app.connect("autodoc-process-docstring", _set_docstring, priority=900)
+
+
+class Terms(SphinxDirective):
+    """The terms of the page with their meanings, as a glossary."""
+
+    def run(self) -> list[nodes.Node]:
+        """Parse the glossary."""
+        entries = (f"{term}\n  {meaning}\n" for term, meaning in GLOSSARY.items())
+        return self.parse_text_to_nodes("\n".join(["```{glossary}", ":sorted:", "", *entries, "```"]))
+
+
+def _write_formula(writer: HTML5Translator, node: nodes.math | nodes.math_block) -> None:
+    writer.body.append(tex2mathml(node.astext(), as_block=isinstance(node, nodes.math_block)))
+    raise nodes.SkipNode
 
 
 def _set_docstring(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:

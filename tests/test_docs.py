@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import doctest
+import html
 import inspect
 import json
 import pkgutil
 import re
+import subprocess
+import sys
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
@@ -14,10 +17,14 @@ from types import ModuleType
 import pytest
 
 import engine
+from app.state.glossary import GLOSSARY
 from engine import service
 
 ROOT = Path(__file__).parents[1]
-PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "benchmarks" / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [*sorted(ROOT.glob("*.md")), ROOT / "benchmarks" / "README.md", *sorted((ROOT / "docs").glob("**/*.md"))]
+
+MOST_FOR_DRAWINGS = 400_000
+"""Bytes."""
 
 EXAMPLE_FILES = ["examples/case_three.py", "examples/tutorial.ipynb"]
 EXAMPLES = [name for name in engine.__all__ if ">>>" in (getattr(engine, name).__doc__ or "")]
@@ -35,10 +42,19 @@ def test_every_public_function_has_an_example() -> None:
     assert [name for name in engine.__all__ if inspect.isfunction(getattr(engine, name)) and name not in EXAMPLES] == []
 
 
-@pytest.mark.parametrize(("page", "module"), [("api", engine), ("service", service)])
-def test_every_name_is_in_the_reference(page: str, module: ModuleType) -> None:
-    documented = re.findall(r"^\.\. auto\w+:: (\w+)$", (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8"), re.MULTILINE)
+@pytest.mark.parametrize(("pages", "module"), [("api/*.md", engine), ("service.md", service)])
+def test_every_name_is_in_the_reference(pages: str, module: ModuleType) -> None:
+    texts = [page.read_text(encoding="utf-8") for page in (ROOT / "docs").glob(pages)]
+    documented = [name for text in texts for name in re.findall(r"^\.\. auto\w+:: (\w+)$", text, re.MULTILINE)]
     assert sorted(documented) == sorted(module.__all__)
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs" / "api").glob("*.md")), ids=page_name)
+def test_the_index_lists_the_names_of_each_group(page: Path) -> None:
+    index = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    (group,) = re.findall(rf"^## \[.*\]\(api/{page.name}\)$(.*?)^```$", index, re.MULTILINE | re.DOTALL)
+    documented = re.findall(r"^\.\. auto\w+:: (\w+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert re.findall(r"^   (\w+)$", group, re.MULTILINE) == documented
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
@@ -46,6 +62,50 @@ def test_links_point_to_existing_files(page: Path) -> None:
     targets = re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8"))
     local = [target.split("#")[0] for target in targets if not re.match(r"[a-z]+:", target)]
     assert [target for target in local if target and not (page.parent / target).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_pictures_have_alternative_texts(page: Path) -> None:
+    alternatives = re.findall(r"!\[([^\]]*)\]\(", page.read_text(encoding="utf-8"))
+    assert [text for text in alternatives if len(text.split()) < 3] == []
+
+
+def test_drawings_are_shown_and_small() -> None:
+    shown = {name for page in PAGES for name in re.findall(r"\(drawings/([\w-]+\.webp)\)", page.read_text(encoding="utf-8"))}
+    drawings = list((ROOT / "docs" / "drawings").iterdir())
+    assert {drawing.name for drawing in drawings} == shown
+    assert sum(drawing.stat().st_size for drawing in drawings) < MOST_FOR_DRAWINGS
+
+
+@pytest.fixture(scope="module")
+def small_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The pages of the terms and of SALI, without those that they link to."""
+    folder = tmp_path_factory.mktemp("site")
+    pages = "include_patterns=docs/glossary.md,docs/sali.md"
+    subprocess.run(
+        [sys.executable, "-m", "sphinx", "-Q", "-c", "docs", "-D", pages, "-D", "root_doc=docs/glossary", ".", str(folder)],
+        cwd=ROOT,
+        check=True,
+    )
+    return folder / "docs"
+
+
+def test_all_terms_are_on_the_page_of_terms(small_site: Path) -> None:
+    text = html.unescape((small_site / "glossary.html").read_text(encoding="utf-8")).replace("’", "'")
+    assert [term for term, meaning in GLOSSARY.items() if f">{term}<a" not in text or meaning not in text] == []
+
+
+def test_formulas_are_mathml(small_site: Path) -> None:
+    text = (small_site / "sali.html").read_text(encoding="utf-8")
+    assert re.search(r'<math [^>]*display="block">\s*<mi>SALI</mi>', text)
+    assert not re.search(r'src="http|"[^"]*mathjax[^"]*\.js', text)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_formulas_in_lines_have_no_escapes(page: Path) -> None:
+    """GitHub takes a backslash before a sign, such as that of a thin space, for Markdown."""
+    text = re.sub(r"```.*?```|`[^`]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert re.findall(r"\$[^$\n]*\\[^a-zA-Z\n][^$\n]*\$", text) == []
 
 
 @pytest.mark.parametrize("page", PAGES, ids=page_name)
@@ -86,7 +146,9 @@ def test_every_code_cell_of_the_tutorial_has_text_before_it() -> None:
     assert not any(cell.get("outputs") for cell in cells)
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/long-runs.md", "docs/slices.md", "docs/start.md", *EXAMPLE_FILES])
+@pytest.mark.parametrize(
+    "name", ["README.md", "docs/long-runs.md", "docs/slices.md", "docs/start.md", "docs/ten-minutes.md", *EXAMPLE_FILES]
+)
 def test_document_for_users_recommends_public_names_only(name: str) -> None:
     words = set(re.findall(r"\w+", (ROOT / name).read_text(encoding="utf-8")))
     assert words & set(service.__all__) == set()

@@ -1,0 +1,125 @@
+"""Drawings of case I that explain escapes: the well, the maps, the tubes and the exits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from drawing_panels import CASE, ENERGY, SIDE, STYLE, new_panels, window_shares
+from matplotlib.figure import Figure
+
+from engine import (
+    Fate,
+    MapSpec,
+    Orbit,
+    Plane,
+    Window,
+    classify_orbits,
+    compute_map,
+    find_stable_manifolds,
+    integrate_orbit,
+    start_states,
+)
+from engine.service import SECTION, SPACE
+from plots.figure_axes import (
+    add_figure_legend,
+    name_panel,
+    patches,
+)
+from plots.manifold_strokes import select_image
+from plots.map_figure import draw_curve, draw_limits, draw_manifolds, draw_map_figure, draw_picture, show_window
+from plots.orbit_curves import compute_orbit_curves, find_well_window
+from plots.orbit_figure import draw_path
+from plots.palette import PAPER
+from plots.potential_figure import draw_well
+
+
+def well() -> Figure:
+    """Case I with its saddles; two orbits above the escape energy."""
+    figure, (left, right) = new_panels(2, 11.5)
+    CASE.plot(left)
+    starts = start_states(CASE, Plane.X_Y, ENERGY, np.array([-0.2, -0.1]), np.array([-0.2, -0.1]))
+    draw_path(right, CASE, [compute_orbit_curves(CASE, integrate_orbit(CASE, start, 300.0)) for start in starts], PAPER)
+    name_panel(right, f"Two orbits at h = {ENERGY}")
+    return figure
+
+
+def maps() -> Figure:
+    """The three maps of the page."""
+    frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (SIDE, SIDE), Window(-0.65, 0.65, -0.65, 0.65), t_max=1e4))
+    return draw_map_figure(frame, ("basins", "times", "crossings"), PAPER, replace(STYLE, titles=True))
+
+
+def blob() -> Figure:
+    """A disc of starts on a boundary of the basins, at three times."""
+    times, count, radius = (0.0, 10.0, 20.0), 2000, 0.04
+    figure, panels = new_panels(len(times), 8.5)
+    angle, distance = np.random.default_rng(1).random((2, count)) * [[2.0 * np.pi], [1.0]]
+    x, y = radius * np.sqrt(distance) * [np.cos(angle), np.sin(angle)] + [[-0.2], [-0.2]]
+    orbits = [integrate_orbit(CASE, start, 200.0) for start in start_states(CASE, Plane.X_Y, ENERGY, x, y)]
+    window = find_well_window(CASE, ENERGY)
+    for axes, t in zip(panels, times, strict=True):
+        draw_well(axes, CASE, ENERGY, window, PAPER)
+        inside = [orbit for orbit in orbits if orbit.t[-1] >= t]
+        places = np.array([[np.interp(t, orbit.t, orbit.x), np.interp(t, orbit.t, orbit.y)] for orbit in inside])
+        colours = [PAPER.channels[orbit.fate - 1] if orbit.fate > 0 else PAPER.bounded for orbit in inside]
+        axes.scatter(*window_shares(places, window), s=1.5, c=colours, zorder=3, linewidths=0.0)
+        show_window(axes, window, "x", "y", equal=True)
+        name_panel(axes, f"t = {t:g}")
+    return figure
+
+
+def tubes() -> Figure:
+    """The sections of the tubes around the Lyapunov orbits, and the basins that they bound."""
+    figure, panels = new_panels(3, 9.0)
+    window = MapSpec(CASE, SECTION.plane, ENERGY).find_window()
+    manifolds = find_stable_manifolds(CASE, ENERGY, images=2)
+    for axes, image in zip(panels, (1, 2), strict=False):
+        draw_limits(axes, CASE, SECTION.plane, ENERGY, window)
+        draw_manifolds(axes, select_image(manifolds, image), window, PAPER)
+        show_window(axes, window, "x", "px")
+        name_panel(axes, f"Image {image} of the tubes")
+    draw_picture(panels[2], compute_map(MapSpec(CASE, SECTION.plane, ENERGY, (SIDE, SIDE), t_max=1e4)), "basins", PAPER)
+    return figure
+
+
+def energies() -> Figure:
+    """The basins at three energies."""
+    figure, panels = new_panels(3, 9.5)
+    for axes, energy in zip(panels, (0.13, 0.19, 0.4), strict=True):
+        frame = compute_map(MapSpec(CASE, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
+        draw_picture(axes, frame, "basins", PAPER)
+        name_panel(axes, f"h = {energy}: {100.0 * frame.fractions()[Fate.BOUNDED]:.1f} % bounded")
+    add_figure_legend(figure, patches([*PAPER.channel_entries(2), PAPER.outcomes[Fate.BOUNDED]]))
+    return figure
+
+
+def exits() -> Figure:
+    """Three orbits that start close together, at an exit."""
+    figure, (left, right) = new_panels(2, 11.5)
+    orbits = _orbits_at_the_exit()
+    for axes, window in ((left, find_well_window(CASE, ENERGY)), (right, Window(0.2, 0.8, 0.45, 1.05))):
+        for orbit, colour in zip(orbits, PAPER.orbits, strict=False):
+            draw_curve(axes, [np.column_stack([orbit.x, orbit.y])], window, colors=colour, linewidths=1.4)
+        draw_limits(axes, CASE, SPACE, ENERGY, window, PAPER.channels)
+        show_window(axes, window, "x", "y", equal=True)
+    name_panel(left, "Three orbits from almost the same start")
+    name_panel(right, "At the Lyapunov orbit")
+    return figure
+
+
+def _orbits_at_the_exit() -> list[Orbit]:
+    """One orbit inside the tube of exit 1, one on it to rounding, and one outside, which start side by side on y = 0."""
+
+    def start(x: float) -> np.ndarray:
+        return start_states(CASE, Plane.X_PX, ENERGY, np.array([x]), np.array([0.3]))
+
+    def leaves_at_once(x: float) -> bool:
+        outcome = classify_orbits(CASE, ENERGY, start(x), 100.0)
+        return bool(outcome.fate[0] == 1 and outcome.crossings[0] == 0)
+
+    inside, outside = 0.0, 0.5
+    for _ in range(60):
+        middle = 0.5 * (inside + outside)
+        inside, outside = (middle, outside) if leaves_at_once(middle) else (inside, middle)
+    return [integrate_orbit(CASE, start(inside + aside)[0], 9.0) for aside in (-0.05, 0.0, 0.05)]

@@ -1,0 +1,248 @@
+"""Draw the pictures of the documents, docs/drawings/<name>.webp. Run: python docs/make_drawings.py [name …]"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from drawing_panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels
+from introduction_drawings import blob, energies, exits, maps, tubes, well
+
+from engine import (
+    CASES,
+    POTENTIALS,
+    Certificate,
+    Coordinate,
+    CurvesSpec,
+    MapSpec,
+    ParameterAxis,
+    Plane,
+    Slice,
+    System,
+    Window,
+    classify_orbits,
+    compute_basin_entropy,
+    compute_curves,
+    compute_flux,
+    compute_map,
+    compute_origin_fates,
+    compute_separation,
+    compute_statistics,
+    compute_trust,
+    compute_uncertainty_exponent,
+    compute_wada_test,
+    fit_decay_laws,
+    integrate_orbit,
+    sample_starts,
+    start_states,
+)
+from engine.service import SECTION
+from plots.curve_figures import draw_statistics_figure
+from plots.figure_axes import (
+    add_figure_legend,
+    add_panel_legend,
+    label_axes,
+    name_panel,
+    patches,
+    save_figure,
+    style_axes,
+)
+from plots.figure_style import FigureFormat
+from plots.map_figure import draw_limits, draw_picture, draw_pixels, show_window
+from plots.orbit_curves import compute_orbit_curves
+from plots.orbit_figure import draw_sali
+from plots.palette import LIGHT, MEASURED, PAPER, Entry, rgba
+
+FOLDER = Path(__file__).parent / "drawings"
+_COLOURS = 64
+
+
+def main(names: Sequence[str]) -> None:
+    """Draw these pictures, or all."""
+    FOLDER.mkdir(exist_ok=True)
+    for draw in DRAWINGS:
+        name = draw.__name__.replace("_", "-")
+        if not names or name in names:
+            picture = Image.open(BytesIO(save_figure(draw(), FigureFormat.PNG, {}))).convert("RGB")
+            few = picture.quantize(_COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).convert("RGB")
+            few.save(FOLDER / f"{name}.webp", lossless=True, quality=100, method=6)
+
+
+def cases() -> Figure:
+    """The wells of the three cases."""
+    figure, panels = new_panels(3, 8.5)
+    for axes, case in zip(panels, CASES.values(), strict=True):
+        case.plot(axes)
+    return figure
+
+
+def potentials() -> Figure:
+    """Some wells of the catalogue."""
+    figure, panels = new_panels(3, 8.5)
+    for axes, name in zip(panels, ("C5", "C8", "One exit"), strict=True):
+        POTENTIALS[name].plot(axes)
+    return figure
+
+
+def sali() -> Figure:
+    """The sections of a regular and a chaotic orbit, and their SALI."""
+    figure, (left, right) = new_panels(2, 11.0)
+    case, energy = CASES["III"], 0.26
+    window = MapSpec(case, SECTION.plane, energy).find_window()
+    starts = start_states(case, SECTION.plane, energy, np.array([0.4, 0.58]), np.array([0.2, 0.0]))
+    for start, colour in zip(starts, PAPER.orbits, strict=False):
+        orbit = integrate_orbit(case, start, 2e4)
+        mark_section(left, orbit, window, colour)
+        draw_sali(right, compute_orbit_curves(case, orbit), colour)
+    draw_limits(left, case, SECTION.plane, energy, window)
+    show_window(left, window, "x", "px")
+    name_panel(left, "Two orbits where they cross y = 0 upward")
+    return figure
+
+
+def trust() -> Figure:
+    """Two orbits that start 10⁻¹¹ apart, a map, and its doubtful pixels."""
+    figure, (growth, basins, pixels) = new_panels(3, 9.0)
+    frame = compute_map(MapSpec(CASE, Plane.X_PX, ENERGY, (200, 200), t_max=1e4))
+    first, second = start_states(CASE, Plane.X_PX, ENERGY, np.array([-0.3, -0.3 + 1e-11]), np.zeros(2))
+    compute_separation(CASE, first, second, 200.0).plot(growth)
+    name_panel(growth, "Distance of two orbits")
+    draw_picture(basins, frame, "basins", PAPER)
+    compute_trust(frame).plot(pixels)
+    return figure
+
+
+def basin_entropy() -> Figure:
+    """Boxes of 5 × 5 starts, and their entropies."""
+    figure, (left, right) = new_panels(2, 11.0)
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (60, 60), Window(0.0, 0.3, 0.0, 0.3), t_max=1e4))
+    draw_picture(left, frame, "basins", PAPER)
+    boxes = frame.fate.reshape(12, 5, 12, 5).swapaxes(1, 2)
+    entropies = [[compute_basin_entropy(box).s_b for box in row] for row in boxes]
+    image = right.imshow(entropies, origin="lower", extent=(0.0, 1.0, 0.0, 1.0), cmap="cividis")
+    figure.colorbar(image, ax=right, label="entropy of the box")
+    for axes in (left, right):
+        axes.hlines(np.arange(13) / 12.0, 0.0, 1.0, color=LIGHT.halo, linewidth=0.4)
+        axes.vlines(np.arange(13) / 12.0, 0.0, 1.0, color=LIGHT.halo, linewidth=0.4)
+    show_window(right, frame.spec.find_window(), "x", "px")
+    name_panel(right, "Entropies of the boxes")
+    return figure
+
+
+def wada() -> Figure:
+    """Three basins with one boundary, and the test of it."""
+    figure, (left, right) = new_panels(2, 11.0)
+    frame = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.25, (SIDE, SIDE), t_max=1e4))
+    draw_picture(left, frame, "basins", PAPER)
+    compute_wada_test(frame).plot(right)
+    name_panel(right, "Share of the boundary that is close to all basins")
+    return figure
+
+
+def uncertainty_exponent() -> Figure:
+    """The share of uncertain pairs against their separation at two energies."""
+    figure, panels = new_panels(2, 10.0, sharey=True)
+    for axes, energy in zip(panels, (0.2, 0.3), strict=True):
+        found = compute_uncertainty_exponent(MapSpec(CASES["II"], Plane.X_PX, energy), work=3e7)
+        found.plot(axes)
+        name_panel(axes, f"h = {energy}: α = {found.exponent:.2f}")
+    return figure
+
+
+def escape_laws() -> Figure:
+    """The share of starts inside against time, with both laws."""
+    figure, (axes,) = new_panels(1, 10.0, width=18.0)
+    fit_decay_laws(compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (224, 224), t_max=1e4))).plot(axes)
+    return figure
+
+
+def slices() -> Figure:
+    """Launch angle and energy, and a parameter as an axis."""
+    figure, panels = new_panels(2, 11.5)
+    throws = MapSpec(CASES["III"], Slice(Coordinate.THETA, Coordinate.H), (0.2, 0.8), (SIDE, SIDE), t_max=1e3)
+    stronger = MapSpec(CASE, Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))), 0.2, (SIDE, SIDE), t_max=1e3)
+    for axes, spec in zip(panels, (throws, stronger), strict=True):
+        draw_picture(axes, compute_map(spec), "basins", PAPER)
+        name_panel(axes, f"Basins on {spec.plane.title}")
+    return figure
+
+
+def statistics() -> Figure:
+    """Escape times, and probabilities of an escape by crossings."""
+    frame = compute_map(MapSpec(CASES["II"], SECTION.plane, 0.2, (SIDE, SIDE), t_max=1e4))
+    return draw_statistics_figure(compute_statistics(frame), replace(STYLE, titles=True))
+
+
+def curves() -> Figure:
+    """Shares of the outcomes against energy."""
+    figure, (axes,) = new_panels(1, 9.5, width=18.0)
+    values = tuple(float(h) for h in np.linspace(0.25, 0.45, 41))
+    compute_curves(CurvesSpec(CASES["III"], Plane.X_PX, values, (80, 80), t_max=1e4, exponent=False)).plot(axes)
+    return figure
+
+
+def flux() -> Figure:
+    """The share of random starts inside against time, and the decay at the rate of the flux."""
+    figure, (axes,) = new_panels(1, 9.5, width=18.0)
+    case, energy, count = CASES["II"], 0.2, 20_000
+    rate = compute_flux(case, energy).decay_rate
+    times = np.sort(classify_orbits(case, energy, sample_starts(case, energy, count), t_max=1e3).escape_time)
+    t = np.linspace(0.0, 100.0, 400)
+    axes.semilogy(t, 1.0 - np.searchsorted(times, t) / count, color=MEASURED, label="random starts")
+    axes.semilogy(t, np.exp(-rate * t), "--", color=LIGHT.text, label=f"exp(−{rate:.3g} t)")
+    style_axes(axes, grid=True)
+    label_axes(axes, "t", "share inside")
+    add_panel_legend(axes, "upper right")
+    return figure
+
+
+def certificates() -> Figure:
+    """The certificates of a map, and the sections of a certified orbit and of one that leaves."""
+    figure, (left, right) = new_panels(2, 12.0)
+    case, energy = CASES["III"], 0.30
+    frame = compute_map(MapSpec(case, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
+    window = frame.spec.find_window()
+    draw_pixels(left, rgba(list(_CERTIFIED.values()))[frame.certificate][::-1], window, window)
+    name_panel(left, "Why an orbit is called bounded")
+    starts = start_states(case, SECTION.plane, energy, np.array([0.3, 0.6]), np.zeros(2))
+    for start, colour in zip(starts, PAPER.orbits, strict=False):
+        orbit = integrate_orbit(case, start, 1e4)
+        mark_section(right, orbit, window, colour)
+    name_panel(right, "Two orbits on the section y = 0")
+    for axes in (left, right):
+        draw_limits(axes, case, SECTION.plane, energy, window)
+        show_window(axes, window, "x", "px")
+    names = {code: code.name.lower().replace("_", "-") for code in _CERTIFIED if (frame.certificate == code).any()}
+    add_figure_legend(figure, patches(Entry(name, _CERTIFIED[code]) for code, name in names.items() if code))
+    return figure
+
+
+# Of the codes of `Certificate`.
+_CERTIFIED = dict(zip(Certificate, ("#f2f2f2", "#d1495b", "#7f7f7f", "#4c8dc4", "#8fd0b5", "#b9a2d8"), strict=True))
+
+
+def origins() -> Figure:
+    """Origin and exit of each orbit."""
+    figure, panels = new_panels(2, 11.0)
+    spec = MapSpec(CASE, Plane.X_PX, 0.3, (SIDE, SIDE), t_max=1e3)
+    draw_picture(panels[0], compute_map(spec), "basins", PAPER)
+    compute_origin_fates(spec).plot(panels[1])
+    return figure
+
+
+DRAWINGS: tuple[Callable[[], Figure], ...] = (
+    well, maps, blob, tubes, energies, cases, potentials, exits, sali, trust, basin_entropy, wada, uncertainty_exponent,
+    escape_laws, slices, statistics, curves, flux, certificates, origins,
+)  # fmt: skip
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
