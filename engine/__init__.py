@@ -65,6 +65,7 @@ from engine.trajectories.chaos_indicators import (
     compute_birkhoff_digits,
     evaluate_indicators,
 )
+from engine.trajectories.entrances import sample_entrances
 from engine.trajectories.flux import EscapeFlux, compute_flux
 from engine.trajectories.nearest_divergent_start import DivergentStart, find_divergent_start
 from engine.trajectories.orbit_verdicts import OrbitVerdict, judge_orbit
@@ -152,6 +153,7 @@ __all__ = [
     "plan_sweep",
     "review_potential",
     "run_sweep",
+    "sample_entrances",
     "sample_orbits",
     "sample_starts",
     "start_states",

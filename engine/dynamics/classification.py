@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, ClassVar
 
@@ -36,12 +36,18 @@ class Outcomes(Result):
         int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
     energy_error
         float64, ``|H − h| / |h|`` at the end; NaN if there is no orbit.
+    t_max
+        Integration time of the orbits that have not escaped; infinite if it is not known.
+    channels
+        Number of exit channels of the potential; 0 if it is not known.
     """
 
     fate: np.ndarray
     escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy_error: np.ndarray
+    t_max: float = field(default=float("inf"), metadata=TIME)
+    channels: int = 0
     codes: ClassVar = {"fate": Fate}
     row_dimension: ClassVar = "orbit"
 
@@ -55,7 +61,7 @@ def collect_outcomes(potential: Potential, energy: np.ndarray, batch: OrbitBatch
     difference = np.abs(potential.energy(batch.state[decided]) - reference)
     error[decided] = difference / np.maximum(np.abs(reference), np.finfo(float).tiny)
     escape_time = np.where(batch.fate >= 1, batch.t, np.nan)
-    return Outcomes(*map(read_only, (batch.fate.copy(), escape_time, crossings, error)))
+    return Outcomes(read_only(batch.fate.copy()), read_only(escape_time), read_only(crossings), read_only(error))
 
 
 @shows_progress("orbits")
@@ -113,7 +119,8 @@ def classify_orbits(
         well, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution,
         on_tiles=lambda: execution.report(partial(_share_done, batch, t_max / units.time)),
     )  # fmt: skip
-    return units.restore(collect_outcomes(well, np.full(len(states), well_energy), batch))
+    outcomes = units.restore(collect_outcomes(well, np.full(len(states), well_energy), batch))
+    return replace(outcomes, t_max=t_max, channels=potential.channels)
 
 
 def _share_done(batch: OrbitBatch, t_max: float) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from engine.dynamics.classification import Outcomes
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.stored_maps import MapLike, as_map
 from engine.measures.decay_laws import MIN_ESCAPES, MIN_P_VALUE, DecayLaw, DecayLaws, LawFit, to_unit_time, window_length
@@ -42,7 +43,7 @@ _SINGLES, _GROUP_SHARE = 128, 0.02
 
 @checks_types(execution=Execution)
 def fit_decay_laws(
-    statistics: EscapeStatistics | MapLike,
+    statistics: EscapeStatistics | MapLike | Outcomes,
     t_max: float | None = None,
     *,
     window: tuple[float, float] | None = None,
@@ -67,7 +68,7 @@ def fit_decay_laws(
     Parameters
     ----------
     statistics
-        The escapes, or the map in which they are counted.
+        The escapes, or the map or the outcomes of `classify_orbits` in which they are counted.
     t_max
         Integration time of the orbits that did not escape, 0 < t_max ≤ 1e8, dimensionless; None for that of the statistics, the
         largest one that is legal. Later escapes are left out.
@@ -96,7 +97,8 @@ def fit_decay_laws(
     (<DecayLaw.EXPONENTIAL: 'exponential'>, 0.024)
     """
     if not isinstance(statistics, EscapeStatistics):
-        statistics = compute_statistics(as_map("statistics", statistics))
+        chosen = statistics if isinstance(statistics, Outcomes) else as_map("statistics", statistics)
+        statistics = compute_statistics(chosen)
     t_max = _checked_horizon(statistics, t_max)
     resamples = checked_count("resamples", resamples, MIN_RESAMPLES, MAX_RESAMPLES)
     seed = checked_count("seed", seed, 0, 2**63 - 1)

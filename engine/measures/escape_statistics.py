@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from engine.dynamics.classification import Outcomes
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import MapLike, as_map
@@ -139,16 +140,18 @@ class EscapeStatistics(Result):
         return read_only(edges), read_only(np.histogram(np.maximum(self.escape_times, low), edges)[0])
 
 
-def compute_statistics(frame: MapLike, window: GivenWindow | None = None) -> EscapeStatistics:
-    """Count the fates, crossings and escape times of a map, finished or not; forbidden and outside starts are left out.
+def compute_statistics(frame: MapLike | Outcomes, window: GivenWindow | None = None) -> EscapeStatistics:
+    """Count the fates, crossings and escape times of a map, finished or not, or of any orbits.
+
+    Forbidden and outside starts are left out.
 
     Parameters
     ----------
     frame
-        The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep.
+        The map, or its dataset, such as ``dataset.sel(h=0.3)`` of a sweep; or the outcomes of `classify_orbits`.
     window
         Only pixels whose centre lies in this rectangle, edges included, count; given as in `MapSpec`, it can extend beyond the
-        map or miss it. None for all pixels.
+        map or miss it. None for all pixels, and for orbits that are no map.
 
     Examples
     --------
@@ -157,12 +160,18 @@ def compute_statistics(frame: MapLike, window: GivenWindow | None = None) -> Esc
     >>> statistics.starts, statistics.channel_counts, round(statistics.median_escape_time, 2)
     (1124, (496, 496, 66, 66), 1.51)
     """
+    if isinstance(frame, Outcomes):
+        if window is not None:
+            raise ValueError(f"window={window}: must be None for orbits that are no map")
+        return _count(frame.fate, frame.escape_time, frame.crossings, frame.channels, frame.t_max)
     frame = as_map("frame", frame)
     part = pixels_inside(frame, None if window is None else checked_window(window))
-    fate = frame.fate[part]
+    return _count(frame.fate[part], frame.escape_time[part], frame.crossings[part], frame.spec.channels, frame.spec.t_max)
+
+
+def _count(fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, channels: int, t_max: float) -> EscapeStatistics:
     escaped = fate >= 1
-    times = frame.escape_time[part][escaped]
-    channels = frame.spec.channels
+    times = escape_time[escaped]
     counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=channels + 1 - _LOWEST_CODE).tolist()
     return EscapeStatistics(
         channel_counts=tuple(counts[1 - _LOWEST_CODE :]),
@@ -171,9 +180,9 @@ def compute_statistics(frame: MapLike, window: GivenWindow | None = None) -> Esc
         failed=counts[Fate.FAILED - _LOWEST_CODE],
         mean_escape_time=float(times.mean()) if times.size else float("nan"),
         median_escape_time=float(np.median(times)) if times.size else float("nan"),
-        crossing_counts=read_only(np.bincount(frame.crossings[part][escaped])),
+        crossing_counts=read_only(np.bincount(crossings[escaped])),
         escape_times=read_only(times),
-        t_max=frame.spec.t_max,
+        t_max=t_max,
     )
 
 

@@ -6,7 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import CASES, EscapeMap, EscapeStatistics, Fate, MapSpec, Plane, Window, compute_map, compute_statistics
+from engine import (
+    CASES,
+    EscapeMap,
+    EscapeStatistics,
+    Fate,
+    MapSpec,
+    Plane,
+    Window,
+    classify_orbits,
+    compute_map,
+    compute_statistics,
+    fit_decay_laws,
+    sample_starts,
+)
 from engine.service import compute_survival
 
 SIDE = 60
@@ -223,3 +236,19 @@ def test_without_escapes_the_histogram_is_empty(whole: EscapeMap) -> None:
 def test_zero_bins_raise(statistics: EscapeStatistics) -> None:
     with pytest.raises(ValueError, match="bins=0: must be 1 or more"):
         statistics.time_histogram(0)
+
+
+def test_orbits_that_are_no_map_are_counted() -> None:
+    potential, energy = CASES["III"], 0.36
+    outcomes = classify_orbits(potential, energy, sample_starts(potential, energy, 500, seed=2), 50.0)
+    counted = compute_statistics(outcomes)
+    assert counted.channel_counts == tuple(int((outcomes.fate == channel).sum()) for channel in range(1, 5))
+    assert (counted.starts, counted.t_max) == (500, 50.0)
+    np.testing.assert_array_equal(counted.escape_times, outcomes.escape_time[outcomes.fate > 0])
+    assert fit_decay_laws(outcomes, resamples=500).t_high == 50.0
+
+
+def test_orbits_that_are_no_map_have_no_window() -> None:
+    outcomes = classify_orbits(CASES["I"], 0.1, sample_starts(CASES["I"], 0.1, 5), 1.0)
+    with pytest.raises(ValueError, match="must be None for orbits that are no map"):
+        compute_statistics(outcomes, (-1.0, 1.0, -1.0, 1.0))

@@ -1,0 +1,109 @@
+"""Random orbits that enter a well through its exits: their times inside are the gap times of transition state theory."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from engine.exits.interior import find_outside_channels
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.potentials.potential import Potential
+from engine.slices.sampling import LARGEST_SAMPLE
+from engine.validation import checked_count, checked_number, checks_types
+
+# Places along half a Lyapunov orbit at which the flux is added up.
+_PLACES = 2001
+# Distance of the starts from the Lyapunov orbit, in shares of its length: on it, rounding would decide what is inside.
+_SHIFT = 1e-7
+
+
+@checks_types(potential=Potential)
+def sample_entrances(potential: Potential, energy: float, count: int, *, seed: int = 0) -> np.ndarray:
+    """Random states on the Lyapunov orbits that move into the well, distributed as the flux.
+
+    They are the orbits that enter from outside, as many through each exit as its share of the flux. The times until they leave
+    are the gap times (Ezra, Waalkens & Wiggins 2009, J. Chem. Phys. 130, 164118); their mean is `EscapeFlux.mean_passage_time`
+    where no volume is enclosed by orbits that never leave.
+
+    Parameters
+    ----------
+    potential
+        The potential.
+    energy
+        h, above the escape energy, dimensionless.
+    count
+        Number of states, 1 to 10 000 000.
+    seed
+        0 to 2⁶³ − 1; equal seeds give equal states.
+
+    Returns
+    -------
+    (count, 4) x, y, px, py, all of that energy to rounding, just inside the exits.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range, or all exits are closed at this energy.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, classify_orbits, compute_flux, sample_entrances
+    >>> entrances = sample_entrances(CASES["III"], 0.6, 5000, seed=1)
+    >>> times = classify_orbits(CASES["III"], 0.6, entrances, t_max=1e4).escape_time
+    >>> round(float(times.mean()), 1), round(compute_flux(CASES["III"], 0.6).mean_passage_time, 1)
+    (4.0, 4.0)
+    """
+    h = checked_number("energy", energy)
+    count = checked_count("count", count, 1, LARGEST_SAMPLE)
+    random = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))
+    orbits = find_lyapunov_orbits(potential, h)
+    if not orbits:
+        raise ValueError(f"energy={h}: all exits are closed; must be above the escape energy {potential.escape_energy:.6g}")
+    halves = [_HalfOrbit(potential, orbit) for orbit in orbits]
+    flux = np.array([half.flux[-1] for half in halves])
+    chosen = random.choice(len(halves), count, p=flux / flux.sum())
+    states = np.empty((count, 4))
+    for place, half in enumerate(halves):
+        states[chosen == place] = half.draw(int((chosen == place).sum()), random)
+    return states
+
+
+class _HalfOrbit:
+    """Half a Lyapunov orbit, the line across its exit: the flux ∫ p·dq up to each time, and states that cross it inward."""
+
+    def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
+        self._potential, self._energy = potential, orbit.energy
+        path = orbit.half_path
+        self._path = CubicSpline(np.linspace(0.0, 0.5 * orbit.period, len(path)), path)
+        self.times = np.linspace(0.0, 0.5 * orbit.period, _PLACES)
+        speed_squared = (self._path(self.times, 1) ** 2).sum(axis=1)
+        parts = 0.5 * (speed_squared[1:] + speed_squared[:-1]) * np.diff(self.times)
+        self.flux = np.concatenate([[0.0], np.cumsum(parts)])
+        self._length = float(np.hypot(*(path[-1] - path[0])))
+        self._inward = self._find_side()
+
+    def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
+        """(count, 4) states, uniform in the flux: along the line as p·dq, and in the momentum along it."""
+        times = np.interp(random.uniform(0.0, self.flux[-1], count), self.flux, self.times)
+        points, along, inward = self._frame(times)
+        points = points + _SHIFT * self._length * inward
+        momentum = np.sqrt(np.maximum(2.0 * (self._energy - self._potential.value(*points.T)), 0.0))
+        share = random.uniform(-1.0, 1.0, count)
+        directions = share[:, None] * along + np.sqrt(1.0 - share * share)[:, None] * inward
+        return np.column_stack([points, momentum[:, None] * directions])
+
+    def _frame(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Points of the line, and unit vectors along it and into the well."""
+        velocity: Any = self._path(times, 1)
+        along = velocity / np.maximum(np.hypot(*velocity.T), np.finfo(float).tiny)[:, None]
+        return self._path(times), along, self._inward * np.column_stack([-along[:, 1], along[:, 0]])
+
+    def _find_side(self) -> float:
+        """1 if the well is at the left of the line, else −1."""
+        self._inward = 1.0
+        points, _, normal = self._frame(self.times[[_PLACES // 2]])
+        point = points + 1e3 * _SHIFT * self._length * normal
+        outside = find_outside_channels(self._potential, self._energy, *np.ascontiguousarray(point.T))
+        return -1.0 if outside[0] else 1.0
