@@ -12,6 +12,7 @@ import typer
 
 from cli import (
     curves_command,
+    ensemble_command,
     lyapunov_command,
     map_command,
     measures_command,
@@ -34,6 +35,7 @@ program.command("orbit", epilog=orbit_command.EXAMPLES)(orbit_command.follow_orb
 program.command("lyapunov", epilog=lyapunov_command.EXAMPLES)(lyapunov_command.list_lyapunov_orbits)
 program.command("measures", epilog=measures_command.EXAMPLES)(measures_command.measure_basins)
 program.command("curves", epilog=curves_command.EXAMPLES)(curves_command.draw_curves)
+program.command("ensemble", epilog=ensemble_command.EXAMPLES)(ensemble_command.follow_ensemble)
 program.command("sweep", epilog=sweep_command.EXAMPLES)(sweep_command.sweep_energies)
 program.command("reproduce", epilog=reproduce_command.EXAMPLES)(reproduce_command.reproduce_paper)
 program.command("potential", epilog=potential_command.EXAMPLES)(potential_command.describe_potential)
