@@ -25,7 +25,7 @@ class WatchPresenter:
         self._player: EnsemblePlayer | None = None
         self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
         watch = state.param.watch
-        watch(lambda *events: self._follow(), ["watched", "starts", "chosen"])
+        watch(lambda *events: self._follow(), ["watched", "starts", "chosen", "box"])
         watch(lambda *events: self.request_rate(), [*SYSTEM, "plane", "energy", "analysis"])
 
     def build(self) -> list[pn.viewable.Viewable]:
@@ -51,8 +51,9 @@ class WatchPresenter:
 
     def _follow(self) -> None:
         if self._player is not None:
-            watched, start = self._state.watched, self._state.chosen_start
-            self._player.param.update(**asdict(watched), point=[] if start is None else list(start))
+            watched, start, box = self._state.watched, self._state.chosen_start, self._state.box
+            edges = [] if box is None else list(vars(box).values())
+            self._player.param.update(**asdict(watched), point=[] if start is None else list(start), box=edges)
 
     def _choose(self, message: Any) -> None:
         # Messages come from a browser: ignore what is not expected.

@@ -14,7 +14,32 @@ class StartsFrom(StrEnum):
 
     WELL = "well"
     VIEW = "view"
+    BOX = "box"
     DISC = "disc"
+    EXITS = "exits"
+    TUBES = "tubes"
+
+
+PLACES = {
+    StartsFrom.WELL: "in the whole well",
+    StartsFrom.VIEW: "in the view",
+    StartsFrom.BOX: "in the box",
+    StartsFrom.DISC: "around the chosen orbit",
+    StartsFrom.EXITS: "on the exits, entering",
+    StartsFrom.TUBES: "at the tubes that lead out",
+}
+"""In words."""
+
+EXPLANATIONS = {
+    StartsFrom.TUBES: (
+        "Half of them start just inside a tube that leads to an exit, and leave at their next pass. The others, just outside, "
+        "turn back there."
+    ),
+    StartsFrom.EXITS: (
+        "They enter through the exits, as often as the flux says. The curve is the distribution of the times until they leave."
+    ),
+}
+"""Sentences where the place alone says too little."""
 
 
 COUNTS = (1000, 5000, 20000)
@@ -31,7 +56,8 @@ class WatchedStarts:
     Attributes
     ----------
     where
-        On the energy surface, on the slice in view, or on a disc around the chosen start.
+        On the energy surface; on the slice in view, in the box, or on a disc around the chosen start; on the exits, going
+        inward; at the edges of the tubes of the Lyapunov orbits.
     count
         Number of orbits, one of `COUNTS`.
     seed

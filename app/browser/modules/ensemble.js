@@ -87,6 +87,17 @@ export class Ensemble {
     for (let i = 0; i < this.count; i++) this.#place(i, time)
   }
 
+  /** Momenta at the present time, which is after the first step; those of orbits that have left mean nothing. */
+  momenta() {
+    const [px, py] = [new Float64Array(this.count), new Float64Array(this.count)]
+    for (let i = 0; i < this.count; i++) {
+      const [first, tau] = [2 * this.#terms * i, this.time - this.#begin[i]]
+      px[i] = slope(this.#series, first, this.#terms, tau)
+      py[i] = slope(this.#series, first + this.#terms, this.#terms, tau)
+    }
+    return {px, py}
+  }
+
   /**
    * Numbers of the orbits whose step ends before a time.
    *
@@ -188,6 +199,20 @@ export class Ensemble {
     this.x[orbit] = far ? NaN : horner(this.#series, first, this.#terms, tau)
     this.y[orbit] = far ? NaN : horner(this.#series, first + this.#terms, this.#terms, tau)
   }
+}
+
+/**
+ * Derivative of `horner` with respect to tau.
+ *
+ * @param {Float64Array} series
+ * @param {number} first
+ * @param {number} terms
+ * @param {number} tau
+ */
+function slope(series, first, terms, tau) {
+  let value = (terms - 1) * series[first + terms - 1]
+  for (let k = terms - 2; k > 0; k--) value = value * tau + k * series[first + k]
+  return value
 }
 
 /**

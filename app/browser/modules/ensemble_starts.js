@@ -1,25 +1,28 @@
 // @ts-check
 /** Random starts of an ensemble; equal seeds give equal starts. */
 
+import {drawEntrances, drawTubes} from "./exit_starts.js"
 import {exitCurves} from "./exits.js"
 import {energyUnit, space, Starts} from "./slice.js"
 import {windowAt} from "./system.js"
 
 /**
- * Where the starts are: "well", evenly on the energy surface; "view", evenly on the slice in a window; "disc", evenly on it around a
- * point.
+ * Where the starts are: "well", evenly on the energy surface; "view" and "box", evenly on the slice in a window; "disc", evenly on it
+ * around a point; "exits", on the exits and going inward; "tubes", at the edge of the tubes that lead out.
  *
  * @typedef {object} Request
- * @property {"well" | "view" | "disc"} where
+ * @property {"well" | "view" | "box" | "disc" | "exits" | "tubes"} where
  * @property {number} count
  * @property {number} seed
  * @property {[number, number]} point  middle of the disc, in units of the page
+ * @property {[number, number, number, number]} box  xLow, xHigh, ordinateLow, ordinateHigh, in units of the page
  * @property {number} radius  of the disc, as a share of half the window
  *
  * @typedef {object} Surroundings
  * @property {import("./system.js").System} system
  * @property {import("./potential.js").Potential} potential
  * @property {import("./interior.js").Interior} interior
+ * @property {import("./integrator.js").Integrator} integrator
  */
 
 /** Draws for each start, at most; of a window without an interior there are no starts. */
@@ -33,13 +36,15 @@ const MOST_DRAWS = 200
  * @param {Surroundings} surroundings
  * @returns {Float64Array}
  */
-export function drawStarts(request, wish, {system, potential, interior}) {
+export function drawStarts(request, wish, {system, potential, interior, integrator}) {
   const energy = wish.energy / energyUnit(system.units)
   const exits = exitCurves(system.exits, energy)
   const random = randomNumbers(request.seed)
+  if (request.where === "exits") return drawEntrances(request.count, exits, potential, energy, random)
+  if (request.where === "tubes") return drawTubes(request.count, exits, potential, integrator, energy, random)
   const isWell = request.where === "well"
   const slice = isWell ? space(system.units) : wish.slice
-  const window = isWell ? windowAt(system.windows.x_y, wish.energy) : wish.window
+  const window = isWell ? windowAt(system.windows.x_y, wish.energy) : request.where === "box" ? boxOf(request) : wish.window
   if (!window) return new Float64Array(0)
   const starts = new Starts(slice, potential, energy)
   const {found} = starts
@@ -54,6 +59,14 @@ export function drawStarts(request, wish, {system, potential, interior}) {
     states.set([found.x, found.y, found.px, found.py], 4 * count++)
   }
   return states.slice(0, 4 * count)
+}
+
+/**
+ * @param {Request} request
+ * @returns {import("./slice.js").Window}
+ */
+function boxOf({box: [xLow, xHigh, ordinateLow, ordinateHigh]}) {
+  return {xLow, xHigh, ordinateLow, ordinateHigh}
 }
 
 /**

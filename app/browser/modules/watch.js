@@ -64,7 +64,7 @@ class Watch {
    */
   constructor(model, el) {
     this.#model = model
-    this.#where = makeList("Starts", {well: "in the whole well", view: "in the view", disc: "around the chosen orbit"})
+    this.#where = makeList("Starts", model.places)
     const counts = model.counts.map((/** @type {number} */ each) => [
       each,
       `${each.toLocaleString("en").replaceAll(",", " ")} orbits`,
@@ -127,7 +127,7 @@ class Watch {
     this.#play.onclick = () => this.#setPlaying(this.#frame === 0)
     this.#step.onclick = () => this.#show(PACES[this.#pace.value](this.#time, STEP_SECONDS))
     this.#rail.oninput = () => this.#show((this.#rail.valueAsNumber / STEPS) * LONGEST)
-    model.on(["where", "count", "seed", "radius", "point", "rate"], () => this.#follow())
+    model.on(["where", "count", "seed", "radius", "point", "box", "rate"], () => this.#follow())
     model.on("lifecycle:remove", () => this.#end())
   }
 
@@ -147,14 +147,16 @@ class Watch {
 
   /** Follow the page and the choices: with other starts the time begins anew, and goes on if it did. */
   #follow() {
-    const {where, count, seed, radius, point} = this.#model
+    const {where, count, seed, radius, point, box} = this.#model
     Object.assign(this.#where, {value: where})
     this.#count.value = String(count)
     this.#radius.value = String(radius)
     this.#radiusText.textContent = `10^${radius}`
     this.#radius.closest(".radius").hidden = where !== "disc"
     const [shown, wish] = [present(), present()?.wish() ?? null]
-    const place = {well: wish?.energy, view: wish, disc: [wish, radius, point]}[/** @type {string} */ (where)]
+    /** @type {Record<string, unknown>} */
+    const places = {view: wish, disc: [wish, radius, point], box: [wish, box]}
+    const place = places[where] ?? wish?.energy
     const made = JSON.stringify([where, count, seed, place, wish?.slice, shown?.system.key])
     if (made === this.#made) return this.#draw()
     this.#made = made
@@ -181,13 +183,14 @@ class Watch {
    * @param {import("./frames.js").Wish} wish
    */
   #make({system, module}, wish) {
-    const {where, count, seed, radius, point} = this.#model
-    const potential = makePotential(system.formula)
-    const surroundings = {system, potential, interior: new Interior(potential)}
-    const request = {where: where === "disc" && !point.length ? "view" : where, count, seed, point, radius: 10 ** radius}
+    const {where, count, seed, radius, point, box} = this.#model
+    const [potential, integrator] = [makePotential(system.formula), new Integrator(system, module)]
+    const surroundings = {system, potential, integrator, interior: new Interior(potential)}
+    const isMissing = (where === "disc" && !point.length) || (where === "box" && !box.length)
+    const request = {where: isMissing ? "view" : where, count, seed, point, box, radius: 10 ** radius}
     const states = drawStarts(request, wish, surroundings)
     const energy = wish.energy / energyUnit(system.units)
-    this.#ensemble = new Ensemble(new Integrator(system, module), energy, states)
+    this.#ensemble = new Ensemble(integrator, energy, states)
     this.#destinies = new Destinies(system, module, energy, states, LONGEST)
   }
 
@@ -247,8 +250,10 @@ class Watch {
     if (!present()) return "The engine in the browser is being loaded …"
     if (!this.#ensemble) return "Choose a slice of one energy and one potential, within the range of the slider."
     if (!this.#ensemble.count) return "There is no start inside the exits here."
-    const where = this.#where.selectedOptions[0].textContent
-    return `${this.#ensemble.count} starts ${where}, in the colours of the exits that they will take; grey ones stay.`
+    const {where, explanations} = this.#model
+    if (explanations[where]) return explanations[where]
+    const words = this.#where.selectedOptions[0].textContent
+    return `${this.#ensemble.count} starts ${words}, in the colours of the exits that they will take; grey ones stay.`
   }
 
   /**
@@ -281,7 +286,9 @@ class Watch {
   #paintSection(ensemble, {wish, colours}) {
     const [frame, view] = [frames()[0], wish()]
     const isSection = view?.slice.axes.join() === "x,px" && !view.slice.fixed.y
-    if (!frame || !view || !isSection) return void (this.#section.style.display = "none")
+    // Before the first passage the map stays as it is.
+    if (!frame || !view || !isSection || !ensemble.sectionX.some(Number.isFinite))
+      return void (this.#section.style.display = "none")
     const style = getComputedStyle(this.#note)
     this.#section.style.background = `color-mix(in srgb, ${style.getPropertyValue("--ui-page")} ${100 * COVER}%, transparent)`
     const [xs, ps] = [ensemble.sectionX, ensemble.sectionPx]

@@ -11,7 +11,7 @@ import {input, module} from "./read_input.js"
 
 const {system, requests, wish, energy, states, times} = input
 const potential = makePotential(system.formula)
-const surroundings = {system, potential, interior: new Interior(potential)}
+const surroundings = {system, potential, interior: new Interior(potential), integrator: new Integrator(system, module)}
 const draw = (/** @type {any} */ request) => [...drawStarts(request, wish, surroundings)]
 
 function follow() {

@@ -9,14 +9,28 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 import pytest
+from scipy import stats
 
-from engine import Plane, Potential, System, classify_orbits, default_window, sample_starts
+from engine import (
+    Plane,
+    Potential,
+    System,
+    classify_orbits,
+    compute_flux,
+    default_window,
+    find_lyapunov_orbits,
+    sample_entrances,
+    sample_orbits,
+    sample_starts,
+)
 from engine.exits.interior import find_outside_channels
 from engine.service import make_portable_system
 from tests.node import needs_node, run_node
 from tests.peers.taylor_heyoka import equations
 
 COUNT, FRAMES, LONGEST = 200, 50, 40.0
+# As in app/browser/modules/exit_starts.js.
+TO_THE_EXIT = 9.0
 SYSTEMS = [("I", 0.19), ("II", 0.22), ("III", 0.45)]
 # The browser paints places to a thousandth of a pixel; the steps are those of the server.
 PLACE_ERROR = 1e-8
@@ -101,7 +115,8 @@ def test_passages_lie_on_the_section_at_the_energy(followed: Followed) -> None:
 
 
 def request_for(where: str, **changes: Any) -> dict[str, Any]:
-    return {"where": where, "count": 4000, "seed": 1, "point": [0.1, 0.05], "radius": 0.01} | changes
+    place = {"point": [0.1, 0.05], "radius": 0.01, "box": [0.1, 0.3, -0.2, 0.1]}
+    return {"where": where, "count": 4000, "seed": 1} | place | changes
 
 
 @pytest.fixture(scope="module")
@@ -120,6 +135,9 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
         "well": request_for("well"),
         "view": request_for("view"),
         "disc": request_for("disc"),
+        "box": request_for("box"),
+        "exits": request_for("exits"),
+        "tubes": request_for("tubes"),
         "again": request_for("view"),
         "other": request_for("view", seed=2),
         "outside": request_for("disc", point=[5.0, 5.0]),
@@ -132,9 +150,10 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
 @needs_node
 def test_starts_are_inside_at_the_energy(drawn: dict[str, np.ndarray]) -> None:
     potential = System("III").potential
-    for name in ("well", "view", "disc"):
+    for name in ("well", "view", "disc", "box", "exits", "tubes"):
         states = drawn[name]
-        assert len(states) == 4000
+        # Some orbits at the tubes have come from another exit.
+        assert len(states) > 3000 if name == "tubes" else len(states) == 4000
         np.testing.assert_allclose(potential.energy(states), 0.45, rtol=1e-12)
         assert not find_outside_channels(potential, 0.45, *np.ascontiguousarray(states[:, :2].T)).any()
     assert len(drawn["outside"]) == 0
@@ -163,3 +182,35 @@ def test_starts_on_a_disc_are_spread_evenly_around_its_point(drawn: dict[str, np
     assert share.max() <= 1.0 + 1e-12
     # Half of the area lies within 1/√2 of the radius.
     assert np.mean(share < 1.0 / math.sqrt(2.0)) == pytest.approx(0.5, abs=0.04)
+
+
+@needs_node
+def test_starts_of_a_box_fill_it_evenly(drawn: dict[str, np.ndarray]) -> None:
+    x, px = drawn["box"][:, 0], drawn["box"][:, 2]
+    assert (x.min(), x.max(), px.min(), px.max()) == pytest.approx((0.1, 0.3, -0.2, 0.1), abs=1e-3)
+    counts = np.histogram2d(x, px, bins=4)[0]
+    np.testing.assert_allclose(counts, 250.0, atol=4.5 * math.sqrt(250.0))
+
+
+@needs_node
+def test_orbits_that_enter_stay_as_long_as_those_of_the_library(drawn: dict[str, np.ndarray]) -> None:
+    potential = System("III").potential
+    found, wanted = (
+        classify_orbits(potential, 0.45, states, 1e3).escape_time
+        for states in (drawn["exits"], sample_entrances(potential, 0.45, 4000, seed=8))
+    )
+    assert stats.ks_2samp(found, wanted).pvalue > 1e-3
+    assert found.mean() == pytest.approx(compute_flux(potential, 0.45).mean_passage_time, rel=0.1)
+
+
+@needs_node
+def test_of_the_orbits_at_the_tubes_one_half_leaves_where_the_other_turns_back(drawn: dict[str, np.ndarray]) -> None:
+    potential, states = System("III").potential, drawn["tubes"]
+    outcomes = classify_orbits(potential, 0.45, states, 100.0)
+    leave = np.abs(outcomes.escape_time - TO_THE_EXIT) < 1.0
+    assert leave.mean() == pytest.approx(0.5, abs=0.03)
+    path = sample_orbits(potential, states[~leave], [TO_THE_EXIT])
+    exits = np.concatenate([orbit.half_path for orbit in find_lyapunov_orbits(potential, 0.45)])
+    gaps = np.hypot(path.x - exits[:, 0], path.y - exits[:, 1]).min(axis=1)
+    # The others are close to an exit then, some have left through another one before.
+    assert (gaps < 0.05).mean() > 0.9
