@@ -293,6 +293,20 @@ PRESETS: tuple[Preset, ...] = (
         "each.",
     ),
     Preset(
+        key="doors", title="Tubes that lead out", group=_EXPLANATIONS, picture="basins", analysis=Analysis.WATCH,
+        case="II", plane=Plane.X_PX, energy=0.25, t_max=1e4, watched=WatchedStarts(StartsFrom.TUBES, 5000, 1),
+        caption="Orbits that come close to an exit form a tube. Of these, half start just inside a tube and leave when they come "
+        "to the exit, at t = 9; the others start just outside and turn back there. On the map their passages of the section draw "
+        "the boundaries of the basins.",
+    ),
+    Preset(
+        key="kept", title="An island keeps its own", group=_EXPLANATIONS, picture="times", analysis=Analysis.WATCH,
+        case="III", plane=Plane.X_PX, energy=0.45, t_max=1e4, starts=((0.22, 0.0),),
+        watched=WatchedStarts(StartsFrom.DISC, 5000, 1, -1.0),
+        caption="Five thousand orbits start at the end of an island of regular motion. At t = 20 one in a hundred has left, at "
+        "t = 100 half of them: they stick to the island for long. One in seven lies on it, and is still there at t = 100 000.",
+    ),
+    Preset(
         key="tangential", title="Thrown sideways", group=_SLICES, picture="basins",
         case="HH", plane=Plane.TANGENTIAL, energy=0.2, t_max=1e4, starts=((-0.3, 0.1), (0.1, -0.2), (0.0, 0.1)),
         caption="Every orbit of this picture starts at right angles to the line from the centre, with all its energy: the plane "
