@@ -87,6 +87,15 @@ export class Ensemble {
     for (let i = 0; i < this.count; i++) this.#place(i, time)
   }
 
+  /** How many times as wide as at their starts the orbits are spread that are still inside. */
+  growth() {
+    const inside = [...this.channel.keys()].filter(i => this.channel[i] === 0)
+    const starts = this.#starts
+    const before = width(inside, i => starts[4 * i]) ** 2 + width(inside, i => starts[4 * i + 1]) ** 2
+    const now = width(inside, i => this.x[i]) ** 2 + width(inside, i => this.y[i]) ** 2
+    return Math.sqrt(now / before)
+  }
+
   /** Momenta at the present time, which is after the first step; those of orbits that have left mean nothing. */
   momenta() {
     const [px, py] = [new Float64Array(this.count), new Float64Array(this.count)]
@@ -199,6 +208,24 @@ export class Ensemble {
     this.x[orbit] = far ? NaN : horner(this.#series, first, this.#terms, tau)
     this.y[orbit] = far ? NaN : horner(this.#series, first + this.#terms, this.#terms, tau)
   }
+}
+
+/**
+ * Standard deviation of a number of some orbits.
+ *
+ * @param {number[]} orbits
+ * @param {(orbit: number) => number} value
+ */
+function width(orbits, value) {
+  let [sum, squares] = [0, 0]
+  // Relative to the first one: those of a small disc differ in their last digits only.
+  const origin = orbits.length ? value(orbits[0]) : 0
+  for (const orbit of orbits) {
+    const difference = value(orbit) - origin
+    sum += difference
+    squares += difference * difference
+  }
+  return Math.sqrt(Math.max(squares / orbits.length - (sum / orbits.length) ** 2, 0))
 }
 
 /**

@@ -84,6 +84,7 @@ class Watch {
       make("div", {className: "row"}, this.#pace, make("label", {}, this.#trails, " trails")),
       this.#note,
       this.#counters,
+      this.#growth,
       this.#chart,
     )
     this.#listen()
@@ -104,6 +105,7 @@ class Watch {
   #trails = make("input", {type: "checkbox"})
   #note = make("p", {className: "quiet"})
   #counters = make("table")
+  #growth = make("p", {className: "quiet"})
   #chart = make("canvas", {className: "survival"})
   #well = make("canvas")
   #section = make("canvas")
@@ -242,6 +244,7 @@ class Watch {
     // While the time goes on, numbers that change in every frame cannot be read.
     if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
     this.#writeCounters(ensemble, shown.colours())
+    this.#writeGrowth(ensemble, time)
     const ink = getComputedStyle(this.#chart).color
     drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
   }
@@ -347,6 +350,21 @@ class Watch {
       return cell
     })
     this.#counters.replaceChildren(make("tbody", {}, make("tr", {}, ...cells)))
+  }
+
+  /**
+   * The growth of a disc, as a factor and as a rate: where it is small and the motion chaotic, the rate is near the Lyapunov exponent.
+   *
+   * @param {Ensemble} ensemble
+   * @param {number} time
+   */
+  #writeGrowth(ensemble, time) {
+    const growth = ensemble.growth()
+    const isShown = this.#model.where === "disc" && time > 0 && growth > 0 && growth < Infinity
+    this.#growth.hidden = this.#model.where !== "disc"
+    this.#growth.textContent = isShown
+      ? `${growth.toPrecision(3)} times as wide as at the start: ln(width)/t = ${(Math.log(growth) / time).toFixed(3)}`
+      : ""
   }
 
   #end() {

@@ -20,7 +20,14 @@ function follow() {
   const frames = times.map((/** @type {number} */ time) => {
     ensemble.advance(time)
     const {x, y, channel, sectionX, sectionPx} = ensemble
-    return {x: [...x], y: [...y], channel: [...channel], sectionX: [...sectionX], sectionPx: [...sectionPx]}
+    return {
+      x: [...x],
+      y: [...y],
+      channel: [...channel],
+      sectionX: [...sectionX],
+      sectionPx: [...sectionPx],
+      growth: ensemble.growth(),
+    }
   })
   const destinies = new Destinies(system, module, energy, starts, times.at(-1))
   while (!destinies.complete) destinies.continue()

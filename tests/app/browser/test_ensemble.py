@@ -106,6 +106,15 @@ def test_an_earlier_time_begins_again_with_the_same_bits(followed: Followed) -> 
 
 
 @needs_node
+def test_growth_compares_the_width_of_the_orbits_inside_with_that_of_their_starts(followed: Followed) -> None:
+    for frame in followed.frames:
+        inside = frame["channel"] == 0
+        now = np.var(frame["x"][inside]) + np.var(frame["y"][inside])
+        before = np.var(followed.states[inside, :2], axis=0).sum()
+        assert frame["growth"] == pytest.approx(math.sqrt(now / before), rel=1e-9)
+
+
+@needs_node
 def test_passages_lie_on_the_section_at_the_energy(followed: Followed) -> None:
     x, px = (followed.frames[-1][name] for name in ("sectionX", "sectionPx"))
     passed = np.isfinite(x) & np.isfinite(px)
