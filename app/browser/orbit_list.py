@@ -31,7 +31,7 @@ class OrbitList(JSComponent):
     _esm = Path(__file__).with_name("orbit_list.js")
 
     def __init__(self, on_choose: Callable[[int], None], **options: Any) -> None:
-        super().__init__(sizing_mode="stretch_width", css_classes=["orbit-list"], **options)
+        super().__init__(sizing_mode="stretch_width", margin=(0, 10), css_classes=["orbit-list"], **options)
         self._on_choose = on_choose
         self.on_msg(lambda event: self._receive(event.data))
 

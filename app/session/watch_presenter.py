@@ -10,8 +10,10 @@ import panel as pn
 from app.browser.ensemble_player import EnsemblePlayer
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
+from app.state.help_texts import title_with_help
 from app.state.view_state import SYSTEM, Analysis, ViewState
 from app.state.watched_starts import WatchedStarts
+from app.views.components.texts import TextPane
 from engine import EscapeFlux
 from engine.service import JobSubmitter, flux_job, is_ready_for_maps
 
@@ -33,7 +35,8 @@ class WatchPresenter:
         self._player = EnsemblePlayer(self._take)
         self._follow()
         self.request_rate()
-        return [self._player]
+        title = TextPane(title_with_help("Watch them leave", "watch"), margin=(0, 10))
+        return [title, self._player]
 
     def close(self) -> None:
         """Cancel the request at the end of the session."""

@@ -122,6 +122,11 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "any resolution are a sign of Wada basins, in which each boundary point touches all basins. With two basins "
             "there is nothing to measure."
         ),
+        "watch": (
+            "Orbits move in the well, each in the colour of the exit that it will take; grey ones stay until t = 100. On (x, px) "
+            "the map shows each at its last passage of y = 0. The chart has the share that is still inside, and dashed the law "
+            "of mixed motion: flux through the exits over the volume inside. Orbits that stick to islands stay longer."
+        ),
         "islands": (
             "The area that bounded starts cover on the slice, and that of the largest island: of pixels that touch each "
             "other, four or more of them. At a resonance an island splits or loses its edge, and the area falls at once."

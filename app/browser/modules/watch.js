@@ -253,7 +253,9 @@ class Watch {
     if (!present()) return "The engine in the browser is being loaded …"
     if (!this.#ensemble) return "Choose a slice of one energy and one potential, within the range of the slider."
     if (!this.#ensemble.count) return "There is no start inside the exits here."
-    const {where, explanations} = this.#model
+    const {where, explanations, point, box} = this.#model
+    if (where === "box" && !box.length) return 'Draw a box with "Count" first. These starts are in the view.'
+    if (where === "disc" && !point.length) return "Click a map first. These starts are in the view."
     if (explanations[where]) return explanations[where]
     const words = this.#where.selectedOptions[0].textContent
     return `${this.#ensemble.count} starts ${words}, in the colours of the exits that they will take; grey ones stay.`

@@ -24,7 +24,7 @@ class Session:
         self.changed = threading.Condition()
         self.state = ViewState(case="III", energy=0.45, analysis=Analysis.WATCH, **chosen)
         self.presenter = WatchPresenter(self.state, jobs, locked_by(self.changed))
-        (player,) = self.presenter.build()
+        _, player = self.presenter.build()
         assert isinstance(player, EnsemblePlayer)
         self.player = player
 

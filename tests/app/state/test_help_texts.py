@@ -21,7 +21,7 @@ def test_every_plot_has_a_help_text() -> None:
 
 
 def test_every_measure_has_a_help_text() -> None:
-    assert {"uncertainty", "survival", *CURVES} <= set(HELP_TEXTS)
+    assert {"uncertainty", "survival", "watch", *CURVES} <= set(HELP_TEXTS)
 
 
 @pytest.mark.parametrize("name", HELP_TEXTS)
