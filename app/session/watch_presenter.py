@@ -35,7 +35,7 @@ class WatchPresenter:
         self._player = EnsemblePlayer(self._take)
         self._follow()
         self.request_rate()
-        title = TextPane(title_with_help("Watch them leave", "watch"), margin=(0, 10))
+        title = TextPane(title_with_help("Many orbits at once", "watch"), margin=(0, 10))
         return [title, self._player]
 
     def close(self) -> None:
