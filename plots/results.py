@@ -104,6 +104,8 @@ def to_holoviews(result: Result) -> Any:
     if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     table = result.to_pandas()
+    if result.row_dimension:
+        table = table.rename_axis(result.row_dimension).reset_index()
     index, *others = table.columns
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
 

@@ -106,6 +106,11 @@ class TestEveryResult:
         assert len(example(name).to_holoviews()) > 0
 
 
+@pytest.mark.parametrize(("name", "abscissa"), [("orbits", "orbit"), ("manifolds", "point"), ("shares", "energies")])
+def test_holoviews_curves_are_against_the_rows_or_the_first_column(name: str, abscissa: str) -> None:
+    assert {str(curve.kdims[0]) for curve in example(name).to_holoviews()} == {abscissa}
+
+
 @pytest.mark.parametrize("name", PICTURELESS)
 def test_result_without_a_picture_shows_its_sentence_and_its_numbers(name: str) -> None:
     result = PICTURELESS[name]()
