@@ -194,8 +194,14 @@ def shows_progress[**P, T](label: str) -> Callable[[Callable[P, T]], Callable[P,
 
         @functools.wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> T:
-            given = signature.bind_partial(*args, **kwargs).arguments
+            try:
+                given = signature.bind(*args, **kwargs).arguments
+            except TypeError as error:
+                raise TypeError(f"{function.__name__}() {error}") from None
             execution = given.get("execution", DEFAULT_EXECUTION)
+            if not isinstance(execution, Execution):
+                # The function itself refuses it.
+                return function(*args, **kwargs)
             follows = execution.on_progress is not None or given.get("on_frame") is not None
             if follows or _shown.is_set() or not _is_interactive():
                 return function(*args, **kwargs)

@@ -9,8 +9,8 @@
 # channel is.
 #
 # The file is a script (`python examples/case_three.py`) and a notebook: open it in VS Code, or in Jupyter with Jupytext. It
-# writes a NetCDF file and three pictures to the working directory. The maps are small, so that it runs within seconds; for
-# figures increase `SIDE` to 500 and `T_MAX` to 1e5.
+# writes a NetCDF file, which needs the extra `files`, and three pictures to the working directory. The maps are small, so that
+# it runs within seconds; for figures increase `SIDE` to 500 and `T_MAX` to 1e5.
 
 # %%
 import matplotlib.pyplot as plt

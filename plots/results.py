@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import inspect
+from collections.abc import Iterable
 from functools import singledispatch
 from io import BytesIO
 from typing import Any
@@ -27,6 +28,7 @@ from engine import (
     PotentialReview,
     RegularityMap,
     Result,
+    SampledOrbits,
     Separation,
     ShareFit,
     StableManifolds,
@@ -102,6 +104,8 @@ def to_holoviews(result: Result) -> Any:
     if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     table = result.to_pandas()
+    if result.row_dimension:
+        table = table.rename_axis(result.row_dimension).reset_index()
     index, *others = table.columns
     return hv.Overlay([hv.Curve(table, index, name, label=name) for name in others if table[name].dtype.kind in "if"])
 
@@ -141,9 +145,13 @@ def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str =
     panel = _panel(axes, result.spec.find_window())
     draw_picture(panel, result, picture, palette)
     if entries := picture_entries(result, picture, palette, MapAnalyses()):
-        panel.legend(
-            handles=patches(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
-        )
+        _add_legend_below(panel, entries)
+
+
+def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
+    axes.legend(
+        handles=patches(entries), loc="upper center", bbox_to_anchor=_BELOW_AXES, ncols=3, fontsize="small", frameon=False
+    )
 
 
 def _draw_codes(axes: Axes, result: Any, codes: np.ndarray, colours: list[str], palette: Palette) -> Axes:
@@ -190,6 +198,21 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
         (draw_sali if show == "sali" else draw_r2)(axes, curves, palette.orbits[0])
     else:
         raise ValueError(f"show={show!r}: must be one of path, sali, r2")
+
+
+@_draw.register
+def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) -> None:
+    entries = []
+    for fate in np.unique(result.fate).tolist():
+        entries.append(palette.channel_entries(fate)[-1] if fate > 0 else palette.outcomes[fate])
+        # A NaN ends each path.
+        x, y = (np.pad(path[result.fate == fate], ((0, 0), (0, 1)), constant_values=np.nan) for path in (result.x, result.y))
+        axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
+    axes.set_aspect("equal")
+    style_axes(axes)
+    label_axes(axes, "x", "y")
+    name_panel(axes, "Paths")
+    _add_legend_below(axes, entries)
 
 
 @_draw.register

@@ -73,7 +73,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         A formula in x and y, at most 500 characters: numbers (2, 0.5, 1e-3, ½), x, y, r = √(x² + y²), + − * / ^ ** √, exp(),
         log() or ln(), sin(), cos(), sqrt() and round brackets. "2x²y" is a product; "−", "·" and "×" are operators too; "V ="
         in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
-        Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones.
+        Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py",
+        "vx" and "vy" are refused.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters

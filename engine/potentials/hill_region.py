@@ -50,7 +50,8 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
     scaled = np.sqrt(frequencies) * (points @ axes)
     distance = np.hypot(*scaled.T)
     distance = distance[distance > 0.0]
-    low, high = (distance.min(), distance.max()) if distance.size else (1.0, 1.0)
+    alone = np.sqrt(potential.units.energy)
+    low, high = (distance.min(), distance.max()) if distance.size else (alone, alone)
     low, high = _SMALLEST_RADIUS * low, _LARGEST_RADIUS * high
     radius = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
     # The angles span two turns, so that the edge of the grid does not split a region.

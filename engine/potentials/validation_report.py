@@ -248,7 +248,7 @@ def _exits_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> s
 
 def _no_exit_refusal(potential: Potential) -> str:
     if is_open_without_saddle(potential, potential.critical_points):
-        return "The well is open without a saddle, so its exits and its escape energy are not defined."
+        return "The well is open without a saddle, or rises too slowly to be called closed, so its exits are not defined."
     return "No saddle leads out of the well at the origin, so no orbit escapes at any energy."
 
 

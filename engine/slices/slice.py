@@ -351,7 +351,9 @@ def _check_coordinates(
         raise ValueError(f"solved={decided.key}: must be px, py or v")
     known = ", ".join(coordinate.key for coordinate in Coordinate if coordinate is not Coordinate.SPEED)
     names = ", ".join([*(axis.key for axis in axes), *(c.key for c, _ in fixed), decided.key])
-    if len({*used, decided}) <= len(used) or any(c in (Coordinate.H, Coordinate.SPEED) for c, _ in fixed):
+    if Coordinate.SPEED in used:
+        raise ValueError(f"slice of {names}: must have no axis and no fixed value of v, which only the energy decides")
+    if len({*used, decided}) <= len(used) or any(c is Coordinate.H for c, _ in fixed):
         raise ValueError(f"slice of {names}: each of {known} must be used at most once")
     if len({axis.key for axis in axes}) < 2 or sum(isinstance(axis, ParameterAxis) for axis in axes) > 1:
         raise ValueError(f"slice of {names}: the axes must be different ones, at most one of them a parameter")

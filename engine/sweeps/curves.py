@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from engine.slices.slice import Slice
 from engine.slices.slice_text import write_slice
 from engine.sweeps.curve_points import CurvePoint, CurvePointSpec, compute_curve_point
 from engine.sweeps.energy_grid import checked_sweep
-from engine.validation import checked_count, checks_types, short_repr
+from engine.validation import check_type, checked_count, checked_flag, checks_types, short_repr
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +77,8 @@ class CurvesSpec:
         object.__setattr__(self, "plane", plane)
         object.__setattr__(self, "values", values)
         checked_count("refine", self.refine, 0, MOST_VALUES)
+        checked_flag("exponent", self.exponent)
+        check_type("along", self.along, (ParameterAxis, type(None)))
         if (self.along is None) != (self.energy is None):
             raise ValueError(f"energy={short_repr(self.energy)}: must be given along a parameter, and None along the energy")
         if self.along is not None:
@@ -185,8 +187,14 @@ class Curves(Result):
         return xr.Dataset(variables, coordinates, {"result": type(self).__name__, **spec.provenance()})
 
 
-@checks_types(spec=CurvesSpec, earlier=(Curves, type(None)))
 @shows_progress("curves")
+@checks_types(
+    spec=CurvesSpec,
+    on_frame=(Callable, type(None)),
+    execution=Execution,
+    measure=(Callable, type(None)),
+    earlier=(Curves, type(None)),
+)
 def compute_curves(
     spec: CurvesSpec,
     *,
@@ -245,8 +253,9 @@ def _known_points(spec: CurvesSpec, earlier: Curves | None) -> dict[float, Curve
     """The points of earlier curves by their value, in ascending order: those of the values, and then some to refine them."""
     if earlier is None:
         return {}
-    if replace(earlier.spec, values=spec.values, refine=spec.refine) != spec:
-        raise ValueError("earlier: its request must be the same but for values and refine")
+    same = [each.name for each in fields(spec) if each.name not in ("values", "refine")]
+    if differing := [name for name in same if getattr(earlier.spec, name) != getattr(spec, name)]:
+        raise ValueError(f"earlier: its {', '.join(differing)} must be those of spec; only values and refine may differ")
     chosen = [point for point in earlier.points if point.value in spec.values]
     inside = [point for point in earlier.points if point.value not in spec.values]
     found = sorted([*chosen, *inside[: spec.count - len(spec.values)]], key=lambda point: point.value)

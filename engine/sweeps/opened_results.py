@@ -67,7 +67,7 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     OSError
         If there is no such file, or it cannot be read.
     ValueError
-        If the file holds no result, or one of another kind, which xarray can open.
+        If the file or folder holds no result, or one of another kind, which xarray can open.
 
     Examples
     --------
@@ -83,14 +83,24 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     # Slow to import, and seldom used.
     import xarray as xr
 
+    if not Path(path).exists():
+        raise FileNotFoundError(f"path={os.fspath(path)}: there is no such file or folder")
     if (Path(path) / _ZARR).exists():
         require_package("zarr", "files")
         stored: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
         if "result" not in stored.attrs and DONE in stored:
             return stored.drop_vars(DONE)
         return _read(path, stored)
+    if Path(path).is_dir():
+        raise ValueError(
+            f"path={os.fspath(path)}: is a folder without {_ZARR}; must be a NetCDF file or a Zarr store of format 3"
+        )
     require_package("h5netcdf", "files")
-    with xr.open_dataset(path, engine="h5netcdf") as opened:
+    try:
+        dataset = xr.open_dataset(path, engine="h5netcdf")
+    except OSError as error:
+        raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
+    with dataset as opened:
         return _read(path, opened)
 
 

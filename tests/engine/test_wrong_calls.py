@@ -16,6 +16,8 @@ from engine import (
     CASES,
     POTENTIALS,
     Coordinate,
+    Curves,
+    CurvesSpec,
     Fate,
     MapSpec,
     Plane,
@@ -23,7 +25,9 @@ from engine import (
     compute_map,
     compute_statistics,
     integrate_orbit,
+    open_result,
     parse_formula,
+    sample_orbits,
     start_states,
 )
 
@@ -39,6 +43,8 @@ def names() -> dict[str, Any]:
     return {name: getattr(engine, name) for name in engine.__all__} | {
         "III": case, "S": state, "C": Coordinate, "spec": spec, "m": whole, "orbit": integrate_orbit(case, state, 20.0),
         "stats": compute_statistics(whole), "sw": SweepSpec(case, Plane.X_PX, (0.3, 0.4), (10, 10), t_max=20.0),
+        "cs": CurvesSpec(case, Plane.X_PX, (0.4,), (10, 10), t_max=20.0, exponent=False),
+        "other": Curves(CurvesSpec(case, Plane.X_PX, (0.4,), (12, 12), t_max=30.0, exponent=False), ()),
         "well": parse_formula("x² + y²"), "np": np, "threading": threading, "axes": Figure().subplots(),
     }  # fmt: skip
 
@@ -159,6 +165,7 @@ WRONG_CALLS = (
     ('System("I", parameters=3)', "parameters=3: must be a mapping"),
     ("Slice(C.X, C.X)", "slice of x, x, py: each of x, y, px, py, theta, beta, h must be used at most once"),
     ('Slice("x", "y")', "abscissa='x': must be a Coordinate, a Direction or a ParameterAxis"),
+    ("Slice(C.X, C.SPEED)", "slice of x, v, py: must have no axis and no fixed value of v, which only the energy decides"),
     ("Slice(C.X, C.PX, fixed=3)", "fixed=3: must be ((coordinate, value), …)"),
     ("Direction(3)", "key=3: must be text"),
     ('ParameterAxis("epsilon", 2, 1, System("I"))', "parameter epsilon from 2 to 1: the lower end must be below the upper end"),
@@ -179,6 +186,30 @@ WRONG_CALLS = (
     ('compute_crossing_statistics("III", Plane.X_PX, (0.3,))', "potential='III': must be a Potential"),
     ("compute_crossing_statistics(III, Plane.X_PX, 0.3)", "energies=0.3: must be a sequence of finite numbers"),
     ('compute_crossing_statistics(III, Plane.X_PX, (0.3,), most_crossings="a")', "most_crossings='a': must be an integer from 0"),
+    ("sample_orbits(III, [S], (0.0, 1.0), execution=4)", "execution=4: must be an Execution"),
+    ("sample_orbits(III, S, (0.0, 1.0))", "states=(0.1, 0.0, 0.05, 0.6): must be (n, 4) finite numbers x, y, px, py, at most"),
+    ("sample_orbits(III, [S], 10.0)", "times of shape (): must be ascending from 0, (m,) or (1, m)"),
+    ("sample_orbits(III, [S], (0.0, 1e9))", "times: the last one=1000000000.0: must be above 0 and at most 1e+07"),
+    ("open_result(3)", "path=3: must be text or a path"),
+    ("open_result(tmp)", "path=…: is a folder without zarr.json; must be a NetCDF file or a Zarr store of format 3"),
+    ('compute_flux("III", 0.4)', "potential='III': must be a Potential"),
+    ("compute_flux(III, -1.0)", "energy=-1.0: must be above the bottom of the well, 0"),
+    ("CurvesSpec(III, Plane.X_PX, 0.4)", "values=0.4: must be a sequence of finite numbers"),
+    ('CurvesSpec(III, Plane.X_PX, (0.4,), exponent="no")', "exponent='no': must be True or False"),
+    ("CurvesSpec(III, Plane.X_PX, (0.4,), refine=2.5)", "refine=2.5: must be an integer from 0 to 1000"),
+    (
+        'CurvesSpec(III, Plane.X_PX, (0.4,), along="epsilon", energy=0.2)',
+        "along='epsilon': must be a ParameterAxis or None",
+    ),
+    ("compute_curves(spec)", "spec=…: must be a CurvesSpec"),
+    ("compute_curves(cs, earlier=cs)", "earlier=…: must be a Curves or None"),
+    (
+        "compute_curves(cs, earlier=other)",
+        "earlier: its resolution, t_max must be those of spec; only values and refine may",
+    ),
+    ("compute_curves(cs, on_frame=3)", "on_frame=3: must be a function or None"),
+    ("compute_curves(cs, measure=3)", "measure=3: must be a function or None"),
+    ("compute_curves(cs, execution=3)", "execution=3: must be an Execution"),
     ("Execution(executor=4)", "executor=4: must be a concurrent.futures.Executor or None"),
     ("Execution(cancel=3)", "cancel=3: must be a threading.Event or None"),
     ("Execution(on_progress=3)", "on_progress=3: must be a function of the share done, or None"),
@@ -240,3 +271,16 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
     ):
         with pytest.raises(ValueError, match="must have exits, or a closed well at the origin"):
             compute()
+
+
+def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
+    with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
+        sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
+
+
+def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"^path=.*missing\.nc: there is no such file or folder$"):
+        open_result(tmp_path / "missing.nc")
+    (tmp_path / "text.nc").write_text("no numbers")
+    with pytest.raises(OSError, match=r"^path=.*text\.nc: cannot be read as a NetCDF file: [^\n]*$"):
+        open_result(tmp_path / "text.nc")

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from io import BytesIO
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from PIL import Image
@@ -17,6 +18,7 @@ from engine import (
     Orbit,
     Plane,
     Result,
+    SampledOrbits,
     compute_basin_entropy,
     compute_birkhoff_digits,
     compute_curves,
@@ -35,8 +37,11 @@ from engine import (
     integrate_orbit,
     judge_orbit,
     review_potential,
+    sample_orbits,
+    sample_starts,
 )
 from engine.service import compute_radius_envelope, exit_labels
+from plots.palette import PALETTES
 
 POTENTIAL, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
 SPEC = MapSpec(POTENTIAL, Plane.X_PX, 0.36, (40, 40), t_max=200.0)
@@ -50,6 +55,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "trust": lambda: compute_trust(compute_map(SPEC)),
     "origins": lambda: compute_origin_fates(SPEC),
     "orbit": lambda: integrate_orbit(POTENTIAL, STATE, t_max=50.0),
+    "orbits": lambda: sample_orbits(POTENTIAL, sample_starts(POTENTIAL, 0.36, 12, seed=1), np.linspace(0.0, 30.0, 301)),
     "lyapunov": lambda: find_lyapunov_orbits(POTENTIAL, 0.36)[0],
     "manifolds": lambda: find_stable_manifolds(POTENTIAL, 0.36, images=1),
     "statistics": lambda: compute_statistics(compute_map(SPEC)),
@@ -100,6 +106,11 @@ class TestEveryResult:
         assert len(example(name).to_holoviews()) > 0
 
 
+@pytest.mark.parametrize(("name", "abscissa"), [("orbits", "orbit"), ("manifolds", "point"), ("shares", "energies")])
+def test_holoviews_curves_are_against_the_rows_or_the_first_column(name: str, abscissa: str) -> None:
+    assert {str(curve.kdims[0]) for curve in example(name).to_holoviews()} == {abscissa}
+
+
 @pytest.mark.parametrize("name", PICTURELESS)
 def test_result_without_a_picture_shows_its_sentence_and_its_numbers(name: str) -> None:
     result = PICTURELESS[name]()
@@ -114,6 +125,26 @@ def test_plot_returns_axes_in_the_coordinates_of_the_map() -> None:
     axes = compute_map(SPEC).plot(Figure().subplots(), picture="times", palette="safe")
     assert axes.get_xlim() == (SPEC.find_window().x_low, SPEC.find_window().x_high)
     assert axes.get_ylim() == (SPEC.find_window().ordinate_low, SPEC.find_window().ordinate_high)
+
+
+def test_paths_have_the_colours_of_their_exits() -> None:
+    orbits = example("orbits")
+    assert isinstance(orbits, SampledOrbits)
+    axes = orbits.plot(Figure().subplots(), palette="safe")
+    drawn = {str(line.get_color()): np.asarray(line.get_xydata()) for line in axes.lines}
+    colours = {0: PALETTES["safe"].bounded} | dict(enumerate(PALETTES["safe"].channels, 1))
+    assert set(drawn) == {colours[fate] for fate in orbits.fate.tolist()}
+    for fate in set(orbits.fate.tolist()):
+        path = drawn[colours[fate]]
+        here = orbits.fate == fate
+        ends = np.isnan(path[:, 0])
+        assert (~ends).sum() == np.isfinite(orbits.x[here]).sum()
+        np.testing.assert_array_equal(path[~ends, 1], orbits.y[here][np.isfinite(orbits.y[here])])
+        # No line joins two orbits.
+        assert ends[orbits.t.shape[1] :: orbits.t.shape[1] + 1].sum() == here.sum()
+    legend = axes.get_legend()
+    assert legend is not None
+    assert len(legend.get_texts()) == len(drawn)
 
 
 @pytest.mark.parametrize("show", ["path", "sali", "r2"])

@@ -60,6 +60,10 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         ("cos(x) cos(y)", "V has a maximum there"),
         ("exp(x) + exp(−x) + y²", "No saddle leads out"),
         ("−1/√(r² + 1)", "open without a saddle"),
+        ("½log(0.04 + r²)", "rises too slowly to be called closed"),
+        ("½log(0.04 + r²) + 0.1(x⁴ + y⁴)", "No saddle leads out"),
+        ("½(x² + y²) + 1e-8(x⁴ + y⁴)", "No saddle leads out"),
+        ("1e4(x² + y²) + 1e4(x⁴ + y⁴)", "No saddle leads out"),
         ("exp(exp(exp(exp(x y)))) − exp(exp(x)) exp(sin(exp(cos(x y)))) + ½r²", "products and functions"),
     ],
 )

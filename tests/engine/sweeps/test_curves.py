@@ -114,7 +114,7 @@ def test_interrupted_curves_continue_where_they_stopped(done: int, edge: float) 
 
 def test_curves_of_another_request_are_not_continued() -> None:
     earlier = compute_curves(replace(STEP, t_max=50.0), measure=step_at(0.3))
-    with pytest.raises(ValueError, match="earlier: its request must be the same"):
+    with pytest.raises(ValueError, match="earlier: its t_max must be those of spec"):
         compute_curves(STEP, earlier=earlier)
 
 

@@ -107,7 +107,7 @@ def test_a_cancelled_call_ends() -> None:
         (np.full((2, 4), np.nan), TIMES, r"states=.*: must be \(n, 4\) finite numbers"),
         (np.zeros((2, 4)), [1.0, 0.5], r"times of shape \(2,\): must be ascending from 0, \(m,\) or \(2, m\)"),
         (np.zeros((2, 4)), np.zeros((3, 2)), r"times of shape \(3, 2\): must be ascending"),
-        (np.zeros((2, 4)), [0.0], r"last time=0.0: must be above 0"),
+        (np.zeros((2, 4)), [0.0], r"times: the last one=0.0: must be above 0"),
         (np.zeros((2, 4)), [-1.0, 2.0], r"times of shape \(2,\): must be ascending from 0"),
     ],
 )
