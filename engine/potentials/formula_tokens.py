@@ -31,8 +31,8 @@ _TOKEN = re.compile(
     r"(?P<function>sin|cos|exp|log|ln|sqrt)|(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)|(?P<name>[xyr])|(?P<letter>[A-DF-UW-Za-df-qs-wzΑ-Ωα-ω][0-9₀-₉]?)|(?P<superscript>⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>\^|\*\*)"
     r"|(?P<fraction>[½⅓⅔¼¾⅕⅙⅛⅒])|(?P<sign>[+\-−–])|(?P<operator>[*·×⋅∗/÷∕⁄])|(?P<root>√)|(?P<open>\()|(?P<close>\))"
 )
-# Names that would otherwise be read as products of letters; momenta and velocities are no part of a potential.
-_UNKNOWN = re.compile("tan|abs|pi|[pv][xy]")
+# Names that would otherwise be read as letters or products of them; momenta, velocities and time are no part of a potential.
+_UNKNOWN = re.compile("tan|abs|pi|[pv][xy]|t")
 _PREFIX = re.compile(r"\s*V\s*(?:\(\s*x\s*,\s*y\s*\)\s*)?=")
 ALLOWED = "allowed are numbers, x, y, r, letters for coefficients, + − * / ^ √, exp, log, sin, cos and round brackets"
 """What a formula consists of."""

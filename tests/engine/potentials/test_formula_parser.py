@@ -78,6 +78,7 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
         ("x + tan(x)", 4, "not understood"),
         # Otherwise products of a parameter p, which here cancel.
         ("½r² − x²y − 0.3(x py − y px)", 18, "'py' is not understood"),
+        ("½r² − x²y cos(3t)", 15, "'t' is not understood"),
         ("½r² − x²y − 0.3(y vx − x vy)", 18, "'vx' is not understood"),
         ("x + sin x", 8, "its argument in brackets"),
         ("x + log(1 − 1)", 4, "not a finite real number"),
