@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
@@ -74,6 +73,9 @@ class _HalfOrbit:
     """Half a Lyapunov orbit, the line across its exit: the flux ∫ p·dq up to each time, and states that cross it inward."""
 
     def __init__(self, potential: Potential, orbit: LyapunovOrbit) -> None:
+        # Slow to import, and seldom used.
+        from scipy.interpolate import CubicSpline
+
         self._potential, self._energy = potential, orbit.energy
         path = orbit.half_path
         self._path = CubicSpline(np.linspace(0.0, 0.5 * orbit.period, len(path)), path)

@@ -191,6 +191,7 @@ def test_a_map_can_be_stopped_and_continued(explorer: ExplorerPage) -> None:
     expect(explorer.button("Stop").or_(explorer.text("Done, t ="))).to_be_visible()
 
 
+@pytest.mark.slow
 def test_escape_closes_a_help_text_and_then_stops_the_map(explorer: ExplorerPage) -> None:
     begin_a_long_map(explorer)
     explorer.press("About: Basins of escape")

@@ -27,6 +27,7 @@ def luminance(explorer: ExplorerPage) -> float:
     return sum(map(int, re.findall(r"\d+", colour)[:3])) / 3
 
 
+@pytest.mark.slow
 def test_the_dark_theme_has_light_lines_and_titles_and_is_stored(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=QUICK)
     assert luminance(explorer) > 200

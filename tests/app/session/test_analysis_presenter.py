@@ -194,6 +194,7 @@ def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) ->
     session.wait_for(lambda: len(steps.data["t"]) > 0 and float(steps.data["share"][0]) != whole)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("frame")
 def test_the_exponent_is_measured_on_demand(begin: Callable[..., Session], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(

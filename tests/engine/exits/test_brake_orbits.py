@@ -44,6 +44,7 @@ def orbits_of(potential: Potential, factor: float) -> tuple[LyapunovOrbit, ...]:
 
 
 @each_well
+@pytest.mark.slow
 def test_half_a_period_leads_to_rest_at_the_other_end(potential: Potential, factor: float) -> None:
     for orbit in orbits_of(potential, factor):
         start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
