@@ -40,8 +40,8 @@ from engine.measures.share_fits import ShareFit, fit_direct_shares, fit_escape_s
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.potentials.catalogue import POTENTIALS, channel_family
-from engine.potentials.formula_parser import parse_formula
-from engine.potentials.formula_writer import write_formula
+from engine.potentials.formulas.formula_parser import parse_formula
+from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import CASES, Potential
 from engine.potentials.system import System
 from engine.potentials.validation_report import PotentialReview, review_potential

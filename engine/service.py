@@ -38,10 +38,10 @@ from engine.measures.share_fits import Deviation
 from engine.measures.uncertainty_exponent import fit_uncertainty
 from engine.potentials.catalogue import CATALOGUE, PotentialEntry
 from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.form import Form
-from engine.potentials.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value, formula_letters
-from engine.potentials.polynomial_form import PolynomialForm
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.form import Form
+from engine.potentials.forms.polynomial_form import PolynomialForm
+from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value, formula_letters
 from engine.potentials.potential import PARAMETER_RANGES
 from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED
 from engine.potentials.validation_report import CriticalPoint, PointKind

@@ -10,8 +10,8 @@ import numpy as np
 
 from engine.dynamics.fates import Fate
 from engine.exits.exit_tables import ExitTable, tabulate_exits
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.polynomial_form import PolynomialForm
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.taylor.jit.webassembly import constant_inputs, webassembly_module
 from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT, TOLERANCE, generate_code

@@ -11,8 +11,8 @@ import numpy as np
 
 from engine.exits.lyapunov_orbits import exit_curves
 from engine.potentials.compiled import kernels_of
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.polynomial_form import PolynomialForm
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.taylor.kernels import interior

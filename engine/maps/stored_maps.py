@@ -12,7 +12,7 @@ import numpy as np
 from engine.dynamics.fates import Fate
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import Potential
 from engine.potentials.system import System
 from engine.results.arrays import read_only

@@ -9,7 +9,7 @@ from math import comb
 from types import MappingProxyType
 
 from engine.polynomials import HIGHEST_DEGREE
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.names import ByName
 from engine.potentials.potential import Potential
 from engine.validation import checked_count
@@ -26,7 +26,7 @@ class PotentialEntry:
     title
         Display name.
     formula
-        V as text, in the notation of `engine.potentials.formula_parser.parse_formula`.
+        V as text, in the notation of `engine.potentials.formulas.formula_parser.parse_formula`.
     description
         One sentence.
     reference

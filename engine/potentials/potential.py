@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.expressions.nodes import Expression
-from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.form import Form
+from engine.potentials.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.form import Form
+from engine.potentials.forms.polynomial_form import PolynomialForm, checked_form
+from engine.potentials.forms.stored_points import stored_points
 from engine.potentials.names import ByName
-from engine.potentials.polynomial_form import PolynomialForm, checked_form
-from engine.potentials.stored_points import stored_points
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.results.arrays import read_only
 from engine.results.result import Result
@@ -149,7 +149,7 @@ class Potential(Result):
     def critical_points(self) -> np.ndarray:
         """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
 
-        Those of a formula that is no polynomial are all of a region, see `engine.potentials.stationary_points`.
+        Those of a formula that is no polynomial are all of a region, see `engine.potentials.forms.stationary_points`.
         """
         return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
 

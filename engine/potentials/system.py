@@ -9,8 +9,8 @@ from functools import lru_cache
 
 from engine.potentials.catalogue import CATALOGUE, POTENTIALS
 from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange, energy_range
-from engine.potentials.formula_parser import formula_letters, parse_formula
-from engine.potentials.formula_writer import write_formula
+from engine.potentials.formulas.formula_parser import formula_letters, parse_formula
+from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import CASES, Potential
 from engine.validation import check_type
 

@@ -10,10 +10,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.potentials.critical_points import NotIsolatedError, UndecidedError
-from engine.potentials.exit_saddles import DescentError
-from engine.potentials.formula_parser import LONGEST_TEXT
-from engine.potentials.formula_writer import write_formula
+from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError
+from engine.potentials.forms.exit_saddles import DescentError
+from engine.potentials.formulas.formula_parser import LONGEST_TEXT
+from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.hill_region import SINGULAR_RATIO, is_open_below, is_open_without_saddle
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
 from engine.results.result import Result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from engine.potentials.formula_parser import LARGEST_VALUE
+from engine.potentials.formulas.formula_parser import LARGEST_VALUE
 from engine.potentials.potential import PARAMETER_RANGES
 from engine.potentials.system import PARAMETERS, System
 from engine.slices.axes import STATE, Axis, Coordinate, Direction, ParameterAxis

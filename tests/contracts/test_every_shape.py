@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import sympy
 
-from engine.potentials.formula_parser import parse_formula
-from engine.potentials.formula_writer import write_formula
+from engine.potentials.formulas.formula_parser import parse_formula
+from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import PointKind, review_potential
 from tests.contracts.potentials import each_potential

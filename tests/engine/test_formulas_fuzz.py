@@ -10,8 +10,8 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.potentials.formula_parser import parse_formula
-from engine.potentials.formula_tokens import FormulaError
+from engine.potentials.formulas.formula_parser import parse_formula
+from engine.potentials.formulas.formula_tokens import FormulaError
 from engine.potentials.potential import Potential
 
 X, Y = sympy.symbols("x y")

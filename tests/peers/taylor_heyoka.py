@@ -10,8 +10,8 @@ import numpy as np
 
 from engine import Potential
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.polynomial_form import PolynomialForm
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.polynomial_form import PolynomialForm
 from tests.peers.dop853 import PeerOutcomes
 from tests.peers.exit_lines import ExitLine
 

@@ -23,9 +23,9 @@ from app.session.page import explorer_page
 from app.state import system_review as review_module
 from app.state.system_review import review_system
 from engine import CASES, Plane, System, Window
-from engine.potentials import polynomial_form as polynomial_module
 from engine.potentials import potential as potential_module
 from engine.potentials import system as system_module
+from engine.potentials.forms import polynomial_form as polynomial_module
 from engine.service import TYPED
 from tests.app.other_loop import run_on_new_loop
 

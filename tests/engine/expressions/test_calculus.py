@@ -10,7 +10,7 @@ from engine.expressions.calculus import derivative, substitute
 from engine.expressions.graph import evaluate, make_graph
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, X, Y, linear_combination, multiply, number
 from engine.expressions.parity import EVEN, NEITHER, ODD, parity
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formulas.formula_parser import parse_formula
 from tests.fuzz.test_random_expressions import random_formula
 
 AXES = sympy.symbols("x y")

@@ -5,7 +5,7 @@ import pytest
 import sympy
 
 from engine.potentials.catalogue import CATALOGUE, POTENTIALS, channel_family
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import CASES
 
 X, Y = sympy.symbols("x y", real=True)

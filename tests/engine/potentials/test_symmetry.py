@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formulas.formula_parser import parse_formula
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine.potentials.catalogue import POTENTIALS, channel_family
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import PointKind, review_potential
 

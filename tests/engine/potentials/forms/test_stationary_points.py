@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from engine import CASES, parse_formula, review_potential
-from engine.potentials.critical_points import NotIsolatedError, UndecidedError
+from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError
+from engine.potentials.forms.stationary_points import MOST_POINTS, find_stationary_points
 from engine.potentials.potential import Potential
-from engine.potentials.stationary_points import MOST_POINTS, find_stationary_points
 
 
 def points_of(potential: Potential) -> np.ndarray:

@@ -14,8 +14,8 @@ from engine.expressions.graph import Graph, evaluate, make_graph
 from engine.expressions.nodes import Expression, Sum, X, Y, from_terms, linear_combination, number
 from engine.expressions.parity import EVEN, parity
 from engine.expressions.text import write_expression
-from engine.potentials.form import Velocity
-from engine.potentials.stationary_points import find_stationary_points
+from engine.potentials.forms.form import Velocity
+from engine.potentials.forms.stationary_points import find_stationary_points
 from engine.potentials.well_units import nearest_power_of_two
 
 MOST_CONVOLUTIONS = 80
@@ -108,7 +108,7 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(-1.0, self._slopes[axis])]))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 2) those of a region, see `engine.potentials.stationary_points`."""
+        """(n, 2) those of a region, see `engine.potentials.forms.stationary_points`."""
         return find_stationary_points(self.value, self.gradient, self.hessian)
 
     def are_complete(self, _points: np.ndarray, _index_sum: int) -> bool:

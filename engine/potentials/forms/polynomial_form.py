@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, degree, derivative, evaluate, largest_coefficients, substitute
-from engine.potentials.critical_points import characteristic_length, find_critical_points, winding_number
-from engine.potentials.form import Velocity
+from engine.potentials.forms.critical_points import characteristic_length, find_critical_points, winding_number
+from engine.potentials.forms.form import Velocity
 from engine.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
 
 MOST_TERMS = 60
@@ -104,7 +104,7 @@ class PolynomialForm:
         return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 2) all of them, see `engine.potentials.critical_points`."""
+        """(n, 2) all of them, see `engine.potentials.forms.critical_points`."""
         slopes = self.slopes
         points = find_critical_points(*slopes)
         length = characteristic_length(*slopes)

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.potentials.formula_parser import parse_formula
-from engine.potentials.formula_tokens import FormulaError
-from engine.potentials.formula_writer import write_formula
+from engine.potentials.formulas.formula_parser import parse_formula
+from engine.potentials.formulas.formula_tokens import FormulaError
+from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import CASES, Potential
 from tests.fuzz.test_random_expressions import random_formula
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from engine.potentials.form import Velocity
+from engine.potentials.forms.form import Velocity
 
 Downhill = Callable[[float, float], Velocity]
 Hessian = Callable[..., tuple[np.ndarray, ...]]

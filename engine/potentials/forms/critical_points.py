@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from engine.polynomials import Terms, degree, derivative, evaluate, largest_coefficients, substitute
-from engine.potentials.common_factor import have_common_factor
+from engine.potentials.forms.common_factor import have_common_factor
 
 # Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x.
 _ROTATION_ANGLES = (0.7390851332151607, 2.1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.potentials import exit_saddles
-from engine.potentials.exit_saddles import find_maxima_beside, leads_out_of_well
-from engine.potentials.formula_parser import parse_formula
+from engine.potentials.forms import exit_saddles
+from engine.potentials.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import review_potential
 from tests.fuzz.test_random_wells import random_well

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.critical_points import NotIsolatedError, UndecidedError, winding_number
+from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError, winding_number
 
 Gradient = Callable[[Any, Any], tuple[Any, Any]]
 Value = Callable[[Any, Any], Any]

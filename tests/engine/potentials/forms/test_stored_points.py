@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.potentials.stored_points import stored_points
+from engine.potentials.forms.stored_points import stored_points
 from engine.storage.cache_files import CACHE_VARIABLE
 
 TERMS = {(2, 0): 0.5, (0, 2): 0.5}

@@ -9,9 +9,9 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from engine.polynomials import derivative
-from engine.potentials import critical_points
 from engine.potentials.catalogue import channel_family
-from engine.potentials.critical_points import NotIsolatedError, UndecidedError, find_critical_points, winding_number
+from engine.potentials.forms import critical_points
+from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError, find_critical_points, winding_number
 from engine.potentials.potential import Potential
 
 X, Y = sympy.symbols("x y")

@@ -6,8 +6,8 @@ import functools
 from typing import Any
 
 from engine.expressions.text import join_signed, monomial_term, write_expression
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.polynomial_form import PolynomialForm
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.validation import checked_count, checks_types
 

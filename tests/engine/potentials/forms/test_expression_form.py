@@ -9,8 +9,8 @@ from engine import CASES, Fate, Plane, Potential, classify_orbits, compute_map, 
 from engine.expressions.nodes import from_terms
 from engine.maps.spec import MapSpec
 from engine.potentials.energy_ranges import energy_range
-from engine.potentials.expression_form import ExpressionForm
-from engine.potentials.formula_writer import write_formula
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.formulas.formula_writer import write_formula
 
 TEXT = "½r² − a x²y exp(−y²)"
 

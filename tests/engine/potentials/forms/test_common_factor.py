@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine import POTENTIALS, channel_family, parse_formula
-from engine.potentials.common_factor import have_common_factor
+from engine.potentials.forms.common_factor import have_common_factor
 
 HENON_HEILES = "(x²/2 + y²/2 + x²y − y³/3)"
 

@@ -48,9 +48,11 @@ def stored_points(kind: str, form: object, find: Callable[[], np.ndarray]) -> np
 @functools.cache
 def _versions() -> tuple[str, ...]:
     """Whatever else the results depend on: the modules that find them and the libraries below."""
-    engine = Path(__file__).parents[1]
-    files = [engine / "polynomials.py", *sorted((engine / "expressions").glob("*.py"))]
-    names = ("critical_points", "common_factor", "exit_saddles", "expression_form", "polynomial_form", "stationary_points")
-    files += [engine / f"potentials/{name}.py" for name in names]
+    engine = Path(__file__).parents[2]
+    files = [
+        engine / "polynomials.py",
+        *sorted((engine / "expressions").glob("*.py")),
+        *sorted(Path(__file__).parent.glob("*.py")),
+    ]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
     return (*sources, *(metadata.version(package) for package in ("numpy", "scipy")))

@@ -23,7 +23,8 @@ from fractions import Fraction
 from engine.expressions.nodes import Expression
 from engine.expressions.text import monomial
 from engine.polynomials import ExactTerms, TooLargeError
-from engine.potentials.formula_tokens import (
+from engine.potentials.forms.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
+from engine.potentials.formulas.formula_tokens import (
     ALLOWED,
     BASE_KINDS,
     FROM_SUPERSCRIPT,
@@ -34,7 +35,7 @@ from engine.potentials.formula_tokens import (
     read_number,
     tokenize,
 )
-from engine.potentials.formula_values import (
+from engine.potentials.formulas.formula_values import (
     LARGEST_EXPONENT,
     NAMES,
     FormulaValue,
@@ -45,8 +46,7 @@ from engine.potentials.formula_values import (
     quotient,
     raised,
 )
-from engine.potentials.formula_writer import by_degree, write_formula
-from engine.potentials.polynomial_form import COEFFICIENT_RANGE, MOST_TERMS
+from engine.potentials.formulas.formula_writer import by_degree, write_formula
 from engine.potentials.potential import Potential
 from engine.validation import checked_number, checks_types
 
