@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
+
+from app.browser.callbacks import module_path
 
 SHOWN = "energyshown"
 """Event of the page, with the energy that the pictures show, which the server does not know of yet."""
@@ -33,7 +34,7 @@ class EnergySlider(JSComponent):
     energy = param.Number(default=0.0, doc="energy of the server; beyond the ends, the thumb is at the end")
     disabled = param.Boolean()
 
-    _esm = Path(__file__).with_name("energy_slider.js")
+    _esm = module_path("energy_slider.js")
 
     def __init__(self, on_release: Callable[[float], None], **options: Any) -> None:
         super().__init__(**options)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
+
+from app.browser.callbacks import module_path
 
 LONGEST_TYPED = 4000
 """Most characters of a text; formulas are shorter, but a box that cuts a text at their limit would not say so."""
@@ -29,7 +30,7 @@ class FormulaBox(JSComponent):
     longest = param.Integer(default=LONGEST_TYPED, doc="most characters of the text")
     shown = param.Dict(default={"text": "", "typed": 0}, doc="text, and how many typed ones the server knows of")
 
-    _esm = Path(__file__).with_name("formula_box.js")
+    _esm = module_path("formula_box.js")
 
     def __init__(self, on_typed: Callable[[str, bool], None], **options: Any) -> None:
         super().__init__(**options)

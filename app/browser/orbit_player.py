@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
+
+from app.browser.callbacks import module_path
 
 
 class OrbitPlayer(JSComponent):
@@ -27,7 +28,7 @@ class OrbitPlayer(JSComponent):
     begin = param.Number(default=0.0, doc="begin of the interval of time")
     end = param.Number(default=0.0, doc="its end; at the begin the player is disabled")
 
-    _esm = Path(__file__).with_name("orbit_player.js")
+    _esm = module_path("orbit_player.js")
 
     def __init__(self, on_step: Callable[[int], None], **options: Any) -> None:
         super().__init__(**options)

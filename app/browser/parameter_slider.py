@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
+
+from app.browser.callbacks import module_path
 
 
 class ParameterSlider(JSComponent):
@@ -30,7 +31,7 @@ class ParameterSlider(JSComponent):
     step = param.Number(default=0.01)
     shown = param.Dict(default={"number": 1.0, "chosen": 0}, doc="number, and how many chosen ones the server knows of")
 
-    _esm = Path(__file__).with_name("parameter_slider.js")
+    _esm = module_path("parameter_slider.js")
 
     def __init__(self, on_chosen: Callable[[float, bool], None], **options: Any) -> None:
         super().__init__(**options)

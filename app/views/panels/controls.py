@@ -10,11 +10,11 @@ from typing import Any
 import panel as pn
 
 from app.browser.energy_slider import SHOWN, EnergySlider
+from app.browser.number_box import NumberBox
 from app.state.system_review import review_catalogue_entry
 from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed_t_max
 from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
-from app.views.components.number_box import NumberBox
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button
 from engine import CASES, Plane, Slice

@@ -8,10 +8,10 @@ from functools import partial
 
 import panel as pn
 
+from app.browser.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.runtime.process_state import process_state
 from app.state.view_state import ViewState
-from app.views.components.file_saver import FileSaver
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED

@@ -10,10 +10,10 @@ from html import escape
 
 import panel as pn
 
+from app.browser.file_saver import FileSaver
 from app.browser.image_copier import ImageCopier
+from app.browser.number_box import NumberBox
 from app.state.view_state import ViewState
-from app.views.components.file_saver import FileSaver
-from app.views.components.number_box import NumberBox
 from app.views.components.texts import StatusPane
 from app.views.components.widgets import SegmentedControl, Switches, button
 from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Make, Shown, figure_choices

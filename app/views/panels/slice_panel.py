@@ -10,9 +10,9 @@ from typing import Any
 
 import panel as pn
 
+from app.browser.number_box import NumberBox
 from app.state.view_state import SYSTEM, ViewState
 from app.views.components.flex_row import flex_row
-from app.views.components.number_box import NumberBox
 from app.views.components.texts import StatusPane, TextPane
 from engine import Coordinate, ParameterAxis, Slice
 from engine.service import AXIS_NAMES, PARAMETERS, default_range

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
+from app.browser.file_saver import FileSaver
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from app.views.components.file_saver import FileSaver
 from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Shown, figure_choices
 from app.views.panels.figure_form import FigureForm
 from engine import (

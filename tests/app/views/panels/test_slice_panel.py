@@ -6,9 +6,9 @@ import math
 
 import pytest
 
+from app.browser.number_box import NumberBox
 from app.state.system_review import review_system
 from app.state.view_state import ViewState
-from app.views.components.number_box import NumberBox
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.service import TYPED

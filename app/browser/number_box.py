@@ -9,42 +9,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-_BOX = """
-export function render({model, el}) {
-  const label = document.createElement("label"), input = document.createElement("input")
-  el.classList.add("number-box")
-  label.htmlFor = input.id = "number"
-  input.className = "bk-input"
-  input.type = "number"
-  el.append(label, input)
-  // Numbers typed so far. A number of the server that does not count them all is older than the last one typed.
-  let typed = model.shown.typed
-  let typing = false
-  const follow = () => {
-    label.textContent = model.label
-    input.step = model.step
-    input.disabled = model.disabled
-    if (!typing && model.shown.typed >= typed) input.value = model.shown.number
-  }
-  const commit = () => {
-    if (!typing) return
-    typing = false
-    if (input.value === "") follow()
-    else model.send_msg({number: input.valueAsNumber, typed: ++typed})
-  }
-  input.addEventListener("input", () => { typing = true })
-  input.addEventListener("change", commit)
-  input.addEventListener("blur", commit)
-  // Enter after the number that was there before is no change.
-  input.addEventListener("keydown", event => { if (event.key === "Enter") commit() })
-  // The page shows another number, which the server does not know of yet.
-  const show = event => { if (!typing) input.value = String(Number(event.detail.toPrecision(10))) }
-  if (model.shown_event) document.addEventListener(model.shown_event, show)
-  model.on("lifecycle:remove", () => document.removeEventListener(model.shown_event, show))
-  model.on(["label", "step", "disabled", "shown"], follow)
-  follow()
-}
-"""
+from app.browser.callbacks import module_path
 
 
 class NumberBox(JSComponent):
@@ -69,7 +34,7 @@ class NumberBox(JSComponent):
     shown_event = param.String(doc="event of the page with a number to show that is not the server's")
     shown = param.Dict(default={}, doc="number, and how many typed ones the server knew of when it set this one")
 
-    _esm = _BOX
+    _esm = module_path("number_box.js")
 
     def __init__(self, on_typed: Callable[[float], None], number: float, **options: Any) -> None:
         super().__init__(shown={"number": number, "typed": 0}, **options)

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from app.views.components.number_box import NumberBox
+from app.browser.number_box import NumberBox
 
 
 @pytest.fixture
