@@ -86,3 +86,17 @@ def test_a_small_disc_grows_at_the_rate_of_the_lyapunov_exponent(open_explorer: 
     exponent = integrate_orbit(CASES["III"], start, 14.0).lyapunov_exponent[-1]
     # The deviation vector of the indicator starts in one direction, the disc in all of its slice.
     assert float(found.group(1)) == pytest.approx(exponent, abs=0.15)
+
+
+@pytest.mark.slow
+def test_the_time_runs_backwards_until_all_are_inside_again(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
+    play = explorer.page.get_by_role("button", name="Watch them leave")
+    expect(play).to_be_enabled()
+    move_time_to(explorer, 0.1)
+    assert inside(explorer) < 1000
+    explorer.page.get_by_label("Speed").select_option("backwards")
+    play.click()
+    expect(explorer.text("t = 0.0")).to_be_visible()
+    expect(play).to_be_visible()
+    assert inside(explorer) == 1000

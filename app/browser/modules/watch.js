@@ -41,6 +41,7 @@ const PACES = {
   normal: (time, seconds) => time + 4 * seconds,
   fast: (time, seconds) => time + 16 * seconds,
   logarithmic: (time, seconds) => Math.max(time, FIRST) * 2 ** (0.5 * seconds),
+  backwards: (time, seconds) => Math.max(time - 4 * seconds, 0),
 }
 
 /** @type {(tag: string, attributes?: object, ...children: (Node | string)[]) => any} */
@@ -71,7 +72,7 @@ class Watch {
     ])
     this.#count = makeList("Number of orbits", Object.fromEntries(counts))
     ;[this.#radius.min, this.#radius.max] = model.radii
-    this.#pace = makeList("Speed", {slow: "slow", normal: "normal", fast: "fast", logarithmic: "logarithmic"})
+    this.#pace = makeList("Speed", Object.fromEntries(Object.keys(PACES).map(pace => [pace, pace])))
     this.#pace.value = "normal"
     this.#rail.setAttribute("aria-label", "Time of the orbits")
     this.#radius.setAttribute("aria-label", "Radius of the disc, as a power of ten of the window")
@@ -81,7 +82,13 @@ class Watch {
       make("div", {className: "row"}, this.#where, this.#count, this.#again),
       make("label", {className: "row radius"}, "Radius ", this.#radius, this.#radiusText),
       make("div", {className: "row"}, this.#play, this.#step, this.#rail, this.#text),
-      make("div", {className: "row"}, this.#pace, make("label", {}, this.#trails, " trails")),
+      make(
+        "div",
+        {className: "row"},
+        this.#pace,
+        make("label", {}, this.#trails, " trails"),
+        make("label", {}, this.#loop, " again and again"),
+      ),
       this.#note,
       this.#counters,
       this.#growth,
@@ -103,6 +110,7 @@ class Watch {
   #radius = make("input", {type: "range", step: 0.5})
   #radiusText = make("output")
   #trails = make("input", {type: "checkbox"})
+  #loop = make("input", {type: "checkbox"})
   #note = make("p", {className: "quiet"})
   #counters = make("table")
   #growth = make("p", {className: "quiet"})
@@ -201,17 +209,28 @@ class Watch {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
     if (!on || !this.#ensemble) return this.#label()
-    if (this.#time >= LONGEST) this.#show(0)
+    if (this.#hasEnded) this.#begin()
     let last = performance.now()
     const tick = (/** @type {number} */ now) => {
       const seconds = Math.min(Math.max(now - last, 0), LONGEST_FRAME_MS) / 1000
       last = now
       this.#show(PACES[this.#pace.value](this.#time, seconds))
-      this.#frame = this.#time < LONGEST ? requestAnimationFrame(tick) : 0
+      if (this.#hasEnded && this.#loop.checked) this.#begin()
+      this.#frame = this.#hasEnded ? 0 : requestAnimationFrame(tick)
       this.#label()
     }
     this.#frame = requestAnimationFrame(tick)
     this.#label()
+  }
+
+  /** Whether the time is where the pace leads. */
+  get #hasEnded() {
+    return this.#pace.value === "backwards" ? this.#time <= 0 : this.#time >= LONGEST
+  }
+
+  /** Go to the time from which the pace leads on. */
+  #begin() {
+    this.#show(this.#pace.value === "backwards" ? LONGEST : 0)
   }
 
   #label() {
