@@ -28,6 +28,21 @@ def move_time_to(explorer: ExplorerPage, share: float) -> None:
     explorer.page.get_by_label("Time of the orbits").fill(str(round(1000 * share)))
 
 
+def loaded_modules(explorer: ExplorerPage) -> list[str]:
+    names: list[str] = explorer.page.evaluate("() => performance.getEntriesByType('resource').map(entry => entry.name)")
+    return [name.rsplit("/", 1)[-1] for name in names if name.endswith(".js")]
+
+
+def test_the_player_is_loaded_when_it_is_asked_for(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(link=QUICK)
+    before = loaded_modules(explorer)
+    assert "main.js" in before
+    assert not {"watch.js", "ensemble.js"} & {*before}
+    explorer.pick("Watch")
+    expect(explorer.page.get_by_role("button", name="Watch them leave")).to_be_enabled()
+    assert {"watch.js", "ensemble.js"} <= {*loaded_modules(explorer)}
+
+
 def test_the_well_drains_while_it_is_watched(open_explorer: OpenExplorer) -> None:
     explorer = open_explorer(link=f"{QUICK}&analysis=watch&watch=well,1000,1,-2")
     play = explorer.page.get_by_role("button", name="Watch them leave")
