@@ -61,5 +61,11 @@ def bind[Bound: pn.widgets.Widget](widget: Bound, state: param.Parameterized, na
 
     widget.value = getattr(state, name)
     widget.param.watch(write, "value")
-    state.param.watch(lambda event: widget.param.update(value=event.new), name)
+    state.param.watch(lambda event: set_value(widget, event.new), name)
     return widget
+
+
+def set_value(widget: pn.widgets.Widget, value: Any) -> None:
+    """Show a value, unless it is shown: Panel would drop a choice of the browser that it has not handled yet."""
+    if widget.value != value:
+        widget.value = value

@@ -16,7 +16,7 @@ from app.state.view_state import SYSTEM, ViewState, allowed_resolutions, allowed
 from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
-from app.views.components.widgets import SegmentedControl, Switches, bind, button
+from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from engine import CASES, Plane, Slice
 from engine.service import EnergyRange
 from plots.palette import PALETTES
@@ -164,7 +164,7 @@ class Controls:
         return self.state.case if self.state.case in CASES else None
 
     def _follow_plane(self) -> None:
-        self.plane.value = self._plane()
+        set_value(self.plane, self._plane())
         self.axes.label = AXES if self.plane.value is not None else f"{self.state.plane.title} …"
 
     def _plane(self) -> Slice | None:

@@ -111,3 +111,12 @@ def test_other_potentials_leave_no_case_selected(page: Page) -> None:
     assert page.controls.case.value is None
     assert page.controls.other.color == "primary"
     assert page.state.case == TYPED
+
+
+def test_another_case_writes_no_plane_that_is_shown_already(page: Page) -> None:
+    # Panel drops a choice of the browser that waits to be handled when the server writes the widget.
+    written: list[object] = []
+    page.controls.plane.param.watch(lambda event: written.append(event.new), "value", onlychanged=False)
+    page.controls.case.value = "II"
+    assert page.state.case == "II"
+    assert written == []
