@@ -60,6 +60,7 @@ def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: E
     expect(explorer.radio("III")).to_be_checked()
 
 
+@pytest.mark.slow
 def test_buttons_are_enabled_shortly_after_their_orbits_were_cleared(explorer: ExplorerPage) -> None:
     explorer.click("basins", 0.1, 0.05)
     expect(explorer.button("Clear all")).to_be_enabled()

@@ -61,6 +61,7 @@ def test_manifolds_lie_on_the_section_and_follow_the_energy(explorer: ExplorerPa
     explorer.wait_for_data("manifolds", f"data.xs.length > 0 && data.xs.length != {first}")
 
 
+@pytest.mark.slow
 def test_origins_have_a_picture_and_a_key(explorer: ExplorerPage) -> None:
     switch(explorer, "Origin and exit")
     expect(explorer.text("Enters by (rows), leaves by (columns)")).to_be_visible()

@@ -38,6 +38,7 @@ def opened(open_for_all: Callable[..., ExplorerPage], window: Window) -> Explore
     return open_for_all(link=f"?case={DEEP.case}&plane={plane}&h={DEEP.energy!r}&t_max=1000&resolution=112&window={edges}")
 
 
+@pytest.mark.slow
 def test_a_window_of_1e_12_of_the_plane_is_computed(explorer: ExplorerPage, window: Window) -> None:
     assert window.x_high - window.x_low < 1e-11
     assert len(np.unique(explorer.column("fate"))) > 2

@@ -121,6 +121,7 @@ def test_a_wheel_zooms_and_the_history_of_the_page_around_has_no_entry(page: Pag
     assert page.evaluate("history.length") == entries
 
 
+@pytest.mark.slow
 def test_the_text_at_the_mouse_is_shown(page: Page, host: str, server: str) -> None:
     frame = embed(page, host, frame_code(server))
     wait_until_complete(frame)
@@ -128,6 +129,7 @@ def test_the_text_at_the_mouse_is_shown(page: Page, host: str, server: str) -> N
     expect(frame.get_by_text(re.compile(r"\(-?0\.\d+, -?0\.\d+\)")).first).to_be_visible()
 
 
+@pytest.mark.slow
 def test_the_link_opens_the_view_of_the_moment(page: Page, host: str, server: str) -> None:
     frame = embed(page, host, frame_code(server))
     wait_until_complete(frame)

@@ -104,6 +104,7 @@ def test_what_two_fingers_do_is_one_entry_of_the_history(explorer: ExplorerPage)
     assert explorer.page.evaluate("history.state.entry") == 1
 
 
+@pytest.mark.slow
 def test_a_finger_that_rests_shows_the_orbit_under_it(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_touched(open_explorer, 420)
     explorer.radio("Scroll").scroll_into_view_if_needed()

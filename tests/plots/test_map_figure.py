@@ -160,6 +160,7 @@ def test_maps_of_equal_size_wrap_into_rows(columns: int, escape_map: EscapeMap) 
     assert len(np.unique(boxes[:, 1].round())) == len(TITLES) / columns
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "style", [FigureStyle(4.0, font_size=6.0), FigureStyle(6.0), FigureStyle(17.0, 150.0, 11.0), FigureStyle(12.0, titles=False)]
 )

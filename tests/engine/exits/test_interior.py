@@ -41,6 +41,7 @@ def test_a_start_in_an_outer_region_behind_an_exit_line_is_outside() -> None:
     assert classify_orbits(CURLED, energy, [[x, y, 0.0, py]], t_max=10.0).fate[0] == Fate.OUTSIDE
 
 
+@pytest.mark.slow
 def test_an_outer_region_in_a_default_window_is_outside() -> None:
     escape_map = compute_map(MapSpec(CURLED_QUINTIC, Plane.X_Y, 0.435296, (151, 151), t_max=1.0))
     x, y = np.meshgrid(escape_map.x, escape_map.ordinate)

@@ -54,6 +54,7 @@ def test_a_continued_potential_is_kept_apart_from_an_equal_one() -> None:
     assert continued.in_well_units != Potential(continued.name, continued.terms).in_well_units
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [50.0, 1e3, 1e8])
 def test_values_far_beyond_the_range_are_reached_in_few_steps(value: float) -> None:
     family = ParameterFamily(ParameterAxis("a", 0.5, 0.501, System("typed", "½(x² + y²) − a x² y²")))
