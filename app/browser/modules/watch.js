@@ -208,7 +208,8 @@ class Watch {
   #setPlaying(on) {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
-    if (!on || !this.#ensemble) return this.#label()
+    // With the counters of the moment, which are not written in every frame.
+    if (!on || !this.#ensemble) return this.#draw()
     if (this.#hasEnded) this.#begin()
     let last = performance.now()
     const tick = (/** @type {number} */ now) => {
@@ -216,8 +217,8 @@ class Watch {
       last = now
       this.#show(PACES[this.#pace.value](this.#time, seconds))
       if (this.#hasEnded && this.#loop.checked) this.#begin()
-      this.#frame = this.#hasEnded ? 0 : requestAnimationFrame(tick)
-      this.#label()
+      if (this.#hasEnded) return this.#setPlaying(false)
+      this.#frame = requestAnimationFrame(tick)
     }
     this.#frame = requestAnimationFrame(tick)
     this.#label()
@@ -389,7 +390,7 @@ class Watch {
   }
 
   #end() {
-    this.#setPlaying(false)
+    cancelAnimationFrame(this.#frame)
     cancelAnimationFrame(this.#foretelling)
     this.#unlisten()
     for (const canvas of [this.#well, this.#section]) canvas.remove()
