@@ -381,10 +381,12 @@ class Watch {
    * @param {number} time
    */
   #writeGrowth(ensemble, time) {
+    const isDisc = this.#model.where === "disc"
+    this.#growth.hidden = !isDisc
+    if (!isDisc) return
     const growth = ensemble.growth()
-    const isShown = this.#model.where === "disc" && time > 0 && growth > 0 && growth < Infinity
-    this.#growth.hidden = this.#model.where !== "disc"
-    this.#growth.textContent = isShown
+    const isKnown = time > 0 && growth > 0 && growth < Infinity
+    this.#growth.textContent = isKnown
       ? `${growth.toPrecision(3)} times as wide as at the start: ln(width)/t = ${(Math.log(growth) / time).toFixed(3)}`
       : ""
   }
