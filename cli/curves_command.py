@@ -78,10 +78,9 @@ def draw_curves(
 def _content(curves: Curves, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with this ending."""
     if ending == "nc":
-        from engine.service import require_package
+        from plots.exports import dataset_bytes
 
-        require_package("h5netcdf", "files")
-        return bytes(curves.to_xarray().to_netcdf(engine="h5netcdf"))
+        return dataset_bytes(curves.to_xarray())
     if ending == "csv":
         head, rows = _tabulate(curves)
         return "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"

@@ -12,7 +12,7 @@ from cli.options import DEFAULT_STYLE
 if TYPE_CHECKING:
     import numpy as np
 
-    from engine import DecayLaws, EscapeFlux, EscapeStatistics
+    from engine import DecayLaws, EscapeFlux, EscapeStatistics, Potential
 
 EXAMPLES = """Examples:
 
@@ -57,7 +57,7 @@ def follow_ensemble(
     a movie, FILE.nc has the paths, and FILE.csv the starts and outcomes; of a STEM, the movie as WebP and the table.
     """
     from cli.arguments import find_palette
-    from cli.ensemble_output import Drawing, contents
+    from cli.ensemble_output import Drawing, check_count, contents
     from cli.files import reserve_output, write_files
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
@@ -65,7 +65,8 @@ def follow_ensemble(
     from plots.figure_style import FigureStyle
 
     potential, drawing = find_potential(case), Drawing(find_palette(palette), FigureStyle(width, dpi, font_size, titles), frames)
-    starts = _draw_starts(case, energy, count, seed, plane, fix, window, entering)
+    check_count(output, count)
+    starts = _draw_starts(case, potential, energy, count, seed, plane, fix, window, entering)
     files: list[str] = []
     with reserve_output(output):
         with cancellable_run(threads) as run:
@@ -79,6 +80,7 @@ def follow_ensemble(
 
 def _draw_starts(
     case: str,
+    potential: Potential,
     energy: float,
     count: int,
     seed: int,
@@ -89,15 +91,14 @@ def _draw_starts(
 ) -> np.ndarray:
     """Return the (count, 4) states; ValueError for options that exclude each other."""
     from cli.arguments import find_plane
-    from cli.potential_argument import find_potential
     from engine import sample_entrances, sample_starts
 
     if not entering:
         chosen = None if plane is None else find_plane(plane, fix, case)
-        return sample_starts(find_potential(case), energy, count, plane=chosen, window=window, seed=seed)
+        return sample_starts(potential, energy, count, plane=chosen, window=window, seed=seed)
     if plane is not None or window is not None:
         raise ValueError("entering: orbits start on the exits; leave --plane and --window out")
-    return sample_entrances(find_potential(case), energy, count, seed=seed)
+    return sample_entrances(potential, energy, count, seed=seed)
 
 
 def _print_result(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, files: list[str], as_json: bool) -> None:

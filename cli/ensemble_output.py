@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,9 +10,9 @@ import numpy as np
 
 from cli.files import Content, add_ending, split_ending
 from cli.run_context import RunContext
-from engine import Outcomes, Potential, SampledOrbits, sample_orbits
-from engine.service import require_package
+from engine import Outcomes, Potential, sample_orbits
 from plots.ensemble_movie import MovieFormat, ensemble_movie_bytes
+from plots.exports import dataset_bytes
 from plots.figure_style import FigureStyle
 from plots.palette import Palette
 
@@ -28,13 +29,17 @@ class Drawing:
     frames: int
 
 
+def check_count(output: Path | None, count: int) -> None:
+    """Raise ValueError, before anything is computed, if the output files cannot have so many orbits."""
+    if output is not None and {*_split(output)[1]} != {"csv"} and count > MOST_PATHS:
+        raise ValueError(f"count={count}: movies and files of paths have at most {MOST_PATHS} orbits")
+
+
 def contents(
     output: Path, potential: Potential, starts: np.ndarray, outcomes: Outcomes, drawing: Drawing, run: RunContext
 ) -> dict[Path, Content]:
     """Return the content of each output file: by default the table of outcomes and the movie as WebP."""
-    stem, endings = split_ending(output, ["csv", "nc", *MovieFormat], ["csv", MovieFormat.WEBP])
-    if set(endings) != {"csv"} and len(starts) > MOST_PATHS:
-        raise ValueError(f"count={len(starts)}: movies and files of paths have at most {MOST_PATHS} orbits")
+    stem, endings = _split(output)
     files: dict[Path, Content] = {}
     if "csv" in endings:
         files[add_ending(stem, "csv")] = _table(starts, outcomes)
@@ -44,16 +49,16 @@ def contents(
     orbits = sample_orbits(potential, starts, times, execution=run.start_stage("paths"))
     for ending in endings:
         if ending == "nc":
-            files[add_ending(stem, ending)] = _netcdf(orbits)
+            files[add_ending(stem, ending)] = dataset_bytes(orbits.to_xarray())
         elif ending != "csv":
             movie = ensemble_movie_bytes(potential, orbits, drawing.palette, MovieFormat(ending), drawing.style)
             files[add_ending(stem, ending)] = movie
     return files
 
 
-def _netcdf(orbits: SampledOrbits) -> bytes:
-    require_package("h5netcdf", "files")
-    return bytes(orbits.to_xarray().to_netcdf(engine="h5netcdf"))
+def _split(output: Path) -> tuple[Path, Sequence[str]]:
+    """Return the stem and the endings of the output files."""
+    return split_ending(output, ["csv", "nc", *MovieFormat], ["csv", MovieFormat.WEBP])
 
 
 def _table(starts: np.ndarray, outcomes: Outcomes) -> str:

@@ -1,15 +1,19 @@
-"""Files of results: maps as NetCDF, orbits as CSV, and a Python script that reproduces them."""
+"""Files of results: maps and other datasets as NetCDF, orbits as CSV, and a Python script that reproduces them."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
+from typing import TYPE_CHECKING, Any
 
 from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, System, judge_orbit
 from engine.service import TYPED, require_package
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MOST_ROWS = 100_000
 """Default number of rows that a table of orbits has at most."""
@@ -19,10 +23,14 @@ _COLUMNS = ("t", "x", "y", "px", "py", "sali", "lyapunov_exponent", "r2")
 
 def netcdf_bytes(frame: EscapeMap, analyses: MapAnalyses = NO_ANALYSES) -> bytes:
     """NetCDF-4 file of `EscapeMap.to_xarray` with the variables of `MapAnalyses.add_to`."""
-    require_package("h5netcdf", "files")
     dataset = analyses.add_to(frame.to_xarray())
     # Shuffled and compressed, a map has a quarter of the size and is written faster.
-    encoding = {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars}
+    return dataset_bytes(dataset, {name: {"zlib": True, "complevel": 1, "shuffle": True} for name in dataset.data_vars})
+
+
+def dataset_bytes(dataset: xr.Dataset, encoding: Mapping[Any, Any] | None = None) -> bytes:
+    """NetCDF-4 file of a dataset; `encoding` as in xarray. ModuleNotFoundError without the extra ``files``."""
+    require_package("h5netcdf", "files")
     return bytes(dataset.to_netcdf(engine="h5netcdf", encoding=encoding))
 
 
