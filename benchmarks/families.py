@@ -16,7 +16,7 @@ from numba import njit
 
 from benchmarks.throughput import multiplications
 from engine import CASES, Plane, Potential, start_states
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_gates
+from engine.exits.exit_rows import closed_exits, exit_gates
 from engine.potentials.catalogue import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
@@ -39,7 +39,7 @@ def step_nanoseconds(potential: Potential) -> float:
     states = start_states(potential, Plane.X_PX, energy, x, px)
     inside = np.isfinite(states).all(axis=1) & (np.abs(x) < np.hypot(*potential.saddles.T).min())
     starts = np.ascontiguousarray(states[inside][:ORBITS])
-    curves = closed_channel_curves(potential)[None]
+    curves = closed_exits(potential)[None]
     gates = exit_gates(curves)
     kernels = load_kernels(potential.terms, potential.channels)
     shortest = np.inf

@@ -17,7 +17,7 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 
 from benchmarks.scaling import one_core
 from engine import CASES, MapSpec, Plane, Potential, compute_map, start_states
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.taylor.kernels.events import outside_channel
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines

@@ -16,7 +16,7 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 
 from engine import CASES, Plane, start_states
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_gates
+from engine.exits.exit_rows import closed_exits, exit_gates
 from engine.storage.cache_files import CACHE_VARIABLE
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels import propagate
@@ -51,7 +51,7 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
     potential = CASES[case]
     recurrence.ORDER = propagate.ORDER = order
     kernels = load_kernels(potential.terms, potential.channels)
-    curves = closed_channel_curves(potential)[None]
+    curves = closed_exits(potential)[None]
     gates = exit_gates(curves)
 
     def run(horizon: float) -> tuple[np.ndarray, int, float]:

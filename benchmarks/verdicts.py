@@ -1,7 +1,7 @@
-"""How many verdicts on single orbits turn out wrong later, in ten chaotic seas with their islands.
+"""How many verdicts on single orbits, and on pixels of maps, turn out wrong later, in ten chaotic seas with their islands.
 
 Starts are uniform on the energy surface; those that are bounded until t = 1000 are judged at several times, and again at 1e5. An
-orbit is taken as chaotic if its SALI falls to 1e-7 by then or it escapes.
+orbit is taken as chaotic if its SALI falls to 1e-7 by then or it escapes. Maps of (x, px) are judged at the same times.
 
 Run: uv run python -m benchmarks.verdicts [orbits per sea, by default 200] [seed]
 """
@@ -18,10 +18,15 @@ from engine import (
     CASES,
     CHAOS_THRESHOLD,
     Fate,
+    MapSpec,
     Orbit,
+    Plane,
     Potential,
+    Regularity,
     Verdict,
     classify_orbits,
+    compute_map,
+    compute_regularity,
     integrate_orbit,
     judge_orbit,
     sample_starts,
@@ -35,6 +40,7 @@ SEAS = (
 )  # fmt: skip
 TIMES = (1e3, 2e3, 4e3, 1e4, 2e4, 5e4, 1e5)
 WRONG = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False))
+SIDE = 48
 # Starts drawn for one that is bounded until the first time.
 DRAWN = 30
 
@@ -64,6 +70,31 @@ def count_verdicts(potential: Potential, energy: float, count: int, seed: int) -
     return counts
 
 
+def count_pixels(potential: Potential, energy: float) -> Counter[tuple[float, Regularity, bool]]:
+    """The number of bounded pixels of a map by time, character then, and whether their orbits are chaotic by the last time."""
+    characters = {}
+    for time in TIMES:
+        pixels = compute_map(MapSpec(potential, Plane.X_PX, energy, (SIDE, SIDE), t_max=time))
+        characters[time] = compute_regularity(pixels).character
+    chaotic = np.isin(characters[TIMES[-1]], (Regularity.CHAOTIC, Regularity.NOT_APPLICABLE))
+    return Counter(
+        (time, Regularity(int(code)), bool(later))
+        for time, codes in characters.items()
+        for code, later in zip(codes.ravel(), chaotic.ravel(), strict=True)
+    )
+
+
+def print_pixels() -> None:
+    total: Counter[tuple[float, Regularity, bool]] = Counter()
+    for potential, energy in SEAS:
+        total += count_pixels(potential, energy)
+    print("| t | regular, chaotic later | chaotic, not later | no sign of chaos, chaotic later |\n|---|---|---|---|")
+    for time in TIMES:
+        pairs = ((Regularity.REGULAR, True), (Regularity.CHAOTIC, False), (Regularity.NO_SIGN_OF_CHAOS, True))
+        cells = [f"{total[time, v, True] + total[time, v, False]}, {total[time, v, later]}" for v, later in pairs]
+        print(f"| {time:g} | {' | '.join(cells)} |")
+
+
 def main(count: int = 200, seed: int = 2) -> None:
     total: Counter[tuple[float, Verdict | None, bool]] = Counter()
     for potential, energy in SEAS:
@@ -76,6 +107,7 @@ def main(count: int = 200, seed: int = 2) -> None:
         pairs = ((Verdict.REGULAR, True), (Verdict.CHAOTIC, False), (Verdict.NO_SIGN, True), (Verdict.UNDECIDED, True))
         cells = [f"{total[time, v, True] + total[time, v, False]}, {total[time, v, later]}" for v, later in pairs]
         print(f"| {time:g} | {' | '.join(cells)} |")
+    print_pixels()
 
 
 if __name__ == "__main__":

@@ -92,9 +92,11 @@ def _content(curves: Curves, ending: str, style: FigureStyle) -> Content:
 
 def _tabulate(curves: Curves) -> tuple[list[str], list[list[float]]]:
     """Return column names and rows: h or the parameter, the shares, then the other curves; missing numbers are NaN."""
+    from plots.exports import column_name
+
     dataset = curves.to_xarray()
     others = [str(name) for name in dataset.data_vars if name != "share"]
-    head = [curves.spec.name, "bounded", *(f"channel_{k}" for k in range(1, curves.shares.shape[1])), *others]
+    head = [curves.spec.name, "bounded", *map(column_name, curves.spec.outcomes), *others]
     columns = [curves.values, *curves.shares.T, *(curves.curve(name) for name in others)]
     return head, [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)]
 

@@ -102,17 +102,18 @@ def _draw_starts(
 
 
 def _print_result(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, files: list[str], as_json: bool) -> None:
-    from cli.output import outcome_name, print_json, print_sentences, print_table
+    from cli.output import print_json, print_sentences, print_table
     from engine import Fate
+    from engine.service import name_fate
 
     shares, intervals = statistics.shares, statistics.share_intervals
-    shown = [code for code in shares if code >= Fate.BOUNDED or shares[code]]
+    shown = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}
     if as_json:
-        outcomes = [{"outcome": outcome_name(code), "share": shares[code], "interval": intervals[code]} for code in shown]
+        outcomes = [{"outcome": name, "share": shares[code], "interval": intervals[code]} for code, name in shown.items()]
         answer: dict[str, Any] = {"outcomes": outcomes, "mean_escape_time": statistics.mean_escape_time, "flux": flux.numbers()}
         print_json(answer | {"escape_laws": laws.describe(), "files": files})
         return
-    rows = [(outcome_name(code), f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code in shown]
+    rows = [(name, f"{shares[code]:.4f}", "{:.4f} … {:.4f}".format(*intervals[code])) for code, name in shown.items()]
     print_table(("outcome", "share", "95 % interval"), rows)
     sentences = [f"Mean time of the escapes: {statistics.mean_escape_time:.4g}.", laws.describe(), flux.describe()]
     print_sentences(*sentences, *([f"Written: {', '.join(files)}"] if files else []))

@@ -65,7 +65,13 @@ def _print_result(
     from cli.output import print_json, print_sentences, print_table
 
     found: list[dict[str, Any]] = [
-        {"channel": orbit.channel, "period": orbit.period, "flux": through, "ends": orbit.half_path[[0, -1]].tolist()}
+        {
+            "channel": orbit.channel,
+            "name": orbit.name,
+            "period": orbit.period,
+            "flux": through,
+            "ends": orbit.half_path[[0, -1]].tolist(),
+        }
         for orbit, through in zip(orbits, [] if flux is None else flux.flux.tolist(), strict=True)
     ]
     if as_json:
@@ -76,8 +82,7 @@ def _print_result(
         print_sentences(f"No Lyapunov orbits: h = {energy:g} is not above the escape energy {escape_energy:.12g}.")
     else:
         rows = [
-            (str(one["channel"]), f"{one['period']:.12g}", f"{one['flux']:.9g}", *(_point(end) for end in one["ends"]))
-            for one in found
+            (one["name"], f"{one['period']:.12g}", f"{one['flux']:.9g}", *(_point(end) for end in one["ends"])) for one in found
         ]
         print_table(("channel", "period", "flux", "turning point (x, y)", "turning point (x, y)"), rows)
         print_sentences(flux.describe())

@@ -128,6 +128,7 @@ def draw_map(
 def _print_result(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
     from cli.map_analyses import describe_analyses
     from cli.output import outcome_shares, print_json, print_sentences, print_table
+    from engine.service import UNRESOLVED
 
     shares = outcome_shares(frame, count_outside=count_outside)
     sentences = describe_analyses(analyses)
@@ -136,6 +137,6 @@ def _print_result(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str],
         print_json(answer)
         return
     print_table(
-        ("outcome", "share"), [(name, f"{100 * share:.2f} %") for name, share in shares.items() if share or name != "failed"]
+        ("outcome", "share"), [(name, f"{100 * share:.2f} %") for name, share in shares.items() if share or name != UNRESOLVED]
     )
     print_sentences(*sentences, f"Written: {', '.join(files)}")

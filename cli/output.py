@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from engine import EscapeMap, Fate
+from engine.service import name_fate
 
 # Width of tables when stdout is not a terminal.
 _PIPE_WIDTH = 200
@@ -40,15 +41,10 @@ def print_sentences(*sentences: str) -> None:
         _console().out(sentence, highlight=False)
 
 
-def outcome_name(code: int) -> str:
-    """Return the name of a fate code."""
-    return f"channel {code}" if code >= 1 else Fate(code).name.lower().replace("_", " ")
-
-
 def outcome_shares(frame: EscapeMap, *, count_outside: bool) -> dict[str, float]:
     """Return the share of each outcome among the starts of a complete map, by outcome name."""
     fractions = frame.fractions(count_outside=count_outside)
-    return {outcome_name(code): share for code, share in fractions.items() if code != Fate.NOT_COMPUTED}
+    return {name_fate(code, frame.spec.outcomes): share for code, share in fractions.items() if code != Fate.NOT_COMPUTED}
 
 
 def _console() -> Console:

@@ -6,7 +6,7 @@ import re
 import reprlib
 
 from engine import POTENTIALS, Potential, System, review_potential
-from engine.service import PARAMETERS, TYPED, formula_letters
+from engine.service import CATALOGUE, PARAMETERS, TYPED, formula_letters
 from plots.accepted_potentials import refusal
 
 
@@ -48,7 +48,7 @@ def find_system(case: str) -> System:
 
 
 def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
-    legal = (*PARAMETERS, *_letters(formula))
+    legal = CATALOGUE[formula].adjustable if formula in CATALOGUE else (*PARAMETERS, *_letters(formula))
     chosen: dict[str, float] = {}
     for part in text.split(","):
         name, _, value = part.partition("=")
@@ -63,8 +63,8 @@ def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
 
 
 def _letters(formula: str) -> tuple[str, ...]:
-    """The letters of a formula; none for a name and for text that is no formula, which is refused later."""
+    """The letters of a formula; none for text that is no formula, which is refused later."""
     try:
-        return () if formula in POTENTIALS else formula_letters(formula)
+        return formula_letters(formula)
     except ValueError:
         return ()

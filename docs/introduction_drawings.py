@@ -9,6 +9,7 @@ from drawing_panels import CASE, ENERGY, SIDE, STYLE, new_panels, window_shares
 from matplotlib.figure import Figure
 
 from engine import (
+    CASES,
     Fate,
     MapSpec,
     Orbit,
@@ -90,7 +91,7 @@ def energies() -> Figure:
         frame = compute_map(MapSpec(CASE, Plane.X_PX, energy, (SIDE, SIDE), t_max=1e4))
         draw_picture(axes, frame, "basins", PAPER)
         name_panel(axes, f"h = {energy}: {100.0 * frame.fractions()[Fate.BOUNDED]:.1f} % bounded")
-    add_figure_legend(figure, patches([*PAPER.channel_entries(2), PAPER.outcomes[Fate.BOUNDED]]))
+    add_figure_legend(figure, patches([*PAPER.end_entries(CASES["I"].outcomes), PAPER.outcomes[Fate.BOUNDED]]))
     return figure
 
 

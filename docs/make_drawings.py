@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from drawing_panels import CASE, ENERGY, SIDE, STYLE, mark_section, new_panels
 from introduction_drawings import blob, energies, exits, maps, tubes, well
+from rotating_drawings import copenhagen, earth_moon, four_hills, star_cluster
 
 from engine import (
     CASES,
@@ -241,7 +242,7 @@ def origins() -> Figure:
 
 DRAWINGS: tuple[Callable[[], Figure], ...] = (
     well, maps, blob, tubes, energies, cases, potentials, exits, sali, trust, basin_entropy, wada, uncertainty_exponent,
-    escape_laws, slices, statistics, curves, flux, certificates, origins,
+    escape_laws, slices, statistics, curves, flux, certificates, origins, earth_moon, copenhagen, star_cluster, four_hills,
 )  # fmt: skip
 
 if __name__ == "__main__":

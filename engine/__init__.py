@@ -3,13 +3,14 @@
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
 `to_holoviews`, see `Result`. `engine.service` has the names for the page and other programs, which may change with any version.
 
-- systems: `Potential`, `System`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`, `review_potential`
+- systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`,
+  `review_potential`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `default_window`, `start_states`,
   `sample_starts`, `trace_zero_velocity_curve`
-- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `find_section_crossings`, `compute_birkhoff_digits`,
-  `judge_orbit`, `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
-- maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`, `compute_origin_fates`,
-  `find_stable_manifolds`
+- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `find_multipliers`, `find_section_crossings`,
+  `compute_birkhoff_digits`, `judge_orbit`, `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
+- maps of escapes: `MapSpec`, `compute_map`, `compute_deep_map`, `compute_regularity`, `compute_trust`,
+  `compute_origin_fates`, `find_stable_manifolds`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
@@ -23,9 +24,10 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Regularity, Trust
 from engine.execution import Execution
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_multipliers
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.maps.compute import compute_map
+from engine.maps.deep_map import DeepMap, compute_deep_map
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
@@ -42,6 +44,7 @@ from engine.measures.wada import WadaTest, compute_wada_test
 from engine.potentials.catalogue import POTENTIALS, channel_family
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
+from engine.potentials.outcomes import Centre, Outcome
 from engine.potentials.potential import CASES, Potential
 from engine.potentials.system import System
 from engine.potentials.validation_report import PotentialReview, review_potential
@@ -81,11 +84,13 @@ __all__ = [
     "POTENTIALS",
     "BasinEntropy",
     "BirkhoffDigits",
+    "Centre",
     "Certificate",
     "Coordinate",
     "Curves",
     "CurvesSpec",
     "DecayLaws",
+    "DeepMap",
     "Direction",
     "DivergentStart",
     "EscapeFlux",
@@ -99,6 +104,7 @@ __all__ = [
     "Orbit",
     "OrbitVerdict",
     "OriginFateMap",
+    "Outcome",
     "Outcomes",
     "ParameterAxis",
     "Plane",
@@ -127,6 +133,7 @@ __all__ = [
     "compute_birkhoff_digits",
     "compute_crossing_statistics",
     "compute_curves",
+    "compute_deep_map",
     "compute_flux",
     "compute_map",
     "compute_origin_fates",
@@ -140,6 +147,7 @@ __all__ = [
     "evaluate_indicators",
     "find_divergent_start",
     "find_lyapunov_orbits",
+    "find_multipliers",
     "find_section_crossings",
     "find_stable_manifolds",
     "fit_decay_laws",

@@ -166,14 +166,18 @@ SERIAL_EXECUTION = Execution(SerialExecutor())
 
 
 def run_parts(
-    work: Callable[..., Any], indices: np.ndarray, select: Callable[[np.ndarray], tuple[Any, ...]], execution: Execution
+    work: Callable[..., Any],
+    indices: np.ndarray,
+    select: Callable[[np.ndarray], tuple[Any, ...]],
+    execution: Execution,
+    least: int = _LEAST_PART,
 ) -> Iterator[tuple[np.ndarray, Any]]:
     """Run ``work(*select(part))`` in parallel for the parts of an index array; each part of `indices` with its result.
 
-    Parts that never ran because of a cancellation are left out. `work` must be a module-level function, so that it can be pickled
-    for other processes, and should release the GIL.
+    least: about the smallest part that is worth a task. Parts that never ran because of a cancellation are left out. `work` must
+    be a module-level function, so that it can be pickled for other processes, and should release the GIL.
     """
-    count = min(2 * execution.workers, -(-indices.size // _LEAST_PART))
+    count = min(2 * execution.workers, -(-indices.size // least))
     parts = np.array_split(indices, count) if count else []
     futures = [execution.submit(work, *select(part)) for part in parts]
     for part, future in zip(parts, futures, strict=True):

@@ -4,7 +4,7 @@ They are not part of the public interface of `engine` and may change with any ve
 """
 
 from engine.dynamics.certificates import describe_certificate
-from engine.dynamics.fates import describe_fate, judge_regularity
+from engine.dynamics.fates import UNRESOLVED, describe_fate, is_chaotic, name_fate, outcome_of
 from engine.dynamics.portable_system import PortableSystem, make_portable_system
 from engine.execution import DEFAULT_EXECUTION, count_cores
 from engine.expressions.nodes import Coordinate as CoordinateNode
@@ -36,14 +36,15 @@ from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, 
 from engine.measures.published_fits import HyperbolicTangent, PaperFits, Polynomial
 from engine.measures.share_fits import Deviation
 from engine.measures.uncertainty_exponent import fit_uncertainty
-from engine.potentials.catalogue import CATALOGUE, PotentialEntry
-from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.energy_ranges import HIGHEST_SHOWN, PAPER_ENERGIES, EnergyRange, critical_energies, depth_levels
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.form import Form
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, checked_letter_value, formula_letters
-from engine.potentials.potential import PARAMETER_RANGES
-from engine.potentials.system import PARAMETERS, SHOWN_DIGITS, TYPED
+from engine.potentials.outcomes import OutcomeKind
+from engine.potentials.potential_entry import PotentialEntry
+from engine.potentials.system import PARAMETERS, RANGES, SHOWN_DIGITS, TYPED
 from engine.potentials.validation_report import CriticalPoint, PointKind
 from engine.results.codes import describe_codes
 from engine.results.extras import require_package
@@ -85,11 +86,12 @@ __all__ = [
     "MOST_REQUESTS",
     "PAPER_ENERGIES",
     "PARAMETERS",
-    "PARAMETER_RANGES",
+    "RANGES",
     "SECTION",
     "SHOWN_DIGITS",
     "SPACE",
     "TYPED",
+    "UNRESOLVED",
     "WADA_COUNTS_BOUNDED",
     "BasinMeasures",
     "CoordinateNode",
@@ -111,6 +113,7 @@ __all__ = [
     "Jobs",
     "LawFit",
     "ManifoldArc",
+    "OutcomeKind",
     "PaperFits",
     "PointKind",
     "Polynomial",
@@ -132,9 +135,11 @@ __all__ = [
     "compute_radius_envelope",
     "compute_survival",
     "count_cores",
+    "critical_energies",
     "curves_job",
     "decay_laws_job",
     "default_range",
+    "depth_levels",
     "describe_certificate",
     "describe_codes",
     "describe_fate",
@@ -149,12 +154,14 @@ __all__ = [
     "formula_letters",
     "highest_energy",
     "hold_lock",
+    "is_chaotic",
     "is_ready_for_maps",
     "join_origin_fates",
-    "judge_regularity",
     "make_portable_system",
     "map_job",
+    "name_fate",
     "origin_fate_job",
+    "outcome_of",
     "prepare_for_certificates",
     "prepare_for_maps",
     "prepare_kernels",

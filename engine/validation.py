@@ -27,7 +27,14 @@ LONGEST_TIME = 1e8
 
 
 _LINE_BREAK = re.compile(r"\s*\n\s*")
-_TYPE_NAMES = {"str": "text", "NoneType": "None", "Callable": "a function", "Mapping": "a mapping", "PathLike": "a path"}
+_TYPE_NAMES = {
+    "str": "text",
+    "NoneType": "None",
+    "Callable": "a function",
+    "Iterable": "a sequence",
+    "Mapping": "a mapping",
+    "PathLike": "a path",
+}
 
 
 def short_repr(value: Any) -> str:

@@ -107,7 +107,7 @@ def _expected_seconds(potential: Potential) -> float:
 def _known_kernels(potential: Potential) -> ModuleType | None:
     """The kernels of a potential; None if they are not generated yet, or cannot be compiled any more."""
     well = potential.in_well_units
-    if not is_generated(well.form.definition, well.channels):
+    if not is_generated(well.form.definition, well.setting):
         return None
     try:
         return kernels_of(well)
@@ -148,7 +148,7 @@ def prepare_for_maps(potential: Potential) -> None:
     """
     if is_ready_for_maps(potential):
         return
-    energy = potential.energy_at(1.01)
+    energy = _open_energy(potential)
     _for_maps.run(potential, (lambda: find_lyapunov_orbits(potential, energy), lambda: _compute_small_map(potential, energy)))
 
 
@@ -160,7 +160,9 @@ def prepare_for_certificates(potential: Potential) -> None:
     potential
         Any `Potential` with an exit.
     """
-    well, start = potential.in_well_units, _bounded_start(potential) / potential.units.state
+    if not potential.certifies_tori:
+        return
+    well, start = potential.in_well_units, _start(potential) / potential.units.state
     _make_in_turn(
         lambda: count_agreeing_digits(well, start, _T_MAX, execution=_EXECUTION),
         lambda: find_section_points(well, start, 1, _T_MAX, execution=_EXECUTION),
@@ -178,21 +180,28 @@ def prepare_kernels(potential: Potential) -> None:
     """
     prepare_for_maps(potential)
     prepare_for_certificates(potential)
-    _make_in_turn(
-        lambda: integrate_orbit(potential, _bounded_start(potential)[0], _T_MAX * potential.units.time),
+    _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
+    if potential.channels and not potential.centres:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
-        lambda: compute_regularity(_compute_small_map(potential, potential.energy_at(0.5)), execution=_EXECUTION),
-        lambda: find_stable_manifolds(potential, potential.energy_at(1.01), images=1, execution=_EXECUTION),
-    )
+        _make_in_turn(lambda: compute_regularity(_compute_small_map(potential, potential.energy_at(0.5)), execution=_EXECUTION))
+    if potential.channels and not potential.rotation:
+        _make_in_turn(lambda: find_stable_manifolds(potential, potential.energy_at(1.01), images=1, execution=_EXECUTION))
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
     return run_map(MapSpec(potential, SECTION.plane, energy, (2, 2), t_max=_T_MAX * potential.units.time), _EXECUTION)
 
 
-def _bounded_start(potential: Potential) -> np.ndarray:
-    """(1, 4) a state of low energy."""
-    return SECTION.plane.states(potential, potential.energy_at(0.5), np.zeros(1), np.zeros(1))
+def _open_energy(potential: Potential) -> float:
+    """An energy at which orbits can escape."""
+    return potential.energy_at(1.01) if potential.escape_radius is None else potential.bottom + potential.units.energy
+
+
+def _start(potential: Potential) -> np.ndarray:
+    """(1, 4) a state of low energy in the middle of a well, else one at a typical distance."""
+    if potential.has_well and potential.escape_radius is None:
+        return SECTION.plane.states(potential, potential.energy_at(0.5), np.zeros(1), np.zeros(1))
+    return SECTION.plane.states(potential, _open_energy(potential), np.array([potential.typical_radius]), np.zeros(1))
 
 
 def _make_in_turn(*calls: Callable[[], object]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import Curves, DecayLaws, EscapeStatistics, Fate, Potential
+from engine import Curves, DecayLaws, EscapeStatistics, Fate, Outcome, Potential
 from engine.service import LawFit
 from plots.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.figure_style import SCREEN, FigureStyle
@@ -55,7 +55,7 @@ def draw_curves_figure(curves: Curves, style: FigureStyle) -> Figure:
     )
     figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
     panels = figure.subplots((1 + len(_MEASURES)) // columns, columns).ravel().tolist()
-    draw_shares(panels[0], curves.values, curves.shares, spec.potential, style)
+    draw_shares(panels[0], curves.values, curves.shares, spec.potential, style, spec.outcomes)
     for axes, (lines, up, words) in zip(panels[1:], _MEASURES, strict=True):
         _draw_measures(axes, curves, lines, style)
         label_axes(axes, spec.symbol, up, style)
@@ -103,14 +103,26 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
     label_axes(axes, "escape time", "starts", style)
 
 
-def draw_shares(axes: Axes, energies: np.ndarray, shares: np.ndarray, potential: Potential, style: FigureStyle = SCREEN) -> None:
-    """Draw percentages (m, channels + 1), of bounded starts and of each channel, against energy (m,)."""
+def draw_shares(
+    axes: Axes,
+    energies: np.ndarray,
+    shares: np.ndarray,
+    potential: Potential,
+    style: FigureStyle = SCREEN,
+    outcomes: Sequence[Outcome] | None = None,
+) -> None:
+    """Draw percentages (m, outcomes + 1), of bounded starts and of each outcome, against energy (m,).
+
+    `outcomes` are those of the shares; None for those of the potential.
+    """
+    outcomes = potential.outcomes if outcomes is None else outcomes
     for code, share in enumerate(shares.T):
         if code == Fate.BOUNDED:
             line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
         else:
-            dashed = potential.mirror_in_x and code <= potential.channels and potential.mirror_channels[code] < code
-            line = {"color": PAPER.channels[code - 1], "linewidth": 1.7, "label": f"channel {code}"}
+            dashed = potential.mirror_in_x and code <= len(potential.outcomes) and potential.mirror_channels[code] < code
+            entry = PAPER.entry(code, outcomes)
+            line = {"color": entry.colour, "linewidth": 1.7, "label": entry.label}
             line |= {"linestyle": _DASHED, "zorder": 3} if dashed else {}
         axes.plot(energies, 100.0 * share, marker="o", markersize=2.2, **line)
     axes.set_ylim(0.0, 100.0)

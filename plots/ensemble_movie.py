@@ -111,7 +111,7 @@ def _draw_stage(potential: Potential, orbits: SampledOrbits, palette: Palette, s
     draw_well(well, potential, energy, window, palette)
     show_window(well, window, "x", "y", style, equal=True)
     count = well.set_title(" ", loc="left", fontsize=style.font_size, color=LIGHT.text)
-    colours = [palette.channels[fate - 1] if fate > 0 else palette.bounded for fate in orbits.fate]
+    colours = [palette.entry(max(fate, Fate.BOUNDED), orbits.outcomes).colour for fate in orbits.fate.tolist()]
     particles = well.scatter(np.zeros(len(colours)), np.zeros(len(colours)), s=_PARTICLE, c=colours, linewidths=0, zorder=3)
     survival = _draw_chart(chart, potential, orbits, style)
     set_font(figure)

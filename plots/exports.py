@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, System, judge_orbit
-from engine.service import TYPED, require_package
+from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Outcome, Plane, Slice, System, judge_orbit
+from engine.service import CATALOGUE, TYPED, require_package
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 
 if TYPE_CHECKING:
@@ -142,8 +142,12 @@ def _slice_names(plane: Slice) -> list[str]:
 
 def _potential_expression(system: System) -> tuple[str, str]:
     """Name to import, and the expression of the potential."""
+    if system.case != TYPED and "epsilon" not in CATALOGUE[system.case].parameters and system.parameters:
+        return "System", f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
     parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
     changed = f".with_parameters({parameters})" if parameters else ""
+    rotation = system.value_of("rotation") if system.case == TYPED or "epsilon" in CATALOGUE[system.case].parameters else 0.0
+    changed += f".in_rotating_frame({rotation!r})" if rotation else ""
     if system.case == TYPED:
         letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""
         return "parse_formula", f"parse_formula({system.formula!r}{letters}){changed}"
@@ -176,10 +180,15 @@ def file_stem(spec: MapSpec, case: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 
+def column_name(outcome: Outcome) -> str:
+    """The label of an outcome as the name of a column."""
+    return re.sub(r"\W+", "_", outcome.label)
+
+
 def curves_csv(curves: Curves) -> str:
     """CSV table of curves, one row per energy or value of the parameter: it, a share per fate, and all other measures."""
     dataset = curves.to_xarray()
-    names = ["share_bounded", *(f"share_channel_{k}" for k in range(1, curves.shares.shape[1]))]
+    names = ["share_bounded", *(f"share_{column_name(outcome)}" for outcome in curves.spec.outcomes)]
     columns = {curves.spec.name: curves.values} | dict(zip(names, curves.shares.T, strict=True))
     columns |= {str(name): dataset[name].to_numpy() for name in dataset.data_vars if name != "share"}
     lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from engine import Certificate, EscapeMap, Fate, OriginFateMap, Regularity, RegularityMap, Trust, TrustMap
-from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES
+from engine import Certificate, EscapeMap, Fate, OriginFateMap, Outcome, Regularity, RegularityMap, Trust, TrustMap
+from plots.palette import CROSSING_CLASSES, OUTCOMES, PAPER, end_places
 
 NO_LAYER = [np.zeros((1, 1), np.uint8)]
 """Column of a layer that is off."""
@@ -35,13 +36,14 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
     classes[fate == Fate.BOUNDED] = len(CROSSING_CLASSES) + images["certificate"][fate == Fate.BOUNDED]
     character = [_codes(fate, _certified_characters(images), bounded_too=True)] if characters else NO_LAYER
     return {
-        "fate": [_codes(fate, fate - 1)],
+        "fate": [fate_codes(fate, frame.spec.outcomes)],
         "crossing_class": [_codes(fate, classes, bounded_too=True)],
         "crossings": [crossings.astype(np.min_scalar_type(crossings.max(initial=0)))],
         "escape_time": [images["escape_time"].astype(np.float32)],
         "character": character,
         "passage": NO_LAYER,
         "difference": NO_LAYER,
+        "ends": [end_words(frame.spec.outcomes)],
         "x": [window.x_low],
         "y": [window.ordinate_low],
         "dw": [window.x_high - window.x_low],
@@ -49,6 +51,11 @@ def map_columns(frame: EscapeMap, *, characters: bool = True) -> dict[str, list[
         "energy": [np.nan if frame.spec.common_energy is None else frame.spec.common_energy],
         "complete": [frame.complete],
     }
+
+
+def fate_codes(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
+    """uint8 codes of the colours `Palette.fate_colours` for fates of any shape."""
+    return _codes(fate, _ends(fate, outcomes) - 1)
 
 
 def draw_over(columns: dict[str, list[Any]], earlier: dict[str, list[Any]], sides: tuple[int, int]) -> dict[str, list[Any]]:
@@ -115,14 +122,25 @@ def _difference_codes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return np.where((one == _UNDECIDED) | (other == _UNDECIDED), _UNDECIDED, codes).astype(np.uint8)
 
 
-def pixel_coding() -> dict[str, Any]:
-    """How pixels become codes, for programs that make the columns elsewhere.
+def end_words(outcomes: Sequence[Outcome]) -> list[str]:
+    """What orbits of each of `Palette.ends` do; empty for those that the potential does not have."""
+    words = [""] * len(PAPER.ends)
+    for place, outcome in zip(end_places(outcomes), outcomes, strict=True):
+        words[place] = outcome.present
+    return words
 
-    That is the outcomes, the first class, the classes of crossings, and the codes of pixels without a decision or an orbit.
+
+def pixel_coding(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """How pixels of a potential with these outcomes become codes, for programs that make the columns elsewhere.
+
+    That is the fates that are no ends, the first class, the places and words of the ends, the classes of crossings, and the codes
+    of pixels without a decision or an orbit.
     """
     return {
         "outcomes": [[int(fate), code] for fate, code in _OUTCOME_CODES.items()],
         "first": _FIRST_CLASS,
+        "ends": end_places(outcomes),
+        "words": end_words(outcomes),
         "leastCrossings": _LEAST_CROSSINGS.tolist(),
         "undecided": _UNDECIDED,
         "withoutOrbit": list(_WITHOUT_ORBIT),
@@ -136,8 +154,9 @@ def character_column(frame: EscapeMap, regularity: RegularityMap) -> dict[str, l
 
 def passage_column(origins: OriginFateMap) -> dict[str, list[Any]]:
     """Column of origin and fate of each orbit."""
-    passage = origins.origin.astype(np.int64) * (MOST_CHANNELS + 1) + origins.fate
-    # If the origin or the fate is not a channel, the pixel shows that outcome.
+    origin, fate = (_ends(codes, origins.spec.outcomes) for codes in (origins.origin, origins.fate))
+    passage = origin * (len(PAPER.ends) + 1) + fate
+    # If the origin or the fate is neither an end nor bounded, the pixel shows it.
     outcome = np.minimum(origins.origin, origins.fate)
     return {"passage": [_codes(outcome, passage, bounded_too=True)]}
 
@@ -154,6 +173,13 @@ def _certified_characters(images: dict[str, np.ndarray]) -> np.ndarray:
     character = np.where(images["fate"] == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
     character[images["certificate"] == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
     return character
+
+
+def _ends(fate: np.ndarray, outcomes: Sequence[Outcome]) -> np.ndarray:
+    """Number of the end of each fate from 1 on, 1 for the first of `Palette.ends`; 0 for the others."""
+    numbers = np.array([0, *(place + 1 for place in end_places(outcomes))])
+    found: np.ndarray = numbers[np.maximum(fate, 0)]
+    return found
 
 
 def _codes(fate: np.ndarray, classes: np.ndarray, *, bounded_too: bool = False) -> np.ndarray:

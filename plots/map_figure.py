@@ -285,7 +285,7 @@ def draw_limits(
         return
     for orbit in orbits:
         style: dict[str, Any] = {"colors": channel_colours[orbit.channel - 1], "linewidths": 2.2}
-        draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.channel}", halo=True, **style)
+        draw_curve(axes, [orbit.half_path], shown, f"Lyapunov orbit {orbit.name}", halo=True, **style)
 
 
 def draw_manifolds(axes: Axes, manifolds: StableManifolds, shown: Window, palette: Palette) -> None:
@@ -428,10 +428,9 @@ def picture_entries(frame: EscapeMap, picture: str, palette: Palette, analyses: 
     if picture == "characters":
         characters = palette.character_entries[:-1] if judged else palette.character_entries
         return [*characters, *(entry for entry in outcomes if entry != palette.outcomes[Fate.BOUNDED])]
-    channels = frame.spec.channels
     if picture == "origins":
-        return [*palette.passage_entries(channels), *outcomes]
-    classes = {"basins": palette.channel_entries(channels), "crossings": palette.crossing_entries}
+        return [*palette.passage_entries(frame.spec.outcomes), *outcomes]
+    classes = {"basins": palette.legend_entries(frame.spec.outcomes), "crossings": palette.crossing_entries}
     return [*classes.get(picture, []), *outcomes]
 
 

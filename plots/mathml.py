@@ -15,13 +15,18 @@ _SPOKEN = {"+": "plus", "−": "minus", "=": "equals", "∂": "partial", "˙": "
 _POWERS = {"2": "squared", "3": "cubed"}
 
 
+_INTEGRAL = {False: "Energy integral", True: "Jacobi integral"}
+
+
 def equations(potential: Potential) -> str:
     """HTML list of Hamiltonian, potential, equations of motion, energy integral, escape energy and saddles."""
     rows = {
-        "Hamiltonian": [var("H") + op("=") + _energy(_momentum_squared("x"), _momentum_squared("y"))],
-        "Potential": [_potential(potential)],
-        "Equations of motion": [_motion("x", potential.form.force(0)), _motion("y", potential.form.force(1))],
-        "Energy integral": [_energy(raised(_above("x", "˙"), 2), raised(_above("y", "˙"), 2)) + op("=") + var("h")],
+        **_hamiltonian(potential),
+        "Effective potential" if potential.rotation else "Potential": [_potential(potential)],
+        "Equations of motion": [_motion(axis, potential) for axis in ("x", "y")],
+        _INTEGRAL[bool(potential.rotation)]: [
+            _energy(potential, raised(_above("x", "˙"), 2), raised(_above("y", "˙"), 2)) + op("=") + var("h")
+        ],
         **_exits(potential),
     }
     style = "font-size:17px;margin:2px 0 8px 12px;display:flex;flex-wrap:wrap;align-items:center;gap:4px 28px;overflow-x:auto"
@@ -34,12 +39,28 @@ def potential_formula(potential: Potential) -> str:
     first, *others = _signed_terms(potential.form)
     # A sign at the start of an element has the space of a unary one by default.
     terms = [first, *(term.replace("<mo>", "<mo form='infix'>", 1) for term in others)]
-    shown = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_V_AT_POINT + op("="), *terms))
+    shown = " ".join(f"<math aria-hidden='true'>{part}</math>" for part in (_at_point(potential) + op("="), *terms))
     return f"<span role='math' aria-label='{_spoken(_potential(potential))}'>{shown}</span>"
 
 
 def _potential(potential: Potential) -> str:
-    return _V_AT_POINT + op("=") + _sum(potential.form)
+    return _at_point(potential) + op("=") + _sum(potential.form)
+
+
+def potential_symbol(potential: Potential) -> str:
+    """V, or Φ for the effective potential of a rotating frame."""
+    return "Φ" if potential.rotation else "V"
+
+
+def _at_point(potential: Potential) -> str:
+    return var(potential_symbol(potential)) + _ARGUMENTS
+
+
+def _hamiltonian(potential: Potential) -> dict[str, list[str]]:
+    """H in momenta; in a rotating frame the integral in velocities says it all."""
+    if potential.rotation:
+        return {}
+    return {"Hamiltonian": [var("H") + op("=") + _energy(potential, _momentum_squared("x"), _momentum_squared("y"))]}
 
 
 def _exits(potential: Potential) -> dict[str, list[str]]:
@@ -52,16 +73,27 @@ def _exits(potential: Potential) -> dict[str, list[str]]:
     return {"Escape energy": [escape_energy], "Saddles (x, y) of the potential": saddles}
 
 
-def _motion(axis: str, force: Form) -> str:
-    """Acceleration = −∂V/∂axis, with the derivative written out."""
-    partial = f"<mfrac>{row(op('∂') + var('V'))}{row(op('∂') + var(axis))}</mfrac>"
-    return _above(axis, "¨") + op("=") + row(op("−") + partial) + op("=") + _sum(force)
+def _motion(axis: str, potential: Potential) -> str:
+    """Acceleration = −∂V/∂axis, with the derivative written out, and the Coriolis term in a rotating frame."""
+    force = potential.form.force("xy".index(axis))
+    partial = f"<mfrac>{row(op('∂') + var(potential_symbol(potential)))}{row(op('∂') + var(axis))}</mfrac>"
+    acceleration = _above(axis, "¨") + op("=") + row(_coriolis(axis, potential) + op("−") + partial)
+    return acceleration if potential.rotation else acceleration + op("=") + _sum(force)
 
 
-def _energy(first: str, second: str) -> str:
+def _coriolis(axis: str, potential: Potential) -> str:
+    """2Ωẏ or −2Ωẋ; nothing in a frame that does not rotate."""
+    if not potential.rotation:
+        return ""
+    rate = number(2.0 * abs(potential.rotation))
+    is_negative = (potential.rotation > 0.0) == (axis == "y")
+    return (op("−") if is_negative else "") + rate + _above("y" if axis == "x" else "x", "˙")
+
+
+def _energy(potential: Potential, first: str, second: str) -> str:
     """½(first + second) + V(x, y)."""
     squares = op("(") + first + op("+") + second + op(")")
-    return number(0.5) + squares + op("+") + _V_AT_POINT
+    return number(0.5) + squares + op("+") + _at_point(potential)
 
 
 def _sum(form: Form) -> str:
@@ -128,4 +160,4 @@ def _momentum_squared(axis: str) -> str:
     return f"<msubsup>{var('p')}{var(axis)}{digits(2)}</msubsup>"
 
 
-_V_AT_POINT = var("V") + "<mo stretchy='false'>(</mo>" + var("x") + op(",") + var("y") + "<mo stretchy='false'>)</mo>"
+_ARGUMENTS = "<mo stretchy='false'>(</mo>" + var("x") + op(",") + var("y") + "<mo stretchy='false'>)</mo>"

@@ -82,6 +82,8 @@ def find_well_window(potential: Potential, energy: float) -> Window:
     try:
         return default_window(potential, SPACE, energy)
     except ValueError:
+        if not potential.channels:
+            raise
         return default_window(potential, SPACE, potential.escape_energy)
 
 

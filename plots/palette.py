@@ -1,17 +1,20 @@
 """Colours of the page and their meaning: the palette of the paper and a colour-blind safe one.
 
-A colour has one meaning: channels, crossing classes, escape times, characters, orbits and curves have no colour in common.
+A colour has one meaning: channels, collisions, escape, crossing classes, escape times, characters, orbits and curves have no
+colour in common.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from engine import Certificate, Fate, Regularity, StableManifolds
+from engine import Certificate, Fate, Outcome, Regularity, StableManifolds
+from engine.service import UNRESOLVED, OutcomeKind, outcome_of
 
 
 @dataclass(frozen=True)
@@ -24,12 +27,12 @@ class Entry:
 
 OUTCOMES: dict[Fate, str] = {
     Fate.NOT_COMPUTED: "not decided yet",
-    Fate.FAILED: "failed",
+    Fate.FAILED: UNRESOLVED,
     Fate.OUTSIDE: "outside: starts beyond an exit",
     Fate.FORBIDDEN: "forbidden: no such orbit",
     Fate.BOUNDED: "bounded",
 }
-"""Outcomes in the order of the pixel codes of all images; channels or classes follow."""
+"""Fates that are no ends, in the order of the pixel codes of all images; ends or classes follow."""
 
 CROSSING_CLASSES: tuple[tuple[int, str], ...] = ((0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (11, "> 10"))
 """(fewest crossings, label) of each class."""
@@ -38,6 +41,7 @@ CHARACTERS: dict[Regularity, str] = {
     Regularity.NOT_APPLICABLE: "escapes",
     Regularity.REGULAR: "bounded and regular",
     Regularity.CHAOTIC: "bounded and chaotic",
+    Regularity.NO_SIGN_OF_CHAOS: "bounded, no sign of chaos until t_max",
     Regularity.NOT_JUDGED: "bounded, not judged yet",
 }
 """Classes of the picture of regular and chaotic orbits."""
@@ -49,8 +53,27 @@ DIFFERENCES: tuple[tuple[str, str], ...] = (
 )
 """(label, colour) of each class of pixels of two views."""
 
-MOST_CHANNELS = 8
-"""Exit channels that have a colour."""
+MOST_CHANNELS, MOST_COLLISIONS = 8, 4
+"""Exit channels, and centres, that have a colour."""
+
+# Places of the ends of orbits in `Palette.ends`.
+_PLACES = {
+    OutcomeKind.EXIT: range(MOST_CHANNELS),
+    OutcomeKind.COLLISION: range(MOST_CHANNELS, MOST_CHANNELS + MOST_COLLISIONS),
+    OutcomeKind.ESCAPE: range(MOST_CHANNELS + MOST_COLLISIONS, MOST_CHANNELS + MOST_COLLISIONS + 1),
+}
+
+
+def end_places(outcomes: Sequence[Outcome]) -> list[int]:
+    """The place of each outcome in `Palette.ends`, the same in all systems; those beyond share the last of a kind."""
+    counts: Counter[OutcomeKind] = Counter()
+    places = []
+    for outcome in outcomes:
+        of_kind = _PLACES[outcome.kind]
+        places.append(of_kind[min(counts[outcome.kind], len(of_kind) - 1)])
+        counts[outcome.kind] += 1
+    return places
+
 
 MOST_ORBITS = 5
 """Orbits that have a colour."""
@@ -62,8 +85,8 @@ _NOT_COMPUTED = "#7f9cc855"
 _INTERIOR = "#7aa7d618"
 _FAILED = "#000000"
 
-# For origins 1 to 8: share of white (positive) or black (negative) mixed into the colour of the exit.
-_ORIGIN_TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8)
+# For origins 1 to 13: share of white (positive) or black (negative) mixed into the colour of the end.
+_ORIGIN_TONES = (0.6, 0.0, -0.4, -0.65, 0.35, -0.2, 0.78, -0.8, 0.48, -0.52, 0.2, -0.3, 0.7)
 # For orbits that never entered: share of the colour of bounded orbits.
 _BOUNDED_ORIGIN = 0.65
 
@@ -78,6 +101,10 @@ class Palette:
         Displayed name.
     channels
         Of the exit channels 1 to 8.
+    collisions
+        Of collisions with the centres 1 to 4.
+    escape
+        Of escapes beyond the escape radius.
     bounded
         Of bounded orbits.
     classes
@@ -85,17 +112,19 @@ class Palette:
     times
         Of escape times, from fast to slow: colours at even distances of a scale, or empty for the scale cividis.
     characters
-        Of escaping, regular and chaotic orbits; others have the colour of bounded ones.
+        Of escaping, regular and chaotic orbits, and those without a sign of chaos; others have the colour of bounded ones.
     orbits
         Of the chosen orbits, in order.
     """
 
     name: str
     channels: tuple[str, ...]
+    collisions: tuple[str, ...]
+    escape: str
     bounded: str
     classes: tuple[str, ...]
     times: tuple[str, ...]
-    characters: tuple[str, str, str]
+    characters: tuple[str, str, str, str]
     orbits: tuple[str, ...]
 
     @cached_property
@@ -109,8 +138,13 @@ class Palette:
         return tuple(to_hex(scale(place)) for place in range(256))
 
     @cached_property
+    def ends(self) -> tuple[str, ...]:
+        """Colours of all that orbits can end at."""
+        return (*self.channels, *self.collisions, self.escape)
+
+    @cached_property
     def outcomes(self) -> dict[Fate, Entry]:
-        """Legend of outcomes other than escapes, in the order of the pixel codes."""
+        """Legend of fates that are no ends, in the order of the pixel codes."""
         colours = (_NOT_COMPUTED, _FAILED, _OUTSIDE, _FORBIDDEN, self.bounded)
         return {fate: Entry(label, colour) for (fate, label), colour in zip(OUTCOMES.items(), colours, strict=True)}
 
@@ -130,32 +164,45 @@ class Palette:
         return [Entry(label, colour) for label, colour in zip(CHARACTERS.values(), (*self.characters, self.bounded), strict=True)]
 
     def passage_colour(self, origin: int, fate: int) -> str:
-        """Colour of orbits from a channel to a channel, 0 for none: the hue shows the exit, the tone the origin."""
-        colour = self.channels[fate - 1] if fate else self.bounded
+        """Colour of orbits from an end to an end, 1 for the first, 0 for none: the hue shows the fate, the tone the origin."""
+        colour = self.ends[fate - 1] if fate else self.bounded
         if origin == 0:
             return _mixed(colour, self.bounded, _BOUNDED_ORIGIN)
         tone = _ORIGIN_TONES[origin - 1]
         return _mixed(colour, "#ffffff" if tone > 0 else "#000000", abs(tone))
 
-    def channel_entries(self, channels: int) -> list[Entry]:
-        """Legend of a potential's channels."""
-        return [Entry(f"channel {k + 1}", self.channels[k]) for k in range(channels)]
+    def entry(self, fate: int, outcomes: Sequence[Outcome]) -> Entry:
+        """Label and colour of a fate; `outcomes` are those of the potential, channels where they are not known."""
+        if fate < 1:
+            return self.outcomes[Fate(fate)]
+        ends = [outcome_of(k, outcomes) for k in range(1, fate + 1)]
+        return Entry(ends[-1].label, self.ends[end_places(ends)[-1]])
+
+    def end_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
+        """Labels and colours of a potential's outcomes."""
+        return [self.entry(fate, outcomes) for fate in range(1, len(outcomes) + 1)]
+
+    def legend_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
+        """Those of the outcomes that occur."""
+        return [entry for entry, outcome in zip(self.end_entries(outcomes), outcomes, strict=True) if outcome.occurs]
 
     def manifold_entries(self, manifolds: StableManifolds) -> list[Entry]:
         """Legend of stable manifolds."""
         channels = sorted({arc.channel for arc in manifolds.arcs})
         return [Entry(f"stable manifold of Lyapunov orbit {channel}", self.channels[channel - 1]) for channel in channels]
 
-    def passage_entries(self, channels: int) -> list[Entry]:
-        """Legend of origin and exit, as a list."""
-        pairs = ((origin, fate) for origin in range(channels + 1) for fate in range(1, channels + 1))
-        names = ["inside", *map(str, range(1, channels + 1))]
-        return [Entry(f"{names[origin]} to {fate}", self.passage_colour(origin, fate)) for origin, fate in pairs]
+    def passage_entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
+        """Legend of origin and fate, as a list."""
+        ends = {0: "inside"} | {
+            place + 1: short_label(end.label) for place, end in zip(end_places(outcomes), outcomes, strict=True) if end.occurs
+        }
+        pairs = ((origin, fate) for origin in ends for fate in ends if fate)
+        return [Entry(f"{ends[origin]} to {ends[fate]}", self.passage_colour(origin, fate)) for origin, fate in pairs]
 
     @cached_property
     def fate_colours(self) -> list[str]:
         """Colours of the pixel codes of the basins."""
-        return [*self._outcome_colours, *self.channels]
+        return [*self._outcome_colours, *self.ends]
 
     @cached_property
     def crossing_colours(self) -> list[str]:
@@ -174,24 +221,29 @@ class Palette:
 
     @cached_property
     def passage_colours(self) -> list[str]:
-        """Colours of the pixel codes of origins and exits: by origin, none first, then by exit."""
-        ends = range(MOST_CHANNELS + 1)
+        """Colours of the pixel codes of origins and fates: by origin, none first, then by fate."""
+        ends = range(len(self.ends) + 1)
         return [*self._outcome_colours, *(self.passage_colour(origin, fate) for origin in ends for fate in ends)]
 
     @cached_property
     def background_colours(self) -> list[str]:
         """Colours of the pixel codes under the escape times, which cover escaped pixels."""
-        return [*self._outcome_colours, *([_FORBIDDEN] * len(self.channels))]
+        return [*self._outcome_colours, *([_FORBIDDEN] * len(self.ends))]
 
     @cached_property
     def region_colours(self) -> list[str]:
         """Colours of the pixel codes of the picture of the exits, in which the interior has one colour."""
         plain = [self.outcomes[fate].colour if fate in (Fate.OUTSIDE, Fate.FORBIDDEN) else _INTERIOR for fate in OUTCOMES]
-        return [*plain, *([_INTERIOR] * len(self.channels))]
+        return [*plain, *([_INTERIOR] * len(self.ends))]
 
     @property
     def _outcome_colours(self) -> list[str]:
         return [entry.colour for entry in self.outcomes.values()]
+
+
+def short_label(label: str) -> str:
+    """A label where there is little room: of a channel its number, and what stands before a colon."""
+    return label.removeprefix("channel ").partition(":")[0]
 
 
 def rgba(colours: Sequence[str]) -> np.ndarray:
@@ -208,10 +260,12 @@ def _mixed(colour: str, other: str, share: float) -> str:
 PAPER = Palette(
     name="as in the paper",
     channels=("#2ca02c", "#d62728", "#1f4fd8", "#ff9d1c", "#8e44ad", "#8c564b", "#e377c2", "#17becf"),
+    collisions=("#783060", "#a8a878", "#780000", "#483030"),
+    escape="#d8c0c0",
     bounded="#8f8f8f",
     classes=("#e2e3fe", "#7db3f4", "#0787b6", "#005769", "#002a2d"),
     times=("#ffe0d6", "#fb9a80", "#dd4a6a", "#8b2b8c", "#3d1f7a", "#150a3c"),
-    characters=("#f4ead2", "#40e8e6", "#d81fa4"),
+    characters=("#f4ead2", "#40e8e6", "#d81fa4", "#a0c0b0"),
     orbits=("#c30066", "#6987e7", "#43bea5", "#fa8f63", "#4b6d00"),
 )
 """Channels 1 to 4 green, red, blue, orange; crossings light to dark blue; fast escapes light red, slow ones dark."""
@@ -219,10 +273,12 @@ PAPER = Palette(
 COLOUR_BLIND_SAFE = Palette(
     name="colour-blind safe",
     channels=("#009e73", "#d55e00", "#0072b2", "#f0e442", "#cc79a7", "#56b4e9", "#e69f00", "#3b3b3b"),
+    collisions=("#3000d8", "#a83000", "#607878", "#606048"),
+    escape="#90d8a8",
     bounded="#a6a6a6",
     classes=("#f8e1ff", "#dc9af4", "#93759c", "#703783", "#381543"),
     times=(),
-    characters=("#f3efe2", "#87e9f1", "#ff234a"),
+    characters=("#f3efe2", "#87e9f1", "#ff234a", "#20c0d8"),
     orbits=("#af2593", "#00c700", "#8e5700", "#99a7f0", "#2b6e60"),
 )
 """Channels after Okabe and Ito, crossings light to dark violet, times from cividis."""

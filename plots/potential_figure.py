@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from engine import Potential, Window
-from engine.service import SPACE, trace_equipotentials
+from engine.service import SPACE, critical_energies, depth_levels, trace_equipotentials
 from plots.map_figure import draw_curve, draw_limits
 from plots.palette import LIGHT, Palette
 
@@ -19,16 +19,15 @@ _ENLARGED = 1.35
 
 def draw_equipotentials(axes: Axes, potential: Potential, window: Window) -> None:
     """Draw equipotentials of a potential with exits in axes with equal scales."""
-    for pieces in trace_equipotentials(potential, SPACE, [potential.energy_at(level) for level in _LEVELS], window):
+    for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _LEVELS), window):
         draw_pieces(axes, pieces, LIGHT.quiet, 0.6)
-    (critical,) = trace_equipotentials(potential, SPACE, [potential.escape_energy], window)
-    draw_pieces(axes, critical, LIGHT.critical_equipotential, 1.6)
+    for pieces in trace_equipotentials(potential, SPACE, critical_energies(potential), window):
+        draw_pieces(axes, pieces, LIGHT.critical_equipotential, 1.6)
 
 
 def draw_well(axes: Axes, potential: Potential, energy: float, window: Window, palette: Palette) -> None:
     """Draw equipotentials, zero-velocity curve and Lyapunov orbits of an energy in shares of a window."""
-    levels = [potential.energy_at(level) for level in _INNER_LEVELS]
-    for pieces in trace_equipotentials(potential, SPACE, levels, window):
+    for pieces in trace_equipotentials(potential, SPACE, depth_levels(potential, _INNER_LEVELS), window):
         draw_curve(axes, pieces, window, colors=LIGHT.equipotential, linewidths=0.6)
     draw_limits(axes, potential, SPACE, energy, window, palette.channels)
 

@@ -18,6 +18,7 @@ from engine import (
     BirkhoffDigits,
     Curves,
     DecayLaws,
+    DeepMap,
     EscapeFlux,
     EscapeMap,
     EscapeStatistics,
@@ -48,7 +49,7 @@ from engine.service import (
 )
 from plots.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
-from plots.image_columns import passage_column
+from plots.image_columns import fate_codes, passage_column
 from plots.map_analyses import MapAnalyses
 from plots.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, picture_entries, show_window
 from plots.map_images import TITLES
@@ -101,7 +102,7 @@ def to_holoviews(result: Result) -> Any:
     require_package("holoviews", "page")
     import holoviews as hv
 
-    if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
+    if isinstance(result, EscapeMap | DeepMap | RegularityMap | TrustMap | OriginFateMap):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     table = result.to_pandas()
     if result.row_dimension:
@@ -146,6 +147,16 @@ def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str =
     draw_picture(panel, result, picture, palette)
     if entries := picture_entries(result, picture, palette, MapAnalyses()):
         _add_legend_below(panel, entries)
+
+
+@_draw.register
+def _draw_deep_map(result: DeepMap, axes: Axes, palette: Palette) -> None:
+    half, outcomes = 0.5 * result.width, result.spec.outcomes
+    pixels = rgba(palette.fate_colours)[fate_codes(result.fate, outcomes)]
+    axes.imshow(pixels, extent=(-half, half, -half, half), origin="lower", interpolation="none")
+    abscissa, ordinate = result.spec.plane.axis_symbols
+    label_axes(axes, f"{abscissa} from the centre", f"{ordinate} from the centre")
+    axes.legend(handles=patches(palette.legend_entries(outcomes)), fontsize="small")
 
 
 def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:
@@ -204,7 +215,7 @@ def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "pat
 def _draw_sampled_orbits(result: SampledOrbits, axes: Axes, palette: Palette) -> None:
     entries = []
     for fate in np.unique(result.fate).tolist():
-        entries.append(palette.channel_entries(fate)[-1] if fate > 0 else palette.outcomes[fate])
+        entries.append(palette.entry(fate, result.outcomes))
         # A NaN ends each path.
         x, y = (np.pad(path[result.fate == fate], ((0, 0), (0, 1)), constant_values=np.nan) for path in (result.x, result.y))
         axes.plot(x.ravel(), y.ravel(), color=entries[-1].colour, linewidth=0.8)
@@ -268,7 +279,7 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 @_draw.register
 def _draw_curves(result: Curves, axes: Axes, palette: Palette) -> None:
-    draw_shares(axes, result.values, result.shares, result.spec.potential)
+    draw_shares(axes, result.values, result.shares, result.spec.potential, outcomes=result.spec.outcomes)
     label_axes(axes, result.spec.symbol, "percentage of starts")
     add_panel_legend(axes, "center right")
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** What only the browser has: its history, keys pressed anywhere on the page, theme, touch, the clipboard. */
+/** What only the browser has: its history and width, keys pressed anywhere on the page, theme, touch, the clipboard. */
 
 const TYPING = `textarea, select, [contenteditable]:not([contenteditable=false]), [role=textbox], [role=searchbox],
   [role=combobox], [role=listbox], [role=menu], [role=menubar], [role=spinbutton], [role=grid], [role=tree],
@@ -123,6 +123,14 @@ export function render({model, el}) {
     model.send_msg({link: window.location.search, entry, steps})
   }
   window.addEventListener("popstate", tell_entry)
+  // The stylesheet has this variable in the layout of a phone only.
+  const tell_if_narrow = () => {
+    const frame = document.querySelector(".frame")
+    if (frame === null || getComputedStyle(frame).getPropertyValue("--map-side") === "") return
+    window.removeEventListener("resize", tell_if_narrow)
+    model.send_msg({narrow: true})
+  }
+  window.addEventListener("resize", tell_if_narrow)
   // Buttons in the frames of the pictures.
   const enlarge = (/** @type {Event} */ event) => {
     const button = event.composedPath().find(node => node instanceof HTMLElement && node.matches("button[data-picture]"))
@@ -138,6 +146,7 @@ export function render({model, el}) {
     document.removeEventListener("touchstart", hold_page)
     document.removeEventListener("click", enlarge)
     window.removeEventListener("popstate", tell_entry)
+    window.removeEventListener("resize", tell_if_narrow)
     document.removeEventListener("keydown", listen)
     document.removeEventListener("themechange", tell_theme)
   })
@@ -152,4 +161,5 @@ export function render({model, el}) {
     else history.go(name === "back" ? -1 : 1)
   })
   if (matchMedia("(pointer: coarse)").matches) model.send_msg({touch: true})
+  tell_if_narrow()
 }

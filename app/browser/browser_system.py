@@ -45,7 +45,8 @@ class BrowserSystem:
 
 def system_key(potential: Potential) -> str:
     """A text that is different for each potential."""
-    return hashlib.sha256(repr(potential.form).encode()).hexdigest()[:16]
+    contents = potential.form, potential.rotation, potential.centres, potential.escape_radius
+    return hashlib.sha256(repr(contents).encode()).hexdigest()[:16]
 
 
 def make_browser_system(potential: Potential, low: float, high: float, *, execution: Execution) -> BrowserSystem:
@@ -56,21 +57,25 @@ def make_browser_system(potential: Potential, low: float, high: float, *, execut
 
 
 def _tabulate_windows(potential: Potential, plane: Slice, ends: tuple[float, float], execution: Execution) -> dict[str, Any]:
-    """Default windows up to the highest energy that has one."""
-    low, high = ends
-    escape = min(max(potential.escape_energy, low), high)
-    energies = np.unique(
-        [
-            *np.linspace(low, escape, _ENERGIES_BELOW),
-            *(escape + (high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2),
-        ]
-    ).tolist()
-    windows: list[list[float]] = []
-    for energy in energies:
+    """Default windows from the lowest to the highest energy that have one."""
+    windows: dict[float, list[float]] = {}
+    for energy in _energies(potential, *ends).tolist():
         execution.raise_if_cancelled()
         try:
             window = default_window(potential, plane, energy)
         except ValueError:
-            break
-        windows.append([window.x_low, window.x_high, window.ordinate_low, window.ordinate_high])
-    return {"energies": energies[: len(windows)], "windows": windows}
+            if windows:
+                break
+            continue
+        windows[energy] = [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high]
+    return {"energies": list(windows), "windows": list(windows.values())}
+
+
+def _energies(potential: Potential, low: float, high: float) -> np.ndarray:
+    """Energies at which windows are tabulated, rising; with an escape radius there is no escape energy."""
+    if potential.escape_radius is not None:
+        return np.linspace(low, high, _ENERGIES_BELOW + _ENERGIES_ABOVE)
+    escape = min(max(potential.escape_energy, low), high)
+    below = np.linspace(low, escape, _ENERGIES_BELOW)
+    above = escape + (high - escape) * np.linspace(0.0, 1.0, _ENERGIES_ABOVE) ** 2
+    return np.unique([*below, *above])

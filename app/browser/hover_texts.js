@@ -6,11 +6,24 @@
  */
 
 /**
+ * How the orbit of a pixel ends; "ends" are the words of a map on the codes that follow those of the names.
+ *
+ * @param {number} code
+ * @param {string[]} names
+ * @param {Columns} columns
+ * @returns {string}
+ */
+export function fateName(code, names, {ends}) {
+  return names[code] || ends?.[0][code - names.length] || names[0]
+}
+
+/**
  * What is known of a pixel, in lines. Columns of layers that are off, and of maps that they are not computed for, have other sizes.
  *
  * @param {number} pixel
  * @param {{maps: Columns, doubts: Columns, compared: Columns}} columns  of the pictures, of the layer of trust, and of the other view
- * @param {{bounded: number, first: number, firstCertificate: number, ends: number}} codes  the first of each kind, and their ends
+ * @param {{bounded: number, first: number, firstCertificate: number, ends: number, channels: number}} codes  the first of each kind, and
+ *   the numbers of ends and of channels
  * @param {{certificates: string[], characters: string[], trusts: string[], fates: string[]}} words  by code
  */
 export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
@@ -28,13 +41,19 @@ export function pixelDetails(pixel, {maps, doubts, compared}, codes, words) {
       ? `${crossings} upward ${crossings === 1 ? "crossing" : "crossings"} of y = 0`
       : words.certificates[maps.crossing_class[0][pixel] - codes.firstCertificate],
     words.characters[known(maps.character[0]) - codes.first],
-    passage >= 0 && (origin > 0 ? `entered through channel ${origin}` : "never entered: inside since −t_max"),
+    passage >= 0 && describeOrigin(origin, codes.channels, maps),
     words.trusts[known(doubts.trust[0])],
     known(maps.difference[0]) >= codes.first &&
       isSamePlace(maps, compared) &&
-      `other view: ${words.fates[known(compared.fate[0])]}`,
+      `other view: ${fateName(known(compared.fate[0]), words.fates, compared)}`,
   ]
   return lines.filter(line => line).join("\n")
+}
+
+/** Where an orbit was before. @type {(origin: number, channels: number, columns: Columns) => string} */
+function describeOrigin(origin, channels, {ends}) {
+  if (origin > channels) return `backward in time it ${ends[0][origin - 1]}`
+  return origin > 0 ? `entered through channel ${origin}` : "never entered: inside since −t_max"
 }
 
 /** Whether two images have the same window. @type {(one: Columns, other: Columns) => boolean} */

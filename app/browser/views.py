@@ -12,6 +12,7 @@ from plots.image_columns import pixel_coding
 
 def describe_view(state: ViewState) -> dict[str, Any]:
     """The view as `ServerView` in modules/preview.js describes it."""
+    outcomes = state.potential.outcomes_at(state.energy)
     return {
         "system": system_key(state.potential),
         "plane": ";".join(filter(None, write_slice(state.plane))),
@@ -20,6 +21,7 @@ def describe_view(state: ViewState) -> dict[str, Any]:
         "energy": state.energy,
         "home": state.window is None,
         "resolution": state.resolution,
-        "colours": list(state.colours.channels),
-        "coding": pixel_coding(),
+        "colours": [entry.colour for entry in state.colours.end_entries(outcomes)],
+        "labels": [end.label.replace("channel", "exit", 1) for end in outcomes],
+        "coding": pixel_coding(outcomes),
     }

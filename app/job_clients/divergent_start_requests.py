@@ -45,4 +45,4 @@ class DivergentStartRequests:
         else:
             added = self._state.add_start((twin.x, twin.ordinate))
             full = "" if added else " Remove an orbit, and search again to see it."
-            self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate)}{full}")
+            self._notify(f"The twin starts {twin.distance:.2g} away. {describe_fate(twin.fate, twin.outcomes)}{full}")

@@ -145,6 +145,7 @@ class Explorer:
                 navigate=locked(self.links.navigate),
                 dark=locked(self.set_dark),
                 touch=locked(self._begin_touch),
+                narrow=locked(self.maps.grid.offer_choice),
                 copied=locked(self._copied),
                 enlarge=locked(self._enlarge),
             ),
@@ -179,6 +180,7 @@ class Explorer:
         watch(lambda event: self._set_palette(), "palette")
         watch(lambda event: self.maps.lock_times(event.new), "lock_times")
         watch(lambda event: self.toolbar.follow(zoomed=event.new is not None), "window")
+        watch(self._go_to_window, [*SYSTEM, "plane", "window"])
         watch(lambda event: self.gallery.invite(on=not event.new), "starts")
         watch(self._remove_box, [*SYSTEM, "plane", "window", "box"])
         watch(lambda event: self._show_box(event.new), "box")
@@ -247,6 +249,17 @@ class Explorer:
     def _zoom_to(self, window: Window | None) -> None:
         self.links.history.begin_gesture()
         self._show_window(window)
+
+    def _go_to_window(self, *events: Any) -> None:
+        """Show the window of the state before its map is there, as a late report of an earlier move would count as a new one."""
+        if any(event.name != "window" for event in events):
+            # Another picture brings its window with it.
+            return
+        try:
+            self.maps.ranges.go_to(self._window())
+        except ValueError:
+            # The map brings a window that is not known yet.
+            return
 
     def _show_window(self, window: Window | None) -> None:
         """Show another window; where double precision ends, the last one stays."""

@@ -151,6 +151,9 @@ class PotentialPresenter:
         before, energies = self._state.reviewed, reviewed.energies
         if reviewed.system.case not in (TYPED, before.system.case) or energies is None:
             return None
+        if before.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
+            # Without exits there is no depth.
+            return self._state.energy if energies.low <= self._state.energy <= energies.high else None
         depth = before.review.escape_energy - before.potential.bottom
         multiple = (self._state.energy - before.potential.bottom) / depth
         energy = round(float(reviewed.potential.energy_at(multiple)), energies.decimals + 1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import panel as pn
@@ -12,7 +12,7 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.help_texts import title_with_help
 from app.state.view_state import SYSTEM, Analysis, ViewState
-from app.state.watched_starts import WatchedStarts
+from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
 from engine import EscapeFlux
 from engine.service import JobSubmitter, flux_job, is_ready_for_maps
@@ -27,7 +27,7 @@ class WatchPresenter:
         self._player: EnsemblePlayer | None = None
         self._flux = LatestRequest(jobs, self._show_flux, lambda sentence: None, locked)
         watch = state.param.watch
-        watch(lambda *events: self._follow(), ["watched", "starts", "chosen", "box"])
+        watch(lambda *events: self._follow(), [*SYSTEM, "watched", "starts", "chosen", "box"])
         watch(lambda *events: self.request_rate(), [*SYSTEM, "plane", "energy", "analysis"])
 
     def build(self) -> list[pn.viewable.Viewable]:
@@ -55,8 +55,12 @@ class WatchPresenter:
     def _follow(self) -> None:
         if self._player is not None:
             watched, start, box = self._state.watched, self._state.chosen_start, self._state.box
+            places = places_for(self._state.potential)
+            if watched.where not in places:
+                watched = replace(watched, where=StartsFrom.WELL)
             edges = [] if box is None else list(vars(box).values())
-            self._player.param.update(**asdict(watched), point=[] if start is None else list(start), box=edges)
+            shown = {"places": {str(where): words for where, words in places.items()}, **asdict(watched)}
+            self._player.param.update(**shown, point=[] if start is None else list(start), box=edges)
 
     def _choose(self, message: Any) -> None:
         # Messages come from a browser: ignore what is not expected.

@@ -37,6 +37,12 @@ GLOSSARY: Mapping[str, str] = MappingProxyType(
             "The unstable periodic orbit over a saddle of the potential. An orbit that crosses it outward never "
             "returns: it is the exit."
         ),
+        "Jacobi integral": (
+            "The energy in a frame that rotates: half the square of the velocity, plus the effective potential Φ, which contains "
+            "the centrifugal force."
+        ),
+        "centre": "A body: an orbit that enters the disc around it has collided with it.",
+        "escape radius": "A distance from the origin beyond which orbits have escaped, in place of exits over saddles.",
         "direct escapes": "Orbits that escape without crossing y = 0 upward.",
         "Basin entropy": (
             "How mixed the fates of the starts are in small boxes, by Gibbs's formula; zero where all fates are the same."

@@ -11,12 +11,13 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
         "well": (
             "The zero-velocity curve V = h bounds the places that an orbit of this energy can reach; above the escape energy "
             "it has a gap at each saddle of the potential. An unstable periodic orbit, the Lyapunov orbit, spans each gap: an "
-            "orbit that crosses it outward never returns, so it marks the exit. The orbit under the cursor and the chosen "
-            "orbits are drawn up to their exits, very long ones as density images. A regular orbit fills a regular pattern, "
-            "a chaotic one does not."
+            "orbit that crosses it outward never returns, so it marks the exit; in a rotating frame some do, and orbits also "
+            "end at bodies and at an escape radius. The orbit under the cursor and the chosen orbits are drawn up to their "
+            "ends, very long ones as density images. A regular orbit fills a regular pattern, a chaotic one does not."
         ),
         "basins": (
-            "Each pixel is a start, and its colour shows the exit channel through which its orbit escapes. Inside a large "
+            "Each pixel is a start, and its colour shows the exit channel through which its orbit escapes, the body with which "
+            "it collides, or that it escapes beyond a radius. Inside a large "
             "region of one colour all neighbours escape through the same exit. Elsewhere the colours are mixed on every "
             "scale: however close two starts are, they may escape through different exits. Bounded orbits have not escaped by "
             "t_max; many of them never will; dots are passages of the chosen orbits through the plane."
@@ -33,9 +34,10 @@ HELP_TEXTS: Mapping[str, str] = MappingProxyType(
             "escape time, and they become thinner towards a basin boundary."
         ),
         "characters": (
-            "Bounded orbits are classified as regular or chaotic by SALI, computed until t_max. Regular orbits form islands, "
-            "which no orbit enters or leaves. A chaotic orbit that has not escaped is usually sticky: it stays near the edge "
-            "of an island and may escape long after t_max. Escaping orbits are not classified."
+            "A bounded orbit is regular if averages over it agree as on a torus, and chaotic if SALI falls by t_max; "
+            "otherwise it shows no sign of chaos until t_max. Regular orbits form islands, which no orbit enters or leaves. A "
+            "chaotic orbit that has not escaped is usually sticky: it stays near the edge of an island and may escape long "
+            "after t_max. Escaping orbits are not classified."
         ),
         "origins": (
             "Each orbit is integrated in both directions of time. The hue shows the exit through which it escapes, as in the "

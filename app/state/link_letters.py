@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from engine import System
-from engine.service import PARAMETER_RANGES, checked_letter_value, formula_letters
+from engine.service import CATALOGUE, RANGES, TYPED, checked_letter_value, formula_letters
 
 LETTERS = "letters"
 """Parameter with the values of the letters of a formula, such as a:1.5,b:-2."""
@@ -14,7 +14,7 @@ LETTERS = "letters"
 def read_letters(text: str) -> dict[str, float]:
     """Values of letters from "a:1.5,b:-2"."""
     pairs = [pair.split(":") for pair in text.split(",")]
-    if any(name in PARAMETER_RANGES for name, *_ in pairs):
+    if any(name in RANGES for name, *_ in pairs):
         raise ValueError
     return {name: checked_letter_value(name, float(value)) for name, value in pairs}
 
@@ -27,14 +27,22 @@ def letters_in_link(system: System) -> dict[str, str]:
 
 def drop_unknown_letters(values: dict[str, Any]) -> list[str]:
     """Drop values of letters that the formula does not have, and return a message for them."""
-    try:
-        letters = formula_letters(values.get("formula", ""))
-    except ValueError:
-        letters = ()
+    letters = _letters(values)
     given = values.get("parameters", {})
-    unknown = [name for name in given if name not in PARAMETER_RANGES and name not in letters]
+    unknown = [name for name in given if name not in RANGES and name not in letters]
     if not unknown:
         return []
     values["parameters"] = {name: value for name, value in given.items() if name not in unknown}
     legal = f"letters of the formula: {', '.join(letters)}" if letters else "a formula with letters"
     return [f"Ignored the values of letters that the formula does not have: choose {legal}."]
+
+
+def _letters(values: dict[str, Any]) -> tuple[str, ...]:
+    """The letters of a known system or of a formula; none of one that is not understood."""
+    case = values.get("case", TYPED)
+    if case != TYPED:
+        return CATALOGUE[case].adjustable
+    try:
+        return formula_letters(values.get("formula", ""))
+    except ValueError:
+        return ()

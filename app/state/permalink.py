@@ -22,10 +22,11 @@ from app.state.view_state import (
     ViewState,
     allowed_resolutions,
     allowed_t_max,
+    longest_first_t_max,
 )
 from app.state.watched_starts import COUNTS, DEFAULT_STARTS, StartsFrom, WatchedStarts
 from engine import POTENTIALS, Plane, Slice, System, Window
-from engine.service import LARGEST_NUMBER, LARGEST_VALUE, LONGEST_TEXT, PARAMETER_RANGES, TYPED, read_slice, write_slice
+from engine.service import LARGEST_NUMBER, LARGEST_VALUE, LONGEST_TEXT, RANGES, TYPED, read_slice, write_slice
 from plots.map_images import ON_DEMAND
 from plots.palette import MOST_ORBITS, PALETTES
 from plots.time_scale import TimeScale
@@ -131,7 +132,7 @@ def _system_in_link(system: System) -> dict[str, str]:
     return {
         "case": system.case,
         **({"V": system.formula} if system.case == TYPED else {}),
-        **{name: repr(value) for name, value in system.well_parameters.items()},
+        **{name: repr(value) for name, value in system.parameters.items() if name in RANGES},
         **letters_in_link(system),
     }
 
@@ -212,7 +213,8 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
         The review of their `linked_system`, which is not refused.
     """
     lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.shown_energies.first
-    shown = {"energy": first} | {name: value for name, value in values.items() if name not in SYSTEM}
+    t_max = min(ViewState.param.t_max.default, longest_first_t_max(reviewed.potential))
+    shown = {"energy": first, "t_max": t_max} | {name: value for name, value in values.items() if name not in SYSTEM}
     if shown["energy"] > lowest:
         return shown, []
     problem = f"Ignored h={shown['energy']:.6g}: choose an energy above {lowest:.6g}, such as {first:.6g}."
@@ -308,7 +310,7 @@ def _listed(choices: Iterable[str]) -> str:
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
 _PLANE, _FIX = "plane", "fix"
 _COMPARED = "with_"
-_DESCRIBES_VIEW = ("case", "V", *PARAMETER_RANGES, LETTERS, _PLANE, _FIX)
+_DESCRIBES_VIEW = ("case", "V", *RANGES, LETTERS, _PLANE, _FIX)
 _SWITCH = {"yes": True, "no": False}
 _ANALYSES = {analysis.value: analysis for analysis in Analysis}
 _PICTURES = {name: name for name in PICTURES}
@@ -322,7 +324,7 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "V": ("formula", str, f"a formula in x and y of at most {LONGEST_TEXT} characters"),
     **{
         name: ("parameters", _parameter(name, low, high), f"a number from {low:g} to {high:g}")
-        for name, (low, high) in PARAMETER_RANGES.items()
+        for name, (low, high) in RANGES.items()
     },
     LETTERS: (
         "parameters",

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+import numpy as np
+
 from app.state.view_state import DEFAULT_SIDE, Analysis
 from app.state.watched_starts import DEFAULT_STARTS, StartsFrom, WatchedStarts
 from engine import Coordinate, ParameterAxis, Plane, Slice, System, Window
 
-GROUPS = ("The paper", "Places", "Explanations", "Other slices")
-"""Kinds of figures in the paper, details found by zooming, analyses that explain both, and slices that are not in the paper."""
+GROUPS = ("The paper", "Places", "Explanations", "Other slices", "Other systems")
+"""Kinds of figures in the paper, details found by zooming, analyses that explain both; slices and systems not in the paper."""
 
 _DESCRIPTION = ("key", "title", "caption", "group", "picture", "invitation")
 
@@ -61,7 +63,10 @@ class Preset:
         return {part.name: getattr(self, part.name) for part in fields(self) if part.name not in _DESCRIPTION}
 
 
-_PAPER, _PLACES, _EXPLANATIONS, _SLICES = GROUPS
+_PAPER, _PLACES, _EXPLANATIONS, _SLICES, _SYSTEMS = GROUPS
+
+# Launched at right angles to the radius, against the rotation of the frame.
+_RETROGRADE = Slice(Coordinate.X, Coordinate.Y, Coordinate.SPEED, 1, ((Coordinate.BETA, -0.5 * np.pi),))
 
 # fmt: off
 PRESETS: tuple[Preset, ...] = (
@@ -125,9 +130,9 @@ PRESETS: tuple[Preset, ...] = (
     Preset(
         key="regular-or-chaotic", title="Regular or chaotic", group=_PAPER, picture="characters", judge=True, resolution=112,
         case="III", plane=Plane.X_PX, energy=0.26, starts=((0.4, 0.2), (0.58, 0.0), (0.05, 0.58)),
-        caption="SALI separates two kinds of bounded orbits. Cyan orbits move on invariant tori; magenta ones are chaotic, in "
-        "thin layers between the tori, where SALI decreases to rounding error. The analysis takes a minute, and the "
-        "picture is updated meanwhile.",
+        caption="Cyan orbits move on invariant tori, as averages over them show; magenta ones are chaotic, in thin layers "
+        "between the tori, where SALI decreases to rounding error. A few pale ones show neither until t_max. The analysis takes "
+        "a minute, and the picture is updated meanwhile.",
     ),
     Preset(
         key="super-sticky", title="A sticky orbit", group=_PAPER, picture="times",
@@ -212,12 +217,12 @@ PRESETS: tuple[Preset, ...] = (
         "because an orbit escapes at different times in the future and in the past.",
     ),
     Preset(
-        key="owl", title="Closed exits", group=_PLACES, picture="characters", judge=True, t_max=1e4,
+        key="owl", title="Closed exits", group=_PLACES, picture="characters", judge=True, resolution=112,
         invitation="Islands in a chaotic sea",
         case="I", plane=Plane.X_PX, energy=0.12, starts=((0.12, 0.155), (-0.1, 0.24), (0.0, 0.28), (0.2, 0.0)),
         caption="Below the escape energy of 1/8 no orbit escapes, but there is chaos (magenta) before the exits open. The cyan "
         "islands in it form chains: the first orbit visits three islands in turn, the second alternates between two. "
-        "The analysis takes half a minute.",
+        "The analysis takes a minute.",
     ),
     Preset(
         key="feather", title="Bands of crossings", group=_PLACES, picture="crossings",
@@ -326,6 +331,45 @@ PRESETS: tuple[Preset, ...] = (
         starts=((0.1, 0.7), (0.1, 1.5), (0.55, 1.2), (-0.5, 1.9)),
         caption="The energy stays the same, and upward grows ε, the strength of the perturbation. Where 1/(8 ε²) falls below the "
         "energy, the exits open: the islands of bounded orbits shrink, split at resonances and are gone.",
+    ),
+    Preset(
+        key="two-stars", title="Between two stars", group=_SYSTEMS, picture="basins",
+        case="Copenhagen", plane=_RETROGRADE, energy=-1.6, t_max=1e3, window=Window(-2.0, 2.0, -2.0, 2.0),
+        starts=((0.3, 0.1), (0.45, 0.5), (1.5, 0.5), (-0.7, 0.0)),
+        caption="Two equal stars go around each other, and the picture turns with them. A light body starts against this "
+        "rotation: an eighth of the bodies fall into each star, most leave the picture for good, and those in the grey "
+        "islands stay with one star. The white places need more energy.",
+    ),
+    Preset(
+        key="moon", title="Around the Moon", group=_SYSTEMS, picture="basins",
+        case="Earth-Moon", plane=_RETROGRADE, energy=-1.095, t_max=1e2, starts=((0.16, -0.03), (-0.14, 0.02), (0.05, 0.0)),
+        caption="The Moon is in the middle, the Earth far to the left. Above the energies of L1 and L2 two necks are open. A "
+        "retrograde start near the Moon stays; further out half of all starts fall onto the Moon, and few find a neck.",
+    ),
+    Preset(
+        key="planet", title="A planet and its star", group=_SYSTEMS, picture="basins",
+        case="Hill", plane=Plane.X_PX, energy=-2.0, t_max=1e2, starts=((0.4, 0.0), (0.3, 1.0), (0.2, 2.0), (-0.2, 0.0)),
+        caption="Hill's problem: the surroundings of a planet that goes around a far star. One body leaves on each side, one "
+        "falls into the planet, and one circles the planet against the rotation, which holds best: the island at x < 0.",
+    ),
+    Preset(
+        key="cluster", title="Stars leave a cluster", group=_SYSTEMS, picture="basins",
+        case="Star cluster", plane=Plane.X_PX, energy=-1.75, t_max=1e3, starts=((0.5, 0.5), (0.1, 2.0), (-0.2, 0.0)),
+        caption="A star cluster in the tide of its galaxy, seen in the frame that turns with it. The Coriolis force makes left "
+        "and right different: retrograde stars, at x < 0, fill a large island, prograde ones a small one. About a third leave "
+        "on each side.",
+    ),
+    Preset(
+        key="bar", title="The ends of a bar", group=_SYSTEMS, picture="basins",
+        case="Barred galaxy", plane=Plane.X_PX, energy=-3200.0, t_max=1e2, starts=((5.0, -20.0), (5.0, 0.0), (-2.0, 0.0)),
+        caption="A barred galaxy, after Jung and Zotos (2016): stars leave over both ends of the bar and feed its spiral arms. A "
+        "quarter of these starts is kept until t = 100.",
+    ),
+    Preset(
+        key="spindle", title="A logarithmic bar", group=_SYSTEMS, picture="basins",
+        case="Logarithmic bar", plane=Plane.X_PX, energy=-0.44, t_max=1e3, starts=((0.7, 0.1), (0.3, 0.8), (-0.2, 0.0)),
+        caption="The potential of a flat rotation curve, flattened and turning. Most starts are kept by islands; the others "
+        "leave at the ends of the long axis.",
     ),
 )
 """All presets in the order of the page."""

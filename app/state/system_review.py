@@ -47,7 +47,8 @@ class SystemReview:
 
     def energy_on(self, plane: Slice, energy: float) -> float | tuple[float, float]:
         """The energy of a map on a plane: `energy`, or the range of an axis h."""
-        return energy if plane.energy_axis is None else (self.potential.escape_energy, self.shown_energies.high)
+        energies = self.shown_energies
+        return energy if plane.energy_axis is None else (max(self.potential.escape_energy, energies.low), energies.high)
 
 
 def is_known(system: System) -> bool:

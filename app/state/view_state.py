@@ -53,6 +53,9 @@ def allowed_resolutions() -> dict[str, int]:
     return _up_to(process_state().settings.largest_resolution, RESOLUTION_CHOICES)
 
 
+# In natural units of time.
+_LONGEST_FIRST = 1000.0
+
 LAYERS = ("judge", "trust", "manifolds", "origins")
 """Attributes of the view state that turn follow-up analyses of the map on."""
 
@@ -94,6 +97,13 @@ class _Starts(param.Parameter):
 def _is_start(value: Any) -> bool:
     is_pair = isinstance(value, tuple) and len(value) == 2
     return is_pair and all(isinstance(number, int | float) and abs(number) < np.inf for number in value)
+
+
+def longest_first_t_max(potential: Potential) -> float:
+    """The longest t_max with which a system is first shown: a short one where all bounded orbits are integrated to it."""
+    allowed = allowed_t_max().values()
+    longest = np.inf if potential.certifies_tori else _LONGEST_FIRST * potential.exact_time_unit
+    return max((each for each in allowed if each <= longest), default=min(allowed))
 
 
 class ViewState(param.Parameterized):
@@ -215,7 +225,9 @@ class ViewState(param.Parameterized):
 
     def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
         """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
-        self.show(reviewed, energy=reviewed.shown_energies.first if energy is None else energy, window=None, starts=(), chosen=0)
+        chosen = reviewed.shown_energies.first if energy is None else energy
+        longest = self.t_max if reviewed.system.case == self.case else longest_first_t_max(reviewed.potential)
+        self.show(reviewed, energy=chosen, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest))
 
     def remove_start(self, place: int) -> None:
         """Remove the start at an index."""

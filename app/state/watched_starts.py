@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from engine import Potential
+
 LARGEST_SEED = 2**31 - 1
 """Largest seed of the generator of the browser."""
 
@@ -40,6 +42,16 @@ EXPLANATIONS = {
     ),
 }
 """Sentences where the place alone says too little."""
+
+
+def places_for(potential: Potential) -> dict[StartsFrom, str]:
+    """Where starts can be in a system, in words: at exits where it has some, at tubes where exits are Lyapunov orbits."""
+    missing = set[StartsFrom]()
+    if potential.escape_radius is not None:
+        missing |= {StartsFrom.EXITS, StartsFrom.TUBES}
+    if potential.rotation:
+        missing |= {StartsFrom.TUBES}
+    return {where: words for where, words in PLACES.items() if where not in missing}
 
 
 COUNTS = (1000, 5000, 20000)

@@ -11,8 +11,8 @@ import numpy as np
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
+from engine.exits.exit_rows import exit_gates
 from engine.exits.interior import find_outside_starts
-from engine.exits.lyapunov_orbits import exit_gates
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.propagate import NO_TRACE, VECTOR, Exits, Orbits
@@ -116,22 +116,22 @@ class OrbitBatch:
         self.certificate[which] = certificate
         self.fate[which[self.certificate[which] != Certificate.NONE]] = Fate.BOUNDED
 
-    def copy_to_images(self, which: np.ndarray, images: np.ndarray, channels: np.ndarray) -> None:
+    def copy_to_images(self, which: np.ndarray, images: np.ndarray, numbers: np.ndarray) -> None:
         """Copy the results of the orbits `which` to the orbits `images`, their exact mirror images under x → −x.
 
         Parameters
         ----------
         which, images
             Indices of the same shape.
-        channels
-            The image of each channel number, see `Potential.mirror_channels`.
+        numbers
+            (n, outcomes + 1) the image of each fate, see `Potential.mirror_numbers`.
         """
         self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
         for name in ("t", "crossings", "last_crossings"):
             getattr(self, name)[images] = getattr(self, name)[which]
-        fate = self.fate[which]
-        self.fate[images] = np.where(fate > 0, channels[np.maximum(fate, 0)], fate)
-        self.outside[images] = channels[self.outside[which]]
+        fate, orbits = self.fate[which], np.arange(which.size)
+        self.fate[images] = np.where(fate > 0, numbers[orbits, np.maximum(fate, 0)], fate)
+        self.outside[images] = numbers[orbits, self.outside[which]]
         certified = self.certificate[which] != Certificate.NONE
         self.certificate[images] = np.where(certified, Certificate.MIRRORED, Certificate.NONE)
 

@@ -9,13 +9,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.fates import Fate
+from engine.dynamics.fates import Fate, OrbitResult
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
+from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
-from engine.results.result import Result
 from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max, checks_types
 
 ENERGY_TOLERANCE = 1e-9
@@ -23,23 +23,24 @@ ENERGY_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Outcomes(Result):
+class Outcomes(OrbitResult):
     """Outcomes of n orbits, as returned by `classify_orbits`; arrays are read-only.
 
     Attributes
     ----------
     fate
-        int8 codes: channel k ≥ 1, or a `Fate`.
+        int8 codes: k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k, or a `Fate`.
     escape_time
-        float64, time of the outward crossing of the Lyapunov orbit; NaN for orbits that have not escaped.
+        float64, time of the passage through the exit, of the collision or of the passage of the escape radius; NaN for orbits
+        without an outcome.
     crossings
         int32, upward crossings of y = 0 (not counting the start) before the escape or until t_max; 0 if there is no orbit.
     energy_error
         float64, ``|H − h| / |h|`` at the end; NaN if there is no orbit.
     t_max
         Integration time of the orbits that have not escaped; infinite if it is not known.
-    channels
-        Number of exit channels of the potential; 0 if it is not known.
+    outcomes
+        Those of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     fate: np.ndarray
@@ -47,7 +48,7 @@ class Outcomes(Result):
     crossings: np.ndarray
     energy_error: np.ndarray
     t_max: float = field(default=float("inf"), metadata=TIME)
-    channels: int = 0
+    outcomes: tuple[Outcome, ...] = ()
     codes: ClassVar = {"fate": Fate}
     row_dimension: ClassVar = "orbit"
 
@@ -120,7 +121,7 @@ def classify_orbits(
         on_tiles=lambda: execution.report(partial(_share_done, batch, t_max / units.time)),
     )  # fmt: skip
     outcomes = units.restore(collect_outcomes(well, np.full(len(states), well_energy), batch))
-    return replace(outcomes, t_max=t_max, channels=potential.channels)
+    return replace(outcomes, t_max=t_max, outcomes=potential.outcomes_at(energy))
 
 
 def _share_done(batch: OrbitBatch, t_max: float) -> float:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from engine.potentials.outcomes import Outcome, exit_outcome, write_outcomes
+from engine.results.codes import name_code
+from engine.results.result import Result
 from engine.taylor.kernels import events
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 CHAOS_THRESHOLD = 1e-7
 """A bounded orbit is chaotic if its SALI falls to this value or below (Skokos 2001; the criterion of Zotos 2014)."""
@@ -16,7 +24,7 @@ MIN_REGULAR_TIME = 1000.0
 
 
 class Fate(IntEnum):
-    """Code of the outcome of an orbit. Codes from 1 are not members; they are the number of the channel it escaped through."""
+    """Code of the fate of an orbit. Codes k from 1 are not members: the orbit ended at ``potential.outcomes[k - 1]``."""
 
     BOUNDED = events.BOUNDED
     FORBIDDEN = -1
@@ -26,12 +34,17 @@ class Fate(IntEnum):
 
 
 class Regularity(IntEnum):
-    """Character of a bounded orbit. ``NOT_APPLICABLE``: it escapes or does not exist; ``NOT_JUDGED``: not computed yet."""
+    """Character of a bounded orbit.
+
+    ``NOT_APPLICABLE``: it escapes or does not exist. ``REGULAR``: averages agree as on a torus. ``CHAOTIC``: SALI fell to the
+    threshold. ``NO_SIGN_OF_CHAOS``: neither until t_max, as a sticky orbit, too. ``NOT_JUDGED``: not computed yet.
+    """
 
     NOT_APPLICABLE = 0
     REGULAR = 1
     CHAOTIC = 2
-    NOT_JUDGED = 3
+    NO_SIGN_OF_CHAOS = 3
+    NOT_JUDGED = 4
 
     def __str__(self) -> str:
         return self.name.lower().replace("_", " ")
@@ -58,22 +71,56 @@ class Trust(IntEnum):
 _SENTENCES = {
     Fate.BOUNDED: "Bounded: has not escaped by t_max.",
     Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here because its kinetic energy would be negative.",
-    Fate.OUTSIDE: "Outside: the start lies beyond a Lyapunov orbit.",
+    Fate.OUTSIDE: "Outside: the start lies beyond an exit.",
     Fate.NOT_COMPUTED: "Not computed yet.",
-    Fate.FAILED: "Failed: the integration broke down; please report this start.",
+    Fate.FAILED: "Unresolved: the steps became too short, as near a singularity of V.",
 }
 
 
-def describe_fate(fate: int) -> str:
-    """A sentence for a fate code, including channel numbers."""
-    return f"Escaped through channel {fate}." if fate >= 1 else _SENTENCES[Fate(fate)]
+UNRESOLVED = "unresolved"
+"""The name of `Fate.FAILED` for readers."""
 
 
-def is_chaotic(sali: np.ndarray) -> np.ndarray:
+def outcome_of(fate: int, outcomes: Sequence[Outcome] = ()) -> Outcome:
+    """The outcome of a fate of 1 or more; a channel where the outcomes are not known, as in files of older versions."""
+    return outcomes[fate - 1] if fate <= len(outcomes) else exit_outcome(fate)
+
+
+def name_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
+    """A fate code in a word or two: "channel 1", "bounded"."""
+    if fate >= 1:
+        return outcome_of(fate, outcomes).label
+    return UNRESOLVED if fate == Fate.FAILED else name_code(Fate, fate)
+
+
+def describe_fate(fate: int, outcomes: Sequence[Outcome] = ()) -> str:
+    """A sentence for a fate code.
+
+    Parameters
+    ----------
+    fate
+        A `Fate`, or the number of an outcome.
+    outcomes
+        Those of the potential, `Potential.outcomes`; where they are not known, they are channels.
+    """
+    return outcome_of(fate, outcomes).sentence if fate >= 1 else _SENTENCES[Fate(fate)]
+
+
+class OrbitResult(Result):
+    """Base of results on orbits, with the outcomes of their potential."""
+
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def fate_labels(self) -> Sequence[str]:
+        """Labels of the fates from 1 on."""
+        return [outcome.label for outcome in self.outcomes]
+
+    def to_xarray(self) -> xr.Dataset:
+        """As of other results, with the outcomes as an attribute."""
+        return super().to_xarray().assign_attrs(outcomes=write_outcomes(self.outcomes))
+
+
+def is_chaotic(sali: np.ndarray | float) -> np.ndarray:
     """Whether bounded orbits with these final SALI values (any shape) are chaotic; bool, and True for NaN."""
     return np.logical_not(sali > CHAOS_THRESHOLD)
-
-
-def judge_regularity(sali: float) -> Regularity:
-    """Regular or chaotic, from the final SALI of a bounded orbit (0 to √2)."""
-    return Regularity.CHAOTIC if is_chaotic(np.asarray(sali)) else Regularity.REGULAR

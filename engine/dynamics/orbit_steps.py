@@ -10,7 +10,7 @@ from engine.dynamics.batch import OrbitBatch
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
 from engine.execution import Execution
-from engine.exits.lyapunov_orbits import exit_gates
+from engine.exits.exit_rows import exit_gates
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.taylor.kernels.dense_output import trace_orbit

@@ -10,12 +10,13 @@ import numpy as np
 
 from engine.dynamics.fates import Fate
 from engine.exits.exit_tables import ExitTable, tabulate_exits
+from engine.exits.interior import hole_at_origin
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.taylor.jit.webassembly import constant_inputs, webassembly_module
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT, TOLERANCE, generate_code
-from engine.taylor.source.series import ORDER
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, NEAR, OVERSHOOT, TOLERANCE, generate_code
+from engine.taylor.source.series import ORDER, ROTATION
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,8 @@ class PortableSystem:
         Names of the inputs of ``step`` that are the same for all lanes, in order.
     table
         (m,) the coefficients in the form that the functions take.
+    rotation
+        Index of 2Ω in the table, which has the other sign backward in time; None in a frame that does not rotate.
     exits
         The exits of each channel.
     """
@@ -40,6 +43,7 @@ class PortableSystem:
     module: bytes
     constants: tuple[str, ...]
     table: np.ndarray
+    rotation: int | None
     exits: tuple[ExitTable, ...]
 
     @property
@@ -51,10 +55,6 @@ class PortableSystem:
         """All of it but the module as lists and numbers."""
         well, units = self.potential.in_well_units, self.potential.units
         mirror = self.potential.mirror_channels.tolist() if self.potential.mirror_in_x else None
-        exits = [
-            {"saddle": each.saddle, "highest": each.highest, "nodes": each.nodes.tolist(), "rows": each.rows.tolist()}
-            for each in self.exits
-        ]
         return {
             "constants": list(self.constants),
             "layout": {
@@ -62,35 +62,52 @@ class PortableSystem:
                 "order": ORDER,
                 "hidden": HIDDEN,
                 "gate": GATE,
+                "near": NEAR,
                 "overshoot": OVERSHOOT,
                 "tolerance": TOLERANCE,
                 "fates": {fate.name.lower(): int(fate) for fate in Fate},
             },
             "table": self.table.tolist(),
-            "formula": _formula_data(well.form),
-            "exits": exits,
+            "rotation": self.rotation,
+            "formula": _formula_data(well.form, well),
+            "exits": [*self._tables(), *_circles(well)],
             "mirror": mirror,
             "units": {"length": units.length, "time": units.time},
         }
 
+    def _tables(self) -> list[dict[str, object]]:
+        """The exits over saddles."""
+        shape = {"shape": "line" if self.potential.rotation else "curve"}
+        return [
+            {**shape, "saddle": each.saddle, "highest": each.highest, "nodes": each.nodes.tolist(), "rows": each.rows.tolist()}
+            for each in self.exits
+        ]
+
+
+def _circles(well: Potential) -> list[dict[str, object]]:
+    """The discs around centres and the escape circle."""
+    discs: list[dict[str, object]] = [{"shape": "disc", "x": each.x, "y": each.y, "radius": each.radius} for each in well.centres]
+    radius = well.escape_radius
+    return discs if radius is None else [*discs, {"shape": "circle", "x": 0.0, "y": 0.0, "radius": radius}]
+
 
 @functools.singledispatch
-def _formula_data(form: Any) -> dict[str, object]:
+def _formula_data(form: Any, well: Potential) -> dict[str, object]:
     """V as lists and numbers."""
     raise TypeError(form)
 
 
 @_formula_data.register
-def _terms(form: PolynomialForm) -> dict[str, object]:
+def _terms(form: PolynomialForm, _well: Potential) -> dict[str, object]:
     return {"terms": [list(term) for term in form.terms]}
 
 
 @_formula_data.register
-def _graph(form: ExpressionForm) -> dict[str, object]:
+def _graph(form: ExpressionForm, well: Potential) -> dict[str, object]:
     """The operations of V, V_x and V_y, with their numbers in place."""
     graph, numbers = form.slopes_graph
     nodes = [node._asdict() | {"numbers": [numbers[place] for place in node.numbers]} for node in graph.nodes]
-    return {"graph": {"nodes": nodes, "results": list(graph.results)}}
+    return {"graph": {"nodes": nodes, "results": list(graph.results), "hole": hole_at_origin(well)}}
 
 
 def make_portable_system(potential: Potential, highest: float) -> PortableSystem:
@@ -99,7 +116,8 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     Takes up to a second the first time for each structure of a potential, and for exits that are not cached.
     """
     well = potential.in_well_units
-    definition = well.form.definition
-    code = generate_code(definition, well.channels)
+    definition, (channels, discs, ring, rotates) = well.form.definition, well.setting
+    code = generate_code(definition, channels, discs=discs, ring=ring, rotates=rotates)
+    table, rotation = code.tabulate(definition, well.rotation), code.entries.index(ROTATION) if rotates else None
     exits = tabulate_exits(well, highest / potential.units.energy)
-    return PortableSystem(potential, webassembly_module(code), constant_inputs(code, "step"), code.tabulate(definition), exits)
+    return PortableSystem(potential, webassembly_module(code), constant_inputs(code, "step"), table, rotation, exits)

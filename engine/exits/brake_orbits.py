@@ -7,7 +7,7 @@ outward. The orbit in between is the root of the velocity along the channel at t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +23,9 @@ from engine.taylor.source.series import ORDER
 _LARGEST_EXCURSION = 1.0
 _FIRST_STRIDE = 0.01
 _LARGEST_OFFSET = 2.0
+
+# Search from outside: starts, the farthest one along the channel, and where a trial orbit has left for good.
+_STARTS, _FARTHEST_START, _LARGEST_MOVE = 241, 1.5, 0.6
 
 # Steps of the continuation. Lengths are in units of the distance between the ends of the orbit before: where the line to the
 # zero-velocity curve begins, the first step of the bracket search, and where it ends.
@@ -135,6 +138,18 @@ def find_from_both_ends(potential: Potential, energy: float, channel: int) -> Br
     return there and _join(there, back, chord_axes(path))
 
 
+def find_from_outside(potential: Potential, energy: float, axes: Axes, size: float) -> Iterator[BrakeOrbit]:
+    """The orbits from a wall at q < 0 to one at q > 0, the outermost first; `size` is the scale of the search."""
+    trials = _Trials(potential, energy, axes, _LARGEST_MOVE * size)
+    offsets = _FARTHEST_START * size * np.linspace(1.0, -1.0, _STARTS)
+    velocities = [trials.outward_velocity(u) for u in offsets.tolist()]
+    for k in range(_STARTS - 1):
+        if velocities[k] > 0.0 > velocities[k + 1]:
+            shot = trials.solve((float(offsets[k + 1]), float(offsets[k])), _REST)
+            if shot is not None:
+                yield shot.orbit
+
+
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """The orbit over a saddle, followed from small oscillations up to an energy with an adaptive step; None if this fails."""
     reached = bottom = float(potential.saddle_energies[channel - 1])
@@ -218,25 +233,31 @@ def _distance(potential: Potential, channel: int) -> float:
 
 def _shoot(potential: Potential, energy: float, channel: int, axes: Axes, search: _Search, rest: float) -> _Shot | None:
     """The orbit whose start is the nearest, along the channel, to the origin of the axes; None if there is none."""
-    kernels = kernels_of(potential)
-    steps = np.empty((_MOST_STEPS, 5))
-    reach = _LARGEST_EXCURSION * _distance(potential, channel)
-    arguments = (*axes.origin, *axes.outward, energy, reach, TOLERANCE, steps)
+    trials = _Trials(potential, energy, axes, _LARGEST_EXCURSION * _distance(potential, channel))
+    bracket = _find_bracket(trials.outward_velocity, search)
+    return bracket and trials.solve(bracket, rest)
 
-    def outward_velocity(u: float) -> float:
+
+class _Trials:
+    """Orbits that start at rest on the wall at q < 0 in some axes, and may move along the channel as far as `reach`."""
+
+    def __init__(self, potential: Potential, energy: float, axes: Axes, reach: float) -> None:
+        self._kernels, self._steps = kernels_of(potential), np.empty((_MOST_STEPS, 5))
+        self._arguments = (*axes.origin, *axes.outward, energy, reach, TOLERANCE, self._steps)
+
+    def outward_velocity(self, u: float) -> float:
         """The velocity along the channel at the turning point, after a start at rest at offset u."""
-        return float(kernels.shoot(u, *arguments)[0])
+        return float(self._kernels.shoot(u, *self._arguments)[0])
 
-    bracket = _find_bracket(outward_velocity, search)
-    if bracket is None:
-        return None
-    u = find_root(outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
-    velocity, half_period, count = kernels.shoot(u, *arguments)
-    if not (np.isfinite(half_period) and abs(velocity) < rest):
-        return None
-    coefficients = np.empty((2, ORDER + 1, count))
-    kernels.jets(count, *(np.ascontiguousarray(column) for column in steps[:count, :4].T), *coefficients)
-    return _Shot(coefficients, steps[:count, 4], half_period)
+    def solve(self, bracket: tuple[float, float], rest: float) -> _Shot | None:
+        """The orbit that starts between two offsets and comes to rest; None if there is none."""
+        u = find_root(self.outward_velocity, *bracket, absolute=1e-17, relative=4 * float(np.finfo(float).eps))
+        velocity, half_period, count = self._kernels.shoot(u, *self._arguments)
+        if not (np.isfinite(half_period) and abs(velocity) < rest):
+            return None
+        coefficients = np.empty((2, ORDER + 1, count))
+        self._kernels.jets(count, *(np.ascontiguousarray(column) for column in self._steps[:count, :4].T), *coefficients)
+        return _Shot(coefficients, self._steps[:count, 4].copy(), half_period)
 
 
 def _find_bracket(outward_velocity: Callable[[float], float], search: _Search) -> tuple[float, float] | None:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.exits.lyapunov_orbits import exit_curve_over_chord, exit_gates, find_lyapunov_orbits
+from engine.exits.exit_rows import exit_gates
+from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.taylor.kernels import events
@@ -84,8 +85,9 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
 
     Returns
     -------
-    One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. Interpolated exits
-    differ from exits by at most `LARGEST_ERROR`, as tested at energies between the nodes.
+    One table for each channel, valid up to `highest`, or up to its saddle if its exits cannot be interpolated. None is valid
+    above the lowest maximum between exits, where some of these are one. Interpolated exits differ from exits by at most
+    `LARGEST_ERROR`, as tested at energies between the nodes.
     """
     curves: dict[float, dict[int, np.ndarray]] = {}
 
@@ -94,6 +96,7 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
             curves[energy] = _curves(potential, energy)
         return curves[energy]
 
+    highest = min([highest, *(merger.energy for merger in potential.channel_mergers)])
     saddles = enumerate(potential.saddle_energies.tolist(), start=1)
     return tuple(_tabulate(curves_at, channel, saddle, highest) for channel, saddle in saddles)
 
@@ -118,6 +121,8 @@ def _tabulate(curves_at: _Curves, channel: int, saddle: float, highest: float) -
         largest = np.sqrt(share * (highest - saddle))
         nodes, between = _nodes(count, largest), _between(count, largest)
         try:
+            # The end of the range first: where it is refused, all is.
+            curves_at(saddle + largest**2)
             rows, expected = (
                 np.array([_row(curves_at(saddle + sigma**2)[channel]) for sigma in places.tolist()])
                 for places in (nodes, between)

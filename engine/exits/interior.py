@@ -1,4 +1,7 @@
-"""The interior of a potential at one energy: all points connected to the origin below the energy without crossing an exit."""
+"""The interior of a potential at one energy: all points connected to the origin below the energy without crossing an exit.
+
+With an escape radius, all points within it. Discs around centres belong to no interior.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.potentials.compiled import kernels_of
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.polynomial_form import PolynomialForm
@@ -19,7 +22,10 @@ from engine.taylor.kernels import interior
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """int8, shaped like x and y: for each point outside, the channel nearest in direction; 0 for points inside or forbidden."""
+    """int8, shaped like x and y: 0 for points inside or forbidden, else the number of an outcome.
+
+    Beyond the exits it is the channel nearest in direction, in a disc the collision with its centre.
+    """
     units, row = potential.units, np.zeros(x.size, np.int64)
     places = x.ravel() / units.length, y.ravel() / units.length
     well, energies = potential.in_well_units, np.full(x.size, energy / units.energy)
@@ -38,12 +44,28 @@ def find_outside_starts(
     x, y, energy
         (n,) each.
     curves
-        (rows, channels, columns) exit curves, see `exit_curves`.
+        (rows, outcomes, columns) exits, see `exit_curves`.
     curve_row
         (n,) the row of `curves` for each point.
     """
-    outside: np.ndarray = _finder(potential.form, potential)(x, y, energy, curves, curve_row)
+    outside = np.zeros(x.size, np.int8)
+    if potential.escape_radius is None:
+        over_saddles = np.ascontiguousarray(curves[:, : potential.channels])
+        nearest = _finder(potential.form, potential)(x, y, energy, over_saddles, curve_row)
+        outside = np.take_along_axis(potential.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
+    if potential.escape_radius is None and not potential.centres:
+        return outside
+    allowed = potential.value(x, y) <= energy
+    if potential.escape_radius is not None:
+        outside[allowed & (np.hypot(x, y) > potential.escape_radius)] = len(potential.outcomes)
+    for number, centre in enumerate(potential.centres, potential.channels + 1):
+        outside[allowed & centre.contains(x, y)] = number
     return outside
+
+
+def hole_at_origin(potential: Potential) -> float:
+    """Radius of the disc around a centre at the origin; 0.0 for a well there."""
+    return max((centre.radius for centre in potential.centres if centre.x == centre.y == 0.0), default=0.0)
 
 
 @functools.singledispatch
@@ -54,8 +76,8 @@ def _finder(form: Any, potential: Potential) -> Callable[..., np.ndarray]:
 
 @_finder.register
 def _finder_of_expression(_form: ExpressionForm, potential: Potential) -> Callable[..., np.ndarray]:
-    finder: Callable[..., np.ndarray] = kernels_of(potential).find_outside
-    return finder
+    hole = hole_at_origin(potential)
+    return lambda *arguments: kernels_of(potential).find_outside(*arguments, hole)
 
 
 @_finder.register

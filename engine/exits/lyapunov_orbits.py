@@ -1,35 +1,39 @@
-"""Lyapunov orbits: the unstable periodic orbits over the open saddles. Their paths across the channels are the exits."""
+"""Lyapunov orbits: the unstable periodic orbits over the open saddles, from which the exits are made.
+
+In a frame that does not rotate the path of such an orbit across its channel is the exit. In a rotating frame an orbit is a closed
+curve, and the exit is the straight line across the channel that touches it on the outer side.
+"""
 
 from __future__ import annotations
 
 import functools
 import itertools
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
-from engine.exits.brake_orbits import Axes, chord_axes, continue_in_energy, find_directly, find_from_both_ends, saddle_axes
-from engine.potentials.hill_region import check_closed_well
+from engine.exits.brake_orbits import (
+    BrakeOrbit,
+    chord_axes,
+    continue_in_energy,
+    find_directly,
+    find_from_both_ends,
+    saddle_axes,
+)
+from engine.exits.exit_shapes import curve_along, find_reach, line_across, line_points, mirrored_curve
+from engine.exits.merged_orbits import axes_between, find_merged_orbits, has_returns
+from engine.exits.periodic_orbits import find_periodic_orbit, monodromy_matrix, multipliers_of
+from engine.potentials.merged_channels import MergedExit, name_channels
 from engine.potentials.potential import Potential
-from engine.potentials.well_units import ENERGY, LENGTH, TIME, WellUnits, nearest_power_of_two
+from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUnits
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels import events
 from engine.validation import checked_number, checks_types
 
-# In units of the well.
-_LARGEST_FIT_ERROR = 1e-9
 # Ends of two orbits closer than this, in units of the well, are the same.
 _SAME_END = 1e-6
-# Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
-_GATE_MARGIN = 1e-3
-# Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
-_CLOSED_HALF_WIDTH = 1e-3
-# The lines beyond the ends of an exit are sampled from this |s| − 1 on, up to this multiple of the distance of the saddle.
-_FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -45,10 +49,14 @@ class LyapunovOrbit(Result):
     period
         Its period.
     x, y
-        (201,) path over one period, evenly spaced in time, from rest on one side of the channel to the other and back; the first
-        and the last point are equal.
+        (201,) path over one period, evenly spaced in time, from one side of the channel to the other and back; the first and the
+        last point are equal.
     curve
-        (columns,) the exit curve for the kernels; columns as in `engine.taylor.kernels.events`.
+        (columns,) the exit for the kernels; columns as in `engine.taylor.kernels.events`.
+    velocity
+        (2,) px and py at the first point: at rest, unless the frame rotates.
+    others
+        Other channels that are part of the same exit, above the maxima between them; `channel` is the lowest number.
     """
 
     channel: int
@@ -57,9 +65,11 @@ class LyapunovOrbit(Result):
     x: np.ndarray = field(metadata=LENGTH)
     y: np.ndarray = field(metadata=LENGTH)
     curve: np.ndarray
+    velocity: np.ndarray = field(default_factory=lambda: np.zeros(2), metadata=MOMENTUM)
+    others: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        for array in (self.x, self.y, self.curve):
+        for array in (self.x, self.y, self.curve, self.velocity):
             read_only(array)
 
     def columns(self) -> Mapping[str, np.ndarray]:
@@ -67,14 +77,40 @@ class LyapunovOrbit(Result):
         return {"t": np.linspace(0.0, self.period, self.x.size), "x": self.x, "y": self.y}
 
     @property
+    def name(self) -> str:
+        """The numbers of its channels: "1", or "1+3" where two are one exit."""
+        return name_channels((self.channel, *self.others))
+
+    @property
+    def outward(self) -> np.ndarray:
+        """(2,) unit vector out of the well, across the exit."""
+        return self.curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
+
+    @property
     def half_path(self) -> np.ndarray:
-        """(101, 2) the path over half a period, from one side of the channel to the other, for plots."""
-        return np.column_stack([self.x, self.y])[: self.x.size // 2 + 1]
+        """The path for plots: (101, 2) half a period from one side of the channel to the other, as the other half is the same.
+
+        In a rotating frame (201, 2) the whole closed path.
+        """
+        path = np.column_stack([self.x, self.y])
+        return path if self._is_closed_curve else path[: self.x.size // 2 + 1]
+
+    @property
+    def exit_path(self) -> np.ndarray:
+        """(n, 2) the exit from one side of the channel to the other: half the path, or the two ends of the line beside it."""
+        return line_points(self.curve) if self._is_closed_curve else self.half_path
+
+    @property
+    def _is_closed_curve(self) -> bool:
+        return bool(self.curve[events.SHAPE] == events.LINE)
 
 
 @checks_types(potential=Potential)
 def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """The Lyapunov orbit over each saddle below `energy`.
+
+    In a frame that does not rotate it oscillates between two points at rest. In a rotating frame it is a closed curve around the
+    saddle, found by Newton's method and followed from the small oscillations; H is the Jacobi integral.
 
     Parameters
     ----------
@@ -85,13 +121,15 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
 
     Returns
     -------
-    The orbits in channel order; empty at or below the escape energy.
+    The orbits in channel order; empty at or below the escape energy. Above a maximum between two exits these are one, with one
+    orbit from one of its outer walls to the other.
 
     Raises
     ------
     ValueError
-        If `energy` is not finite, or above a maximum between two exits, or if a Lyapunov orbit is not found or not a graph over
-        a line, or if exits meet.
+        If `energy` is not finite, or if a Lyapunov orbit is not found or not a graph over a line, or the line beside it does not
+        end on the walls of its channel, or if exits meet, or if those above a maximum between them are one exit all around the
+        well or one in a rotating frame.
 
     Examples
     --------
@@ -111,14 +149,34 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     return orbits if units == WellUnits() else tuple(_restored(orbit, units) for orbit in orbits)
 
 
-def _check_below_maxima(potential: Potential, energy: float) -> None:
-    units = potential.stated_units
-    for merger in potential.channel_mergers:
-        if energy > merger.energy:
-            raise _SearchError(
-                f"{merger.describe()} are one above the maximum between them, V = {merger.energy * units.energy:.6g} at "
-                f"({merger.x * units.length:.6g}, {merger.y * units.length:.6g}); choose a lower energy"
-            )
+@checks_types(potential=Potential, orbit=LyapunovOrbit)
+def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
+    """The stability of a Lyapunov orbit: the eigenvalues of the flow linearised along one period.
+
+    Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. As there is only one
+    eigenvector for the eigenvalue 1, rounding changes this pair by the square root of the error of the matrix, 1e-8 to 1e-6.
+
+    Parameters
+    ----------
+    potential
+        The potential of the orbit.
+    orbit
+        One of `find_lyapunov_orbits`.
+
+    Returns
+    -------
+    (4,) complex multipliers, the one of largest modulus first.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, find_lyapunov_orbits, find_multipliers
+    >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
+    >>> round(float(abs(find_multipliers(CASES["I"], orbit)[0])), 2)
+    93.85
+    """
+    units = potential.units
+    start = np.array([orbit.x[0], orbit.y[0], *orbit.velocity]) / units.state
+    return read_only(multipliers_of(monodromy_matrix(potential.in_well_units, start, orbit.period / units.time)))
 
 
 class _SearchError(Exception):
@@ -128,7 +186,12 @@ class _SearchError(Exception):
 @functools.lru_cache(maxsize=4096)
 def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
     """The orbits of a potential in units of its well."""
-    _check_below_maxima(potential, energy)
+    if potential.rotation:
+        _check_separate(potential, energy)
+        channels = potential.open_channels(energy)
+        orbits = tuple(_find_closed_orbit(potential, energy, channel) for channel in channels)
+        _check_exits_apart(orbits)
+        return orbits
     try:
         return _find_separate_orbits(potential, energy, follow=False)
     except _SearchError:
@@ -138,9 +201,20 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
     """Orbits that do not meet, searched at this energy or followed up to it; those of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
+    merged = {exit.channels[0]: exit for exit in potential.merged_exits(energy)}
+    numbers = potential.exit_numbers(energy)
+    images = potential.mirror_numbers(energy) if potential.mirror_in_x else numbers
     for channel in potential.open_channels(energy):
-        image = int(potential.mirror_channels[channel]) if potential.mirror_in_x else channel
-        found[channel] = _mirrored(found[image], channel) if image in found else _find_orbit(potential, energy, channel, follow)
+        if numbers[channel] < channel:
+            continue
+        image = int(images[channel])
+        others = merged[channel].channels[1:] if channel in merged else ()
+        if image in found:
+            found[channel] = replace(_mirrored(found[image], channel), others=others)
+        elif channel in merged:
+            found[channel] = _find_merged(potential, energy, merged[channel])
+        else:
+            found[channel] = _find_orbit(potential, energy, channel, follow)
         if image == channel and potential.mirror_in_x:
             found[channel] = _symmetrized(found[channel])
     orbits = tuple(found.values())
@@ -148,17 +222,48 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
     return orbits
 
 
+def _check_separate(potential: Potential, energy: float) -> None:
+    for merged in potential.merged_exits(energy):
+        raise _SearchError(
+            f"{_describe(potential, merged)}, which has no Lyapunov orbit in a rotating frame; choose a lower energy"
+        )
+
+
+def _describe(potential: Potential, merged: MergedExit) -> str:
+    lowest = next(each for each in potential.channel_mergers if set(each.channels) <= set(merged.channels))
+    units = potential.stated_units
+    place = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
+    return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {place}"
+
+
+def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> LyapunovOrbit:
+    """The orbit between the outer walls of an exit of several channels."""
+    if merged.closes_ring:
+        raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
+    axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
+    for orbit in find_merged_orbits(potential, energy, merged.channels):
+        curve = curve_along(axes, saddle, orbit.path)
+        if curve is not None:
+            found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
+            if not has_returns(potential, energy, orbit, found.curve):
+                return replace(found, others=merged.channels[1:])
+    raise _SearchError(
+        f"{_describe(potential, merged)}, and no Lyapunov orbit was found across it that is a smooth graph and that orbits cross "
+        "only once; choose another energy"
+    )
+
+
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
     """An orbit in units of the well, in the units of its potential; in its exit curve, directions have no unit."""
     curve = orbit.curve * units.length
-    directions = slice(events.OUTWARD_X, events.OPEN + 1)
+    directions = slice(events.OUTWARD_X, events.SHAPE + 1)
     curve[directions] = orbit.curve[directions]
     return replace(units.restore(orbit), curve=curve)
 
 
 def _check_exits_apart(orbits: tuple[LyapunovOrbit, ...]) -> None:
     for one, other in itertools.combinations(orbits, 2):
-        if _paths_cross(one.half_path, other.half_path) or _same_ends(one.half_path, other.half_path):
+        if _paths_cross(one.exit_path, other.exit_path) or _same_ends(one.exit_path, other.exit_path):
             raise _SearchError(f"the exits of channels {one.channel} and {other.channel} meet; choose a lower energy")
 
 
@@ -184,21 +289,27 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
     """The exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
-    return LyapunovOrbit(channel, orbit.energy, orbit.period, -orbit.x, orbit.y, _mirrored_curve(orbit.curve))
-
-
-def _mirrored_curve(curve: np.ndarray) -> np.ndarray:
-    """An exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
-    image = curve.copy()
-    image[[events.ORIGIN_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
-    image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
-    image[events.COEFFICIENTS + 1 :: 2] *= -1.0
-    return image
+    return LyapunovOrbit(channel, orbit.energy, orbit.period, -orbit.x, orbit.y, mirrored_curve(orbit.curve))
 
 
 def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
     """An orbit over a saddle on the y axis, with an exit curve that is exactly symmetric."""
-    return replace(orbit, curve=0.5 * (orbit.curve + _mirrored_curve(orbit.curve)))
+    return replace(orbit, curve=0.5 * (orbit.curve + mirrored_curve(orbit.curve)))
+
+
+def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> LyapunovOrbit:
+    """The orbit over a saddle in a rotating frame, and the line that touches it on the outer side."""
+    orbit = find_periodic_orbit(potential, energy, channel)
+    if orbit is None:
+        raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
+    curve = line_across(potential, energy, channel, orbit.edge)
+    if curve is None:
+        raise _SearchError(
+            f"the line at the outer edge of the Lyapunov orbit across channel {channel} does not end on the walls of its neck; "
+            "choose a lower energy"
+        )
+    x, y = orbit.path[:2].copy()
+    return LyapunovOrbit(channel, energy, orbit.period, x, y, curve, orbit.path[2:, 0].copy())
 
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
@@ -207,109 +318,32 @@ def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool)
     if orbit is None:
         raise _SearchError(f"no Lyapunov orbit was found across channel {channel}; choose another energy")
     axes = chord_axes(orbit.path) if follow else saddle_axes(potential, channel)
-    curve = _fit_exit_curve(axes, potential.saddles[channel - 1], orbit.path)
+    curve = curve_along(axes, potential.saddles[channel - 1], orbit.path)
     if curve is None:
         raise _SearchError(f"the Lyapunov orbit across channel {channel} is not a smooth graph; choose another energy")
-    curve[events.REACH] = _find_reach(potential, energy, curve)
+    return _exit_over(potential, energy, channel, orbit, curve)
+
+
+def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOrbit, curve: np.ndarray) -> LyapunovOrbit:
+    """An orbit between two points at rest with its exit (columns,), the reach of which is set."""
+    curve[events.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
     return LyapunovOrbit(channel, energy, 2.0 * orbit.half_period, x[there_and_back], y[there_and_back], curve)
 
 
-def _fit_exit_curve(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
-    """The path as a graph u = f(s), s ∈ [−1, 1]; None if it is not a graph or not smooth enough for the fit."""
-    u, q = axes.coordinates(path)
-    middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
-    s = (q - middle) / half_width
-    if np.any(np.diff(s) <= 0):
-        return None
-    basis = chebyshev.chebvander(s, events.CURVE_DEGREE)
-    fit = np.linalg.lstsq(basis, u, rcond=None)[0]
-    if np.max(np.abs(basis @ fit - u)) > _LARGEST_FIT_ERROR:
-        return None
-    end_slopes = chebyshev.chebval([-1.0, 1.0], chebyshev.chebder(fit))
-    curve = _straight_curve(axes, saddle)
-    curve[events.OPEN] = 1.0
-    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
-    curve[events.COEFFICIENTS :] = fit
-    return curve
-
-
-def _find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
-    """The |s| up to which a crossing counts: half of the way along the straight lines beyond the ends to where V ≤ h again."""
-    reach = np.inf
-    saddle, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
-    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
-    beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
-    for end, slope in ((-1.0, curve[events.SLOPE_LOW]), (1.0, curve[events.SLOPE_HIGH])):
-        u = chebyshev.chebval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
-        q = curve[events.MIDDLE] + curve[events.HALF_WIDTH] * end * (1.0 + beyond)
-        x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
-        reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
-    return float(reach)
-
-
-def _straight_curve(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """(columns,) the exit curve of a closed channel: a short straight line through the origin of the axes."""
-    curve = np.zeros(events.CURVE_COLUMNS)
-    curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
-    curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
-    curve[events.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
-    curve[events.REACH] = 1.0
-    return curve
-
-
 def exit_curve_over_chord(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray | None:
-    """(columns,) the exit curve of an orbit in units of the well, in the axes of its chord, which depend smoothly on the energy.
+    """(columns,) the exit of an orbit in units of the well, in axes which depend smoothly on the energy: those of its chord.
 
-    None if the path is not a smooth graph over the chord.
+    None if the path is not a smooth graph over the chord. The line of a rotating system keeps its own axes, those of the saddle.
     """
+    if potential.rotation:
+        return orbit.curve
     path = orbit.half_path.T
     if chord_axes(path).outward @ potential.outward_directions[orbit.channel - 1] < 0.0:
         # Mirrored orbits have the well on the other side of their path.
         path = path[:, ::-1]
-    curve = _fit_exit_curve(chord_axes(path), potential.saddles[orbit.channel - 1], path)
+    curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)
     if curve is not None:
-        curve[events.REACH] = _find_reach(potential, orbit.energy, curve)
+        curve[events.REACH] = find_reach(potential, orbit.energy, curve)
     return curve
-
-
-def closed_channel_curves(potential: Potential) -> np.ndarray:
-    """(channels, columns) exit curves for closed channels: short lines across the saddles, where V is above any lower energy.
-
-    Raises
-    ------
-    ValueError
-        If there are no exits, but the well is not closed either: it is not defined which orbits escape.
-    """
-    if not potential.channels:
-        check_closed_well(potential)
-    rows = [_straight_curve(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)]
-    return np.array(rows).reshape(potential.channels, events.CURVE_COLUMNS)
-
-
-def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """(channels, columns) exit curves at one energy, for the kernels."""
-    curves = closed_channel_curves(potential)
-    for orbit in find_lyapunov_orbits(potential, energy):
-        curves[orbit.channel - 1] = orbit.curve
-    return curves
-
-
-def exit_gates(curves: np.ndarray) -> np.ndarray:
-    """(channels, 3) lines a x + b y = c across the channels, slightly inside all exit curves (…, channels, columns).
-
-    The kernels use them as a cheap test: only an orbit beyond a gate can have escaped.
-    """
-    channels, columns = curves.shape[-2:]
-    rows = curves.reshape(math.prod(curves.shape[:-2]), channels, columns)
-    s = np.linspace(-1.0, 1.0, 201)
-    u = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
-    q = rows[..., events.MIDDLE, None] + rows[..., events.HALF_WIDTH, None] * s
-    origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., events.ORIGIN_X : events.OUTWARD_Y + 1, None], 2, 0)
-    x, y = origin_x + u * outward_x - q * outward_y, origin_y + u * outward_y + q * outward_x
-    gates = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
-    lowest = (gates[:, :1] * x + gates[:, 1:] * y).min(axis=(0, -1))
-    origins = rows[0, :, events.ORIGIN_X : events.ORIGIN_Y + 1]
-    length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*origins.T).tolist()])
-    return np.column_stack([gates, lowest - _GATE_MARGIN * length])

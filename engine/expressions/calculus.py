@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from functools import lru_cache
 
 from engine.expressions.nodes import (
@@ -10,13 +12,19 @@ from engine.expressions.nodes import (
     Function,
     Product,
     Sum,
+    X,
+    Y,
     apply_function,
+    as_number,
+    as_terms,
     linear_combination,
     multiply,
     number,
     power,
 )
 
+# Relative error up to which coefficients count as equal.
+_ROUNDING = 1e-14
 # Cached derivatives, 1 kB each.
 _DERIVATIVES = 4096
 
@@ -31,6 +39,8 @@ def derivative(expression: Expression, axis: int) -> Expression:
             return linear_combination((c, derivative(part, axis)) for part, c in terms)
         case Product(factors):
             return linear_combination((n, _factor_derived(factors, k, axis)) for k, (_, n) in enumerate(factors))
+        case Function("log", argument) if (inverse_root := _of_inverse_hyperbolic_sine(argument, axis)) is not None:
+            return inverse_root
         case Function(name, argument):
             return multiply(_outer_derivative(name, argument), derivative(argument, axis))
     raise TypeError(expression)
@@ -54,15 +64,43 @@ def _outer_derivative(name: str, argument: Expression) -> Expression:
     return linear_combination([(-1.0, apply_function("sin", argument))])
 
 
+def _of_inverse_hyperbolic_sine(argument: Expression, axis: int) -> Expression | None:
+    """(p'/c) b^(−½), the derivative of log(p + c b^½) if c² b' = 2 p' p with a number p' ≠ 0; None for other arguments.
+
+    As p + c b^½ loses digits where p < 0, u'/u would lose them, too.
+    """
+    terms = argument.terms if isinstance(argument, Sum) else ()
+    roots = [(part, c) for part, c in terms if isinstance(part, Product) and [n for _, n in part.factors] == [0.5]]
+    if len(roots) != 1:
+        return None
+    (root, c), base = roots[0], roots[0][0].factors[0][0]
+    rest = linear_combination([(1.0, argument), (-c, root)])
+    slope = as_number(derivative(rest, axis))
+    found, expected = as_terms(derivative(base, axis)), as_terms(rest)
+    if not slope or found is None or expected is None:
+        return None
+    pairs = ((c * c * found.get(powers, 0.0), 2.0 * slope * expected.get(powers, 0.0)) for powers in found | expected)
+    if not all(math.isclose(one, other, rel_tol=_ROUNDING) for one, other in pairs):
+        return None
+    return linear_combination([(slope / c, power(base, -0.5))])
+
+
 def substitute(expression: Expression, x: Expression, y: Expression) -> Expression:
     """The expression with x and y replaced by two other expressions."""
+    return replace_parts(expression, {X: x, Y: y})
+
+
+def replace_parts(expression: Expression, parts: Mapping[Expression, Expression]) -> Expression:
+    """The expression with some of its parts replaced by others."""
+    if expression in parts:
+        return parts[expression]
     match expression:
-        case Coordinate(axis):
-            return (x, y)[axis]
+        case Coordinate():
+            return expression
         case Sum(constant, terms):
-            return linear_combination([(constant, number(1.0)), *((c, substitute(part, x, y)) for part, c in terms)])
+            return linear_combination([(constant, number(1.0)), *((c, replace_parts(part, parts)) for part, c in terms)])
         case Product(factors):
-            return multiply(*(power(substitute(base, x, y), n) for base, n in factors))
+            return multiply(*(power(replace_parts(base, parts), n) for base, n in factors))
         case Function(name, argument):
-            return apply_function(name, substitute(argument, x, y))
+            return apply_function(name, replace_parts(argument, parts))
     raise TypeError(expression)

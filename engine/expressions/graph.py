@@ -1,7 +1,7 @@
 """Expressions as a list of operations in which no part occurs twice; what is evaluated, compiled and sent to the browser.
 
 The graph of an expression has places for its numbers, so that expressions that differ in numbers only have the same graph, and
-share compiled code.
+share compiled code. It is made for few products and powers, as the series of each costs a sum over all lower orders.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from engine.expressions.common_factors import factor_out
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 
 # Cached graphs, some kB each.
@@ -25,12 +26,13 @@ class Node(NamedTuple):
     Attributes
     ----------
     kind
-        ``x``, ``y``, ``sum``, ``product`` of two, ``power``, ``exp``, ``log``, ``sin`` or ``cos``.
+        ``x``, ``y``, ``sum``, ``shift``, which adds a number, ``product`` of two, ``power``, ``exp``, ``log``, ``sin`` or
+        ``cos``.
     operands
         Indices of nodes. The second one of a sine is the cosine of the same argument, and that of a cosine is the sine: the
-        derivative of each is the other one.
+        derivative of each is the other one. The second one of a power u^a is u^(a + 1), if that is a node, too.
     numbers
-        Places of the coefficients of a sum, one for each operand, and of its constant if that is not 0.
+        Places of the coefficients of a sum, one for each operand, and of its constant if that is not 0; of the number of a shift.
     exponent
         Of a power.
     """
@@ -50,7 +52,7 @@ class Graph(NamedTuple):
     @property
     def convolutions(self) -> int:
         """How many nodes need a sum over all lower orders for each coefficient of their series."""
-        return sum(node.kind not in ("x", "y", "sum") for node in self.nodes)
+        return sum(node.kind not in ("x", "y", "sum", "shift") for node in self.nodes)
 
 
 @lru_cache(maxsize=_GRAPHS)
@@ -66,6 +68,8 @@ class _Builder:
         self.nodes: list[Node] = []
         self.numbers: list[float] = []
         self._places: dict[Any, int] = {}
+        # Of (base, exponent).
+        self._powers: dict[tuple[int, float], int] = {}
 
     def add(self, expression: Expression) -> int:
         """The index of the node of an expression."""
@@ -77,12 +81,14 @@ class _Builder:
         match expression:
             case Coordinate(axis):
                 return self._append(Node("xy"[axis]))
+            case Sum(constant, terms) if constant and len(terms) > 1:
+                # Sums that differ in their constants have a node in common.
+                return self._append(Node("shift", (self.add(Sum(0.0, terms)),), self._numbers_at([constant])))
             case Sum(constant, terms):
+                terms = factor_out(terms)
                 operands = tuple(self.add(part) for part, _ in terms)
                 values = [*(c for _, c in terms), *([constant] if constant or not terms else [])]
-                first = len(self.numbers)
-                self.numbers += values
-                return self._append(Node("sum", operands, tuple(range(first, first + len(values)))))
+                return self._append(Node("sum", operands, self._numbers_at(values)))
             case Product(factors):
                 first_place, *others = (self._raised(self.add(base), n) for base, n in factors)
                 for other in others:
@@ -98,11 +104,29 @@ class _Builder:
         """A power; positive integer ones are products, which have no singularity where the base is 0."""
         if exponent == 1.0:
             return base
-        if exponent < 0.0 or exponent != int(exponent):
-            return self._node(Node("power", (base,), exponent=exponent))
+        if exponent != int(exponent):
+            return self._real_power(base, exponent)
+        if exponent < 0.0:
+            return self._raised(self._node(Node("power", (base,), exponent=-1.0)), -exponent)
         half = self._raised(base, float(int(exponent) // 2))
         square = self._node(Node("product", (half, half)))
         return square if int(exponent) % 2 == 0 else self._node(Node("product", (square, base)))
+
+    def _real_power(self, base: int, exponent: float) -> int:
+        """A power that is not an integer, from the next higher one of the base if there is one; an inverse root has its root."""
+        if exponent == -0.5:
+            self._real_power(base, 0.5)
+        key = base, exponent
+        if key not in self._powers:
+            higher = self._powers.get((base, exponent + 1.0))
+            self._powers[key] = self._append(Node("power", (base,) if higher is None else (base, higher), exponent=exponent))
+        return self._powers[key]
+
+    def _numbers_at(self, values: list[float]) -> tuple[int, ...]:
+        """The places of new numbers."""
+        first = len(self.numbers)
+        self.numbers += values
+        return tuple(range(first, first + len(values)))
 
     def _sine_and_cosine(self, name: str, argument: Expression) -> int:
         angle = self.add(argument)
@@ -147,6 +171,8 @@ def _node_value(node: Node, values: list[np.ndarray], numbers: Sequence[float], 
             for operand, place in zip(node.operands, node.numbers, strict=False):
                 total = total + numbers[place] * values[operand]
             return total
+        case "shift":
+            return np.asarray(values[node.operands[0]] + numbers[node.numbers[0]])
         case "product":
             left, right = (values[operand] for operand in node.operands)
             return np.asarray(left * right)

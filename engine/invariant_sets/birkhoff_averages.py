@@ -33,6 +33,9 @@ CERTIFIED_DIGITS = 8.0
 Of 1975 orbits on five maps that escape after t = 1000, none exceeded 6.1 digits.
 """
 
+REGULAR_DIGITS = 7.0
+"""Digits from which averages over both halves of an orbit agree as on a torus, see `benchmarks.verdicts`."""
+
 # Shape parameter β of the Kaiser window. A larger one has smaller values at the ends but needs a longer window.
 _KAISER_SHAPE = 20.0
 _ENERGY_TOLERANCE = 1e-9

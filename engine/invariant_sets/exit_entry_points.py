@@ -37,7 +37,13 @@ def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, 
     Returns
     -------
     For each open channel, in channel order, a read-only (n, 2) array of x and px; empty where no orbit crosses y = 0 by t = 30.
+
+    Raises
+    ------
+    ValueError
+        If the frame rotates, or exits are not defined at this energy.
     """
+    potential.check_at_rest("entry points of exits")
     return tuple(_entry_points(potential, energy, orbit) for orbit in find_lyapunov_orbits(potential, energy))
 
 
@@ -52,7 +58,7 @@ def _inward_states(potential: Potential, energy: float, orbit: LyapunovOrbit) ->
     """(n, 4) states on a Lyapunov orbit's path with momenta that point inward."""
     x, y = np.repeat(orbit.half_path[_POSITIONS], _ANGLES.size, axis=0).T
     speed = np.sqrt(2.0 * np.maximum(energy - potential.value(x, y), 0.0))
-    inward = -potential.outward_directions[orbit.channel - 1]
+    inward = -orbit.outward
     angle = np.arctan2(inward[1], inward[0]) + np.tile(_ANGLES, x.size // _ANGLES.size)
     return np.column_stack([x, y, speed * np.cos(angle), speed * np.sin(angle)])
 

@@ -150,7 +150,7 @@ def find_stable_manifolds(
     concurrent.futures.CancelledError
         When cancelled.
     ValueError
-        When `energy` is not finite or too high for unstable Lyapunov orbits, or `images` is out of range.
+        When `energy` is not finite or too high for unstable Lyapunov orbits, `images` is out of range, or the frame rotates.
 
     Notes
     -----
@@ -163,6 +163,7 @@ def find_stable_manifolds(
     >>> [(arc.channel, arc.image) for arc in manifolds.arcs]
     [(1, 1), (2, 1)]
     """
+    potential.check_at_rest("stable manifolds")
     images = checked_count("images", images, 1, MOST_IMAGES)
     given, given_energy, units = potential, checked_number("energy", energy), potential.units
     whole = default_window(potential, SECTION.plane, given_energy)
@@ -172,21 +173,22 @@ def find_stable_manifolds(
     spacing = _PointSpacing.for_window(whole.scaled(*factors), part.scaled(*factors) if part is not None else None)
     orbits = {orbit.channel: orbit for orbit in find_lyapunov_orbits(potential, energy)}
     mirror = potential.mirror_in_x and window is None
-    firsts = [channel for channel in orbits if not mirror or channel <= potential.mirror_channels[channel]]
+    image = potential.mirror_numbers(energy) if mirror else np.arange(potential.channels + 1)
+    firsts = [channel for channel in orbits if channel <= image[channel]]
     # Each thread waits for the tiles of its channel most of the time.
     with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
         found = threads.map(lambda channel: _find_arcs(potential, orbits[channel], images, spacing, execution), firsts)
         arcs = dict(zip(firsts, found, strict=True))
     truncated = any(unfinished for _, unfinished in arcs.values())
-    restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, potential))
+    restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, int(image[channel])))
     return StableManifolds(given, given_energy, restored, images, truncated)
 
 
-def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], potential: Potential) -> list[ManifoldArc]:
+def _arcs_of(channel: int, arcs: dict[int, tuple[list[ManifoldArc], bool]], image: int) -> list[ManifoldArc]:
     """The arcs of a channel, or the images of those of its mirror channel."""
     if channel in arcs:
         return arcs[channel][0]
-    return [_mirrored(arc, channel) for arc in arcs[int(potential.mirror_channels[channel])][0]]
+    return [_mirrored(arc, channel) for arc in arcs[image][0]]
 
 
 def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:

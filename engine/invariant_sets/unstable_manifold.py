@@ -9,7 +9,9 @@ import numpy as np
 
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import LyapunovOrbit, exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.exits.lyapunov_orbits import LyapunovOrbit
+from engine.exits.periodic_orbits import monodromy_matrix
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
@@ -67,16 +69,17 @@ class UnstableManifold:
         Raises
         ------
         ValueError
-            When the orbit is not unstable.
+            When the orbit is not unstable, or the frame rotates.
         """
-        monodromy = _monodromy(potential, orbit)
+        potential.check_at_rest("manifolds of Lyapunov orbits")
+        monodromy = monodromy_matrix(potential, np.array([orbit.x[0], orbit.y[0], 0.0, 0.0]), orbit.period)
         multiplier, direction = _leading_eigenvector(monodromy)
         if not multiplier > _MIN_MULTIPLIER:
             raise ValueError(
                 f"the Lyapunov orbit of channel {orbit.channel} is not unstable; "
                 f"its multiplier {multiplier:.3g} must be above {_MIN_MULTIPLIER:g}"
             )
-        if direction[:2] @ potential.outward_directions[orbit.channel - 1] > 0.0:
+        if direction[:2] @ orbit.outward > 0.0:
             direction = -direction
         largest, near_passages = _MAX_DISPLACEMENT, 0
         if orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0:
@@ -95,7 +98,7 @@ class UnstableManifold:
         """
         kernels = kernels_of(self.potential)
         (start,) = self.start_states(np.array([self.min_displacement]))
-        steps = trace_steps(kernels, start, self.orbit.period, self.potential.channels)
+        steps = trace_steps(kernels, start, self.orbit.period, len(self.potential.outcomes))
         target = sample_path(kernels, steps, np.array([self.orbit.period]))[:, 0]
         displacement = self.max_displacement
         for _ in range(3):
@@ -157,18 +160,6 @@ def _leading_eigenvector(matrix: np.ndarray) -> tuple[float, np.ndarray]:
     values, vectors = np.linalg.eig(matrix)
     leading = int(np.argmax(np.abs(values)))
     return float(values[leading].real), vectors[:, leading].real.copy()
-
-
-def _monodromy(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """(4, 4) linearised flow over one period from the orbit's point of rest."""
-    kernels = kernels_of(potential)
-    start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
-    steps = trace_steps(kernels, start, orbit.period, potential.channels)
-    durations = np.diff(steps[:, 4], append=orbit.period)
-    columns = np.eye(4)
-    for state, duration in zip(steps[:, :4], durations, strict=True):
-        kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *columns)
-    return columns
 
 
 def _passages(

@@ -1,4 +1,4 @@
-"""Origin and fate of orbits: the channel through which each one entered, and the one through which it leaves."""
+"""Origin and fate of orbits: the outcome of each one backward in time, such as the channel it entered by, and forward."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from engine.maps.compute import run_map
 from engine.maps.pixels import PixelAnalysis
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.potentials.outcomes import OutcomeKind
 from engine.results.codes import describe_codes
 from engine.validation import checks_types
 
@@ -32,8 +33,8 @@ class OriginFateMap(PixelAnalysis):
     x, ordinate
         (columns,), (rows,) pixel centres.
     origin, fate
-        (rows, columns) int8: the channel k ≥ 1 through which the orbit entered or leaves, or a `Fate`. `Fate.BOUNDED` means
-        inside since −t_max, or until t_max. Read-only.
+        (rows, columns) int8: the outcome k ≥ 1, such as the channel through which the orbit entered or leaves, or a `Fate`.
+        `Fate.BOUNDED` means inside since −t_max, or until t_max. Read-only.
     """
 
     x: np.ndarray
@@ -42,8 +43,8 @@ class OriginFateMap(PixelAnalysis):
     fate: np.ndarray
 
     def count_passages(self) -> np.ndarray:
-        """(channels + 1, channels + 1) int64: number of starts by origin (row) and fate (column); 0 is bounded, k channel k."""
-        size = self.spec.channels + 1
+        """(outcomes + 1, outcomes + 1) int64: number of starts by origin (row) and fate (column); 0 is bounded, k outcome k."""
+        size = len(self.spec.outcomes) + 1
         interior = (self.origin >= 0) & (self.fate >= 0)
         pairs = self.origin[interior].astype(np.int64) * size + self.fate[interior]
         return np.bincount(pairs, minlength=size * size).reshape(size, size)
@@ -52,10 +53,12 @@ class OriginFateMap(PixelAnalysis):
         """Shares of the passages in one sentence."""
         counts = self.count_passages()
         total = max(int(counts.sum()), 1)
+        only_exits = all(outcome.kind is OutcomeKind.EXIT for outcome in self.spec.outcomes)
+        ends, alike = ("enter and leave", "through the same channel") if only_exits else ("end in both time directions", "alike")
         through, same = int(counts[1:, 1:].sum()), int(np.trace(counts[1:, 1:]))
         return (
-            f"{through / total:.1%} of the interior starts lie on orbits that enter and leave, {same / total:.1%} through the "
-            f"same channel; {counts[0, 0] / total:.1%} are bounded in both time directions, the rest in one."
+            f"{through / total:.1%} of the interior starts lie on orbits that {ends}, {same / total:.1%} {alike}; "
+            f"{counts[0, 0] / total:.1%} are bounded in both time directions, the rest in one."
         )
 
     def to_xarray(self) -> xr.Dataset:
@@ -65,8 +68,9 @@ class OriginFateMap(PixelAnalysis):
 
         abscissa, ordinate = self.spec.plane.axis_names
         dims = (ordinate, abscissa)
+        fates = describe_codes(Fate, [outcome.label for outcome in self.spec.outcomes])
         variables: dict[str, Any] = {
-            name: (dims, codes, {"long_name": f"channel the orbit {verb} by (k >= 1) or outcome code", **describe_codes(Fate)})
+            name: (dims, codes, {"long_name": f"channel the orbit {verb} by (k >= 1) or outcome code", **fates})
             for name, verb, codes in (("origin", "entered", self.origin), ("fate", "leaves", self.fate))
         }
         coordinates = {ordinate: self.ordinate, abscissa: self.x}

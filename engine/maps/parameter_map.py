@@ -25,6 +25,7 @@ from engine.maps.run import MapRun
 from engine.maps.spec import MapSpec
 from engine.results.arrays import read_only
 from engine.slices.axes import HeldParameter
+from engine.slices.energies import highest_energy
 from engine.slices.parameter_family import ManyExitsError, parameter_family
 from engine.slices.window import Window
 
@@ -33,7 +34,7 @@ from engine.slices.window import Window
 _FIRST_HORIZON = 1000.0
 # Distances of the lines of the first frames.
 _STRIDES = (8, 4, 2, 1)
-# The arrays whose positive codes are numbers of channels.
+# The arrays whose positive codes are numbers of outcomes.
 _NUMBERED = ("fate", "outside")
 # Pause between frames of an analysis, in seconds.
 _PAUSE = 0.5
@@ -56,7 +57,7 @@ class Line:
     place
         Its index in the arrays of the whole map.
     numbers
-        (channels + 1,) the number of each of its channels on the whole map; entry 0 is 0.
+        (outcomes + 1,) the fate on the whole map of each of its fates; entry 0 is 0.
     """
 
     spec: MapSpec
@@ -64,7 +65,7 @@ class Line:
     numbers: np.ndarray
 
     def of(self, escape_map: EscapeMap) -> EscapeMap:
-        """This line of a map, with its own numbers of channels, and with its integration state if the map has one."""
+        """This line of a map, with its own numbers of outcomes, and with its integration state if the map has one."""
         own = np.zeros(int(self.numbers.max(initial=0)) + 1, np.int8)
         own[self.numbers] = np.arange(self.numbers.size)
         arrays: dict[str, Any] = {name: getattr(escape_map, name)[self.place] for name in PIXEL_ARRAYS}
@@ -104,11 +105,11 @@ def _line(spec: MapSpec, window: Window, find_member: Callable[[float], Any], k:
     else:
         place, size, part = np.s_[k : k + 1, :], (columns, 1), Window(window.x_low, window.x_high, *edges)
     line_spec = replace(spec, potential=member.potential, plane=spec.plane.line(value), resolution=size, window=part)
-    return Line(line_spec, place, member.numbers)
+    return Line(line_spec, place, member.numbers_at(highest_energy(spec.energy)))
 
 
 def renumbered(codes: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """Codes of which the positive ones, numbers of channels, are replaced by others."""
+    """Codes of which the positive ones, numbers of outcomes, are replaced by others."""
     changed: np.ndarray = np.where(codes > 0, numbers[np.maximum(codes, 0)], codes)
     return changed
 

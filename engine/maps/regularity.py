@@ -13,7 +13,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.deviation_vectors import attach_deviations, propagate_deviations
 from engine.dynamics.fates import MIN_REGULAR_TIME, Fate, Regularity, is_chaotic
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
 from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import EscapeMap
@@ -39,7 +39,7 @@ class RegularityMap(PixelAnalysis):
         (rows, columns) int8 `Regularity` codes, read-only.
     sali
         (rows, columns) the smallest SALI of each bounded orbit until it was judged, 0 to √2, looked at every few units of time:
-        at most 1e-7 if the orbit is chaotic, larger if it is regular. NaN for other pixels, and for orbits certified as
+        at most 1e-7 if the orbit is chaotic, otherwise larger. NaN for other pixels, and for orbits certified as
         quasi-periodic by the map. Read-only.
     complete
         Whether every bounded pixel is judged.
@@ -51,15 +51,14 @@ class RegularityMap(PixelAnalysis):
     codes: ClassVar = {"character": Regularity}
 
     @property
-    def is_too_short(self) -> bool:
-        """Whether t_max is too short to call an orbit regular: then the code only says that it is not chaotic until t_max."""
-        return self.spec.t_max < MIN_REGULAR_TIME * self.spec.potential.units.time
-
-    @property
     def chaotic_share(self) -> float:
         """Share of chaotic orbits among the bounded ones judged; NaN if there are none."""
-        judged = np.isin(self.character, (Regularity.REGULAR, Regularity.CHAOTIC))
-        return code_share(self.character[judged], Regularity.CHAOTIC)
+        return self.share_of(Regularity.CHAOTIC)
+
+    def share_of(self, character: Regularity) -> float:
+        """Share of orbits of a character among the bounded ones judged; NaN if there are none."""
+        judged = ~np.isin(self.character, (Regularity.NOT_APPLICABLE, Regularity.NOT_JUDGED))
+        return code_share(self.character[judged], character)
 
 
 @shows_progress("regularity")
@@ -73,7 +72,8 @@ def compute_regularity(
     """Judge the bounded orbits of a complete map as regular or chaotic.
 
     Orbits certified as quasi-periodic are regular. Another orbit is chaotic if its SALI falls to 1e-7 by t_max (Zotos 2014,
-    eq. 9). It is regular if its Birkhoff averages show a torus first, or if it reaches t_max. An orbit bounded on the map only by
+    eq. 9). It is regular if its Birkhoff averages show a torus, over windows on the way or over both halves of the orbit. Another
+    one that reaches t_max shows no sign of chaos until then; Zotos (2014) calls it regular. An orbit bounded on the map only by
     rounding, which runs off to infinity here, is judged by its smallest SALI until then.
 
     Parameters
@@ -88,7 +88,7 @@ def compute_regularity(
     Raises
     ------
     ValueError
-        When the map is not complete.
+        When the map is not complete, or its potential has centres.
 
     Examples
     --------
@@ -99,6 +99,7 @@ def compute_regularity(
     """
     escape_map = as_map("escape_map", escape_map)
     escape_map.check_complete("escape_map")
+    escape_map.spec.potential.check_without_centres("regular and chaotic orbits of a map")
     if escape_map.spec.plane.parameter is None:
         return _judge_regularity(escape_map, on_frame, execution)
 
@@ -130,7 +131,7 @@ class _RegularityClassification:
     """The orbits not judged yet, with their deviation vectors, and the time they have reached, in units of the well."""
 
     def __init__(self, escape_map: EscapeMap, execution: Execution) -> None:
-        self._spec, self._execution = escape_map.spec, execution
+        self._map, self._spec, self._execution = escape_map, escape_map.spec, execution
         codes = np.where(escape_map.fate == Fate.BOUNDED, Regularity.NOT_JUDGED, Regularity.NOT_APPLICABLE)
         codes[escape_map.certificate == Certificate.QUASI_PERIODIC] = Regularity.REGULAR
         self._codes = PixelCodes(escape_map, codes, Regularity.NOT_JUDGED)
@@ -148,7 +149,9 @@ class _RegularityClassification:
             yield partial(self._find_tori, window)
         while self._pixels.size and self._time < self._spec.t_max:
             yield partial(self._find_chaotic, min(self._time + _INTERVAL, self._spec.t_max))
-        yield self._judge_rest_regular
+        if self._spec.t_max >= MIN_REGULAR_TIME:
+            yield self._compare_halves
+        yield self._judge_rest
 
     def _find_chaotic(self, time: float) -> None:
         """Integrate the deviation vectors up to `time`, and judge orbits by their smallest SALI."""
@@ -165,8 +168,14 @@ class _RegularityClassification:
         digits = count_agreeing_digits(self._spec.potential, self._orbits[:, :4], window, execution=self._execution)
         self._judge(digits >= CERTIFIED_DIGITS, Regularity.REGULAR)
 
-    def _judge_rest_regular(self) -> None:
-        self._judge(np.ones(self._pixels.size, bool), Regularity.REGULAR)
+    def _compare_halves(self) -> None:
+        """Judge orbits as regular whose averages agree over both halves, from the start to t_max."""
+        starts = self._spec.start_states(*self._map.coordinates(self._pixels))
+        digits = count_agreeing_digits(self._spec.potential, starts, 0.5 * self._spec.t_max, execution=self._execution)
+        self._judge(digits >= REGULAR_DIGITS, Regularity.REGULAR)
+
+    def _judge_rest(self) -> None:
+        self._judge(np.ones(self._pixels.size, bool), Regularity.NO_SIGN_OF_CHAOS)
 
     def _judge(self, which: np.ndarray, character: Regularity) -> None:
         """Assign a code to the orbits in the mask `which`, and drop them."""

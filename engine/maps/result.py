@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -9,10 +10,11 @@ import numpy as np
 
 from engine.dynamics.batch import OrbitBatch
 from engine.dynamics.certificates import Certificate
-from engine.dynamics.fates import Fate, Trust
+from engine.dynamics.fates import Fate, Trust, name_fate
 from engine.maps.spec import MapSpec
+from engine.potentials.outcomes import Outcome
 from engine.potentials.well_units import TIME
-from engine.results.codes import describe_codes, name_code
+from engine.results.codes import describe_codes
 from engine.results.result import MapResult
 from engine.slices.window import Window
 from engine.validation import checked_flag
@@ -48,7 +50,8 @@ class EscapeMap(MapResult):
         int8, the `Certificate` of each bounded orbit: why it is called bounded. Crossings and energy error of an orbit certified
         early refer to the time up to which it was integrated.
     outside
-        int8, the channel beyond whose Lyapunov orbit the start lies, 0 inside.
+        int8, the number of the outcome at which the start lies, as in `fate`: beyond an exit, in a disc, or beyond the escape
+        radius; 0 inside.
     stride
         At least one pixel of each square of `stride` pixels a side has been started; 1 when all have.
     horizon
@@ -101,7 +104,7 @@ class EscapeMap(MapResult):
         made_by = {"potential": spec.potential.name, "plane": spec.plane.title, "energy": str(spec.energy), "t_max": spec.t_max}
         shares = self.fractions().items()
         rounded = {} if self.rounded_share is None else {"lost to rounding, about": self.rounded_share}
-        return made_by | {name_code(Fate, code): share for code, share in shares} | {"complete": self.complete} | rounded
+        return made_by | {name_fate(code, spec.outcomes): share for code, share in shares} | {"complete": self.complete} | rounded
 
     @property
     def interior(self) -> np.ndarray:
@@ -156,20 +159,18 @@ class EscapeMap(MapResult):
         return self.x[columns], self.ordinate[rows]
 
     def fractions(self, *, count_outside: bool = False) -> dict[int, float]:
-        """Share of the starts for each channel, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
+        """Share of the starts for each of `MapSpec.outcomes`, and for `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`.
 
         Parameters
         ----------
         count_outside
-            Whether outside starts count as escaped at once through the channel they lie in, as in the percentages of Zotos
+            Whether outside starts count as escaped at once at the outcome they lie at, as in the percentages of Zotos
             (2014); the shares then depend on the window. By default they are shares of the interior starts.
         """
         fate = self.fate
         if checked_flag("count_outside", count_outside):
             fate = np.where(fate == Fate.OUTSIDE, self.outside, fate)
-        fate = fate[find_interior(fate)]
-        codes = (*range(1, self.spec.channels + 1), Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
-        return {int(code): float(np.mean(fate == code)) if fate.size else 0.0 for code in codes}
+        return outcome_shares(fate, self.spec.outcomes)
 
     def thinned(self) -> tuple[dict[str, np.ndarray], Window]:
         """fate, escape_time, crossings and certificate of one started pixel per square of `stride` pixels a side.
@@ -196,13 +197,9 @@ class EscapeMap(MapResult):
 
         abscissa, ordinate = self.spec.plane.axis_names
         dims = (ordinate, abscissa)
-        variables = {
-            "fate": (dims, self.fate, {"long_name": "exit channel (k >= 1) or outcome code", **describe_codes(Fate)}),
-            "escape_time": (dims, self.escape_time, {"long_name": "escape time", "units": "1"}),
-            "crossings": (dims, self.crossings, {"long_name": "upward crossings of y = 0 before escape"}),
-            "outside": (dims, self.outside, {"long_name": "channel beyond whose Lyapunov orbit the start lies, 0 inside"}),
+        variables = outcome_variables(self.spec, self.fate, self.escape_time, self.crossings, self.energy_error) | {
+            "outside": (dims, self.outside, {"long_name": "exit beyond which the start lies, 0 inside"}),
             "certificate": (dims, self.certificate, {"long_name": "why the orbit is bounded", **describe_codes(Certificate)}),
-            "energy_error": (dims, self.energy_error, {"long_name": "relative energy error", "units": "1"}),
         }
         if self.trust is not None:
             variables["trust"] = (dims, self.trust, {"long_name": "reliability of the outcome", **describe_codes(Trust)})
@@ -221,6 +218,29 @@ class EscapeMap(MapResult):
             "complete": int(self.complete),
             "counts": "; ".join(f"{code}: {count}" for code, count in zip(codes, counts, strict=True)),
         }
+
+
+def outcome_shares(fate: np.ndarray, outcomes: Sequence[Outcome]) -> dict[int, float]:
+    """Share of the interior starts among fates of any shape that have each outcome, by its code; 0 without interior starts."""
+    interior = fate[find_interior(fate)]
+    ends = (code for code, outcome in enumerate(outcomes, 1) if outcome.occurs)
+    codes = (*ends, Fate.BOUNDED, Fate.NOT_COMPUTED, Fate.FAILED)
+    return {int(code): float(np.mean(interior == code)) if interior.size else 0.0 for code in codes}
+
+
+def outcome_variables(
+    spec: MapSpec, fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, energy_error: np.ndarray
+) -> dict[str, tuple[tuple[str, str], np.ndarray, dict[str, Any]]]:
+    """What orbits of a map end at, as variables of a dataset; arrays (rows, columns)."""
+    abscissa, ordinate = spec.plane.axis_names
+    dims = (ordinate, abscissa)
+    fates = describe_codes(Fate, [outcome.label for outcome in spec.outcomes])
+    return {
+        "fate": (dims, fate, {"long_name": "exit channel (k >= 1) or outcome code", **fates}),
+        "escape_time": (dims, escape_time, {"long_name": "escape time", "units": "1"}),
+        "crossings": (dims, crossings, {"long_name": "upward crossings of y = 0 before escape"}),
+        "energy_error": (dims, energy_error, {"long_name": "relative energy error", "units": "1"}),
+    }
 
 
 def find_interior(fate: np.ndarray) -> np.ndarray:

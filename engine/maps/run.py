@@ -13,7 +13,7 @@ from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.exits.exit_rows import closed_exits, exit_curves
 from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices
@@ -41,7 +41,7 @@ def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float
 
 def certifies_before(spec: MapSpec, reached: float, horizon: float) -> bool:
     """Whether orbits integrated up to `reached` are to be tested for certificates before they go on to `horizon`."""
-    return spec.certify and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= reached
+    return spec.certify and spec.potential.certifies_tori and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= reached
 
 
 class MapRun:
@@ -82,7 +82,7 @@ class MapRun:
         self._energy = spec.energies(self.x[columns_of_pixels], self.ordinate[rows_of_pixels])
         # Along an axis h each row, or column, has its own energy and exits.
         self._curve_row = spec.plane.energy_groups(*self.shape)
-        self._curves = np.repeat(closed_channel_curves(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
+        self._curves = np.repeat(closed_exits(spec.potential)[None], self._curve_row[-1] + 1, axis=0)
         self._rows_without_exits = set(range(len(self._curves)))
         self._batch, self._started = OrbitBatch.empty(self._curve_row), np.zeros(self._curve_row.size, bool)
         # Energy errors of the orbits that an earlier map has finished, whose states are not kept; NaN for all others.
@@ -160,7 +160,7 @@ class MapRun:
 
     def _close(self, pixels: np.ndarray) -> None:
         """Mark orbits as bounded whose energy is below every saddle; they need no integration."""
-        closed = self._energy[pixels] <= self.spec.potential.escape_energy
+        closed = self.spec.potential.is_closed_at(self._energy[pixels])
         undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
         self._batch.mark_bounded(pixels[closed & undecided], Certificate.CLOSED)
 
@@ -212,7 +212,7 @@ class MapRun:
         seconds = self._mirror.partner
         firsts = np.flatnonzero(self._started & (seconds > np.arange(seconds.size)))
         if firsts.size:
-            self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.mirror_channels)
+            self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.mirror_numbers(self._energy[firsts]))
             self._started[seconds[firsts]] = True
         outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
         if self._earlier_errors is None:

@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
+from engine.potentials.stored_potential import describe_potential
 from engine.potentials.well_units import WellUnits
 from engine.slices.default_window import map_window
 from engine.slices.energies import Energy, common_energy, scaled_energy
@@ -59,9 +61,9 @@ class MapSpec:
     certify
         Whether an orbit is called bounded before t_max if it has a certificate that it never escapes.
     backward
-        Whether orbits are followed into the past. As the potential does not depend on velocity, this equals following
-        (x, y, −px, −py) into the future. Fates are then the channels through which orbits entered, escape times tell how long
-        ago, and crossings are the upward crossings of the reversed orbit.
+        Whether orbits are followed into the past. This equals following (x, y, −px, −py) into the future, in a rotating frame
+        with −Ω for Ω. Fates are then the outcomes backward in time, such as the channels through which orbits entered,
+        escape times tell how long ago, and crossings are the upward crossings of the reversed orbit.
 
     Raises
     ------
@@ -112,10 +114,10 @@ class MapSpec:
         return common_energy(self.energy)
 
     @property
-    def channels(self) -> int:
-        """The number of exit channels; along a parameter, of all its potentials."""
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What orbits can end at, the first one is fate 1; along a parameter, those of all its potentials."""
         axis = self.plane.parameter
-        return self.potential.channels if axis is None else parameter_family(axis).channels
+        return self.potential.outcomes_at(self.energy) if axis is None else parameter_family(axis).outcomes
 
     @property
     def given_window(self) -> Window | None:
@@ -137,12 +139,13 @@ class MapSpec:
     def in_well_units(self) -> MapSpec:
         """The same map in units of the well, with its window; the legal range of t_max and of energies does not apply to it."""
         units, window = self.potential.units, self.find_window()
+        potential = self.potential.reversed_in_time if self.backward else self.potential
         scaled = copy.copy(self)
         object.__setattr__(scaled, "window", window)
+        object.__setattr__(scaled, "potential", potential.in_well_units)
         if units == WellUnits():
             return scaled
         for name, value in (
-            ("potential", self.potential.in_well_units),
             ("plane", self.plane.in_well_units(units)),
             # Units are powers of 2, so that factors are exact.
             ("energy", scaled_energy(self.energy, 1.0 / units.energy)),
@@ -171,8 +174,7 @@ class MapSpec:
         """The request in plain values, with the integrator and the package version."""
         window, (axes, held), axis = self.find_window(), write_slice(self.plane), self.plane.parameter
         return {
-            "potential": self.potential.name,
-            "terms": self.potential.form.text,
+            **describe_potential(self.potential),
             "energy": self.energy,
             "plane": self.plane.title,
             "axes": axes,

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,8 +10,7 @@ import numpy as np
 from engine.dynamics.fates import Fate
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.formulas.formula_parser import parse_formula
-from engine.potentials.potential import Potential
+from engine.potentials.stored_potential import read_potential
 from engine.potentials.system import System
 from engine.results.arrays import read_only
 from engine.slices.slice_text import read_slice
@@ -24,8 +21,6 @@ if TYPE_CHECKING:
 
 type MapLike = EscapeMap | xr.Dataset
 """A map as measures and analyses take it: an `EscapeMap`, or the dataset of one, such as one of the maps of a sweep."""
-
-_TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def as_map(name: str, value: Any) -> EscapeMap:
@@ -74,15 +69,6 @@ def read_spec(dataset: xr.Dataset) -> MapSpec:
         read_potential(found), plane, _plain(energy), (columns, rows), window,  # type: ignore[arg-type]
         float(found["t_max"]), certify=bool(found["certify"]), backward=bool(found["backward"]),
     )  # fmt: skip
-
-
-def read_potential(attributes: Mapping[Any, Any]) -> Potential:
-    """The potential of a dataset from the text of its terms, whose coefficients have all digits, or from its formula."""
-    text, name = str(attributes["terms"]), str(attributes["potential"])
-    terms = [_TERM.fullmatch(term) for term in text.split("; ")]
-    if not all(terms):
-        return parse_formula(text, name)
-    return Potential(name, tuple((int(term[2]), int(term[3]), float(term[1])) for term in terms if term is not None))
 
 
 def _plain(energy: Any) -> Any:

@@ -12,13 +12,14 @@ import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.classification import collect_outcomes
-from engine.dynamics.fates import Fate, Regularity
+from engine.dynamics.fates import Fate, Regularity, outcome_of
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.maps.pixels import MirrorPixels
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.potentials.outcomes import OutcomeKind
 from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
@@ -85,11 +86,15 @@ class SuperStickySearch(Result):
         escapers = self.escapers
         if not escapers.size:
             return f"None of them leaves by t = {self.t_max:.4g}."
-        channels, counts = np.unique(self.fate[escapers], return_counts=True)
-        by_channel = ", ".join(f"{count} through channel {channel}" for channel, count in zip(channels, counts, strict=True))
+        fates, counts = np.unique(self.fate[escapers], return_counts=True)
+        ends = [outcome_of(fate, self.spec.outcomes) for fate in fates.tolist()]
+        by_end = ", ".join(
+            f"{count} {'through ' if end.kind is OutcomeKind.EXIT else ''}{end.label}"
+            for end, count in zip(ends, counts, strict=True)
+        )
         times = self.escape_time[escapers]
         return (
-            f"{escapers.size} of them leave by t = {self.t_max:.4g} ({by_channel}): the first at t = {times[0]:.6g}, "
+            f"{escapers.size} of them leave by t = {self.t_max:.4g} ({by_end}): the first at t = {times[0]:.6g}, "
             f"half of these by {np.median(times):.6g}, the last at {times[-1]:.6g}."
         )
 
@@ -148,7 +153,9 @@ def _search(escape_map: EscapeMap, regularity: RegularityMap, t_max: float, exec
     _propagate(spec, batch, np.flatnonzero(pixels <= partner), t_max, execution)
     if mirror.symmetric:
         firsts = np.flatnonzero(pixels < partner)
-        batch.copy_to_images(firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_channels)
+        batch.copy_to_images(
+            firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_numbers(spec.energies(x, ordinate)[firsts])
+        )
     outcomes = collect_outcomes(spec.potential, spec.energies(x, ordinate), batch)
     return SuperStickySearch(
         spec,

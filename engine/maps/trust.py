@@ -14,7 +14,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import CHAOS_THRESHOLD, Fate, Trust
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.exits.exit_rows import closed_exits, exit_curves
 from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
 from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
@@ -305,7 +305,7 @@ def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
     """(rows, columns) bool: bounded pixels above the escape energy that have no certificate."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & (energy > spec.potential.escape_energy)
+    uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & ~spec.potential.is_closed_at(energy)
     return uncertified
 
 
@@ -342,10 +342,10 @@ class _TrustTest:
             getattr(escape_map, name).ravel()[pixels] for name in ("fate", "crossings", "escape_time")
         )
         energies, curve_row = np.unique(spec.energies(x, ordinate), return_inverse=True)
-        curves = np.repeat(closed_channel_curves(potential)[None], energies.size, axis=0)
+        curves = np.repeat(closed_exits(potential)[None], energies.size, axis=0)
         for k, energy in enumerate(energies):
             curves[k] = exit_curves(potential, float(energy))
-        closed = np.flatnonzero(energies[curve_row] <= potential.escape_energy)
+        closed = np.flatnonzero(potential.is_closed_at(energies[curve_row]))
         reruns = []
         for start, tolerance in zip(shifted_starts(spec, x, ordinate, shift), (TOLERANCE, SECOND_TOLERANCE), strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)

@@ -1,4 +1,4 @@
-"""Escape statistics of a map or of a rectangle in it: channels, escape times and upward crossings of y = 0."""
+"""Escape statistics of a map or of a rectangle in it: outcomes, escape times and upward crossings of y = 0."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from engine.dynamics.classification import Outcomes
 from engine.dynamics.fates import Fate
 from engine.maps.result import EscapeMap
 from engine.maps.stored_maps import MapLike, as_map
+from engine.potentials.outcomes import Outcome
 from engine.results.arrays import read_only
 from engine.results.proportions import wilson_interval
 from engine.results.result import Result
@@ -33,7 +34,7 @@ class EscapeStatistics(Result):
     Attributes
     ----------
     channel_counts
-        Number of escapes through channel 1, 2, … .
+        Number of escapes through channel 1, 2, …, and at the other `outcomes`: collisions count as escapes.
     bounded, undecided, failed
         Number of starts with the fate `Fate.BOUNDED`, `NOT_COMPUTED` (including orbits not started yet) and `FAILED`.
     mean_escape_time, median_escape_time
@@ -44,6 +45,8 @@ class EscapeStatistics(Result):
         (escaped,) float64, all escape times, row by row, dimensionless.
     t_max
         Integration time of the orbits, dimensionless; infinite if it is not known.
+    outcomes
+        What the counts are of, see `Potential.outcomes`; empty if it is not known.
     """
 
     channel_counts: tuple[int, ...]
@@ -55,6 +58,7 @@ class EscapeStatistics(Result):
     crossing_counts: np.ndarray = field(repr=False)
     escape_times: np.ndarray = field(repr=False)
     t_max: float = float("inf")
+    outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
 
     @property
     def starts(self) -> int:
@@ -88,7 +92,7 @@ class EscapeStatistics(Result):
 
     @property
     def shares(self) -> dict[int, float]:
-        """Share of N0 by channel and by `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
+        """Share of N0 by outcome, 1 for the first, and by `Fate.BOUNDED`, `NOT_COMPUTED` and `FAILED`; 0 without starts."""
         counts = dict(enumerate(self.channel_counts, start=1))
         counts |= {int(Fate.BOUNDED): self.bounded, int(Fate.NOT_COMPUTED): self.undecided, int(Fate.FAILED): self.failed}
         return {code: count / self.starts if self.starts else 0.0 for code, count in counts.items()}
@@ -163,16 +167,18 @@ def compute_statistics(frame: MapLike | Outcomes, window: GivenWindow | None = N
     if isinstance(frame, Outcomes):
         if window is not None:
             raise ValueError(f"window={window}: must be None for orbits that are no map")
-        return _count(frame.fate, frame.escape_time, frame.crossings, frame.channels, frame.t_max)
+        return _count(frame.fate, frame.escape_time, frame.crossings, frame.outcomes, frame.t_max)
     frame = as_map("frame", frame)
     part = pixels_inside(frame, None if window is None else checked_window(window))
-    return _count(frame.fate[part], frame.escape_time[part], frame.crossings[part], frame.spec.channels, frame.spec.t_max)
+    return _count(frame.fate[part], frame.escape_time[part], frame.crossings[part], frame.spec.outcomes, frame.spec.t_max)
 
 
-def _count(fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, channels: int, t_max: float) -> EscapeStatistics:
+def _count(
+    fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, outcomes: tuple[Outcome, ...], t_max: float
+) -> EscapeStatistics:
     escaped = fate >= 1
     times = escape_time[escaped]
-    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=channels + 1 - _LOWEST_CODE).tolist()
+    counts = np.bincount(fate.ravel().astype(np.intp) - _LOWEST_CODE, minlength=len(outcomes) + 1 - _LOWEST_CODE).tolist()
     return EscapeStatistics(
         channel_counts=tuple(counts[1 - _LOWEST_CODE :]),
         bounded=counts[Fate.BOUNDED - _LOWEST_CODE],
@@ -183,6 +189,7 @@ def _count(fate: np.ndarray, escape_time: np.ndarray, crossings: np.ndarray, cha
         crossing_counts=read_only(np.bincount(crossings[escaped])),
         escape_times=read_only(times),
         t_max=t_max,
+        outcomes=outcomes,
     )
 
 

@@ -31,7 +31,7 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     Parameters
     ----------
     fate
-        (rows, columns) integer `Fate` codes and channels of a map, finished or not.
+        (rows, columns) integer `Fate` codes and outcomes of a map, finished or not.
     bounded
         Whether bounded orbits are a label of their own, 0, or do not count; see `ENTROPY_COUNTS_BOUNDED` and
         `WADA_COUNTS_BOUNDED`.
@@ -39,7 +39,7 @@ def exit_labels(fate: np.ndarray, *, bounded: bool) -> tuple[np.ndarray, np.ndar
     Returns
     -------
     labels
-        (rows, columns) int, a read-only view of `fate`: the channel of escaping orbits, `Fate.BOUNDED` = 0 of bounded ones, and
+        (rows, columns) int, a read-only view of `fate`: the outcome of escaping orbits, `Fate.BOUNDED` = 0 of bounded ones, and
         arbitrary codes where `valid` is False.
     valid
         (rows, columns) bool, the pixels that count; read-only.

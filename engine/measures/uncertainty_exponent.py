@@ -11,7 +11,7 @@ from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import closed_channel_curves, exit_curves
+from engine.exits.exit_rows import closed_exits, exit_curves
 from engine.maps.spec import MapSpec
 from engine.measures.power_law_fit import MIN_EXPECTED_PAIRS, UncertaintyExponent, fit_uncertainty, predict_shares
 from engine.results.arrays import read_only
@@ -159,12 +159,12 @@ class _PairSampler:
         self.integrated_time = 0.0
         axis = spec.plane.energy_axis
         self.row_energy = np.array([spec.common_energy]) if axis is None else spec.pixel_centres()[axis]
-        self.is_open = self.row_energy > spec.potential.escape_energy
+        self.is_open = ~spec.potential.is_closed_at(self.row_energy)
         self.curves = self._find_exit_curves()
 
     def _find_exit_curves(self) -> np.ndarray:
         """Exit curves at each energy."""
-        curves = np.repeat(closed_channel_curves(self.spec.potential)[None], self.row_energy.size, axis=0)
+        curves = np.repeat(closed_exits(self.spec.potential)[None], self.row_energy.size, axis=0)
         for row in np.flatnonzero(self.is_open):
             self.execution.raise_if_cancelled()
             curves[row] = exit_curves(self.spec.potential, float(self.row_energy[row]))

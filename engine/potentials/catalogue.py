@@ -2,45 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import comb
 from types import MappingProxyType
 
 from engine.polynomials import HIGHEST_DEGREE
-from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.names import ByName
 from engine.potentials.potential import Potential
+from engine.potentials.potential_entry import PotentialEntry
+from engine.potentials.rotating_systems import ROTATING_ENTRIES
 from engine.validation import checked_count
-
-
-@dataclass(frozen=True)
-class PotentialEntry:
-    """A potential with its description.
-
-    Attributes
-    ----------
-    name
-        Its key in `POTENTIALS` and `CATALOGUE`, and the name of the potential.
-    title
-        Display name.
-    formula
-        V as text, in the notation of `engine.potentials.formulas.formula_parser.parse_formula`.
-    description
-        One sentence.
-    reference
-        Source in the literature.
-    potential
-        The potential itself.
-    """
-
-    name: str
-    title: str
-    formula: str
-    description: str
-    reference: str
-    potential: Potential
 
 
 def channel_family(n: int) -> Potential:
@@ -74,7 +46,7 @@ def channel_family(n: int) -> Potential:
 
 def _paper_entry(name: str, formula: str, description: str) -> PotentialEntry:
     reference = "E. E. Zotos, Nonlinear Dynamics 78, 1389 (2014)"
-    return PotentialEntry(name, f"Case {name}", formula, description, reference, parse_formula(formula, name))
+    return PotentialEntry(name, f"Case {name}", formula, description, reference)
 
 
 def _family_entry(n: int) -> PotentialEntry:
@@ -86,7 +58,6 @@ def _family_entry(n: int) -> PotentialEntry:
         f"r²/2 − ({' '.join(_signed_term(n, j) for j in range(0, n + 1, 2)).removeprefix('+ ')})/{n}",
         f"{count} equal channels at θ = 2πk/{n}, open above {Fraction(1, 2) - Fraction(1, n)}{equal}.",
         "V = r²/2 − (1/n) rⁿ cos nθ, a family of potentials of this project",
-        channel_family(n),
     )
 
 
@@ -97,7 +68,7 @@ def _signed_term(n: int, j: int) -> str:
 
 
 def _literature_entry(name: str, title: str, formula: str, description: str, reference: str) -> PotentialEntry:
-    return PotentialEntry(name, title, formula, description, reference, parse_formula(formula, name))
+    return PotentialEntry(name, title, formula, description, reference)
 
 
 _ENTRIES = (
@@ -137,12 +108,29 @@ _ENTRIES = (
     ),
 )
 
-CATALOGUE: Mapping[str, PotentialEntry] = MappingProxyType({entry.name: entry for entry in _ENTRIES})
+CATALOGUE: Mapping[str, PotentialEntry] = MappingProxyType({entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)})
 """The potentials included in the engine with their descriptions, by name; the three cases of Zotos (2014) come first."""
+
+
+class _Potentials(Mapping[str, Potential]):
+    """The potentials of the catalogue, each made at its first use."""
+
+    def __getitem__(self, name: str) -> Potential:
+        return CATALOGUE[name].potential
+
+    def __contains__(self, name: object) -> bool:
+        return name in CATALOGUE
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(CATALOGUE)
+
+    def __len__(self) -> int:
+        return len(CATALOGUE)
+
 
 POTENTIALS: Mapping[str, Potential] = ByName(
     "potential",
-    {name: entry.potential for name, entry in CATALOGUE.items()},
+    _Potentials(),
     {name: entry.title for name, entry in CATALOGUE.items()},
 )
 """All potentials included in the engine, by name: ``POTENTIALS["HH"]``; the three cases of Zotos (2014) come first."""

@@ -13,7 +13,8 @@ _FIXED_STEP = 1.0 / 3.0
 
 def kernels_of(potential: Potential) -> ModuleType:
     """The compiled kernels of a potential in units of its well, from `load_kernels`."""
-    return load_kernels(potential.form.definition, potential.channels)
+    channels, discs, ring, _ = potential.setting
+    return load_kernels(potential.form.definition, channels, discs=discs, ring=ring, rotation=potential.rotation)
 
 
 def fixed_step_size(potential: Potential) -> float:

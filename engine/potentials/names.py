@@ -32,16 +32,19 @@ class ByName[Value](Mapping[str, Value]):
     """
 
     def __init__(self, kind: str, values: Mapping[str, Value], titles: Mapping[str, str] | None = None) -> None:
-        self._kind, self._values, self._titles = kind, dict(values), dict(titles or {})
+        self._kind, self._values, self._titles = kind, values, dict(titles or {})
 
     def __getitem__(self, name: str) -> Value:
         """The value of a name; `UnknownNameError`, a KeyError and a ValueError, names those like it."""
         try:
+            is_known = name in self._values
+        except TypeError:
+            is_known = False
+        if is_known:
             return self._values[name]
-        except (KeyError, TypeError):
-            near = self._like(str(name))
-            meant = f"did you mean {' or '.join(map(repr, near))}? The" if near else "the"
-            raise UnknownNameError(f"{self._kind} {short_repr(name)}: {meant} names are {', '.join(self._values)}") from None
+        near = self._like(str(name))
+        meant = f"did you mean {' or '.join(map(repr, near))}? The" if near else "the"
+        raise UnknownNameError(f"{self._kind} {short_repr(name)}: {meant} names are {', '.join(self._values)}")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)

@@ -1,15 +1,16 @@
-"""Potentials with a well at the origin, and their derived quantities: saddles, escape energy, channels.
+"""Potentials and their derived quantities: saddles, escape energy, channels, outcomes.
 
-A potential is defined by its formula alone. Everything else, including the compiled integrator, is derived from it.
+A potential is defined by its formula, the rotation of its frame, and what orbits end at besides its exits. Everything else,
+including the compiled integrator, is derived from these.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,10 +20,13 @@ from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.form import Form
 from engine.potentials.forms.polynomial_form import PolynomialForm, checked_form
 from engine.potentials.forms.stored_points import stored_points
+from engine.potentials.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
 from engine.potentials.names import ByName
+from engine.potentials.outcomes import Centre, Outcome, checked_radius, exit_outcome, outcomes_of
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.results.arrays import read_only
 from engine.results.result import Result
+from engine.taylor.source.series import Setting
 from engine.validation import check_type, checked_number
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
@@ -32,6 +36,9 @@ EQUAL_ENERGY_TOLERANCE = 1e-12
 # the channel numbers.
 _ROUNDING = 1e-13
 
+# Radius of a circle of typical size, in units of the escape radius, and points on it.
+_TYPICAL_SHARE, _CIRCLE_POINTS = 0.1, 64
+
 Terms = tuple[tuple[int, int, float], ...]
 
 PARAMETER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
@@ -40,23 +47,15 @@ PARAMETER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
 """Legal ranges of the parameters ω1, ω2 and ε of Zotos (2014)."""
 
 
-class ChannelMerger(NamedTuple):
-    """A maximum (x, y) between exits: above V = `energy` there, the `channels` around it are one channel."""
-
-    energy: float
-    x: float
-    y: float
-    channels: tuple[int, ...]
-
-    def describe(self) -> str:
-        """The channels in words, such as "channels 1 and 3"."""
-        *first, last = self.channels
-        return f"channels {', '.join(map(str, first))} and {last}"
-
-
 @dataclass(frozen=True, init=False)
 class Potential(Result):
     """V(x, y), dimensionless, for a unit mass: H = (px² + py²)/2 + V.
+
+    In a frame that rotates at the rate Ω, V stands for the effective potential Φ, px and py for the velocities ẋ and ẏ, and H for
+    the Jacobi integral (ẋ² + ẏ²)/2 + Φ: ẍ = 2Ωẏ − Φ_x, ÿ = −2Ωẋ − Φ_y. See `in_rotating_frame`.
+
+    Without an escape radius orbits leave a well, or a centre, at the origin through the exits over its saddles. With one, saddles
+    are no exits, and orbits end beyond this radius. See `with_outcomes`.
 
     Parameters
     ----------
@@ -68,11 +67,18 @@ class Potential(Result):
     lineage
         Empty, or from which family the saddles of this potential were continued (`ParameterFamily`). They may differ in the last
         bit from those of an equal potential, and so may results, which are therefore kept apart.
+    rotation
+        Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
+    centres
+        Bodies with which orbits collide.
+    escape_radius
+        Distance from the origin beyond which orbits have escaped, 1e-6 to 1e6, dimensionless; None for exits over saddles.
 
     Raises
     ------
     ValueError
-        If an exponent is out of range, a coefficient is not finite, or a pair of exponents occurs twice.
+        If an exponent is out of range, a coefficient is not finite, a pair of exponents occurs twice, or another number is out of
+        range.
 
     Examples
     --------
@@ -87,15 +93,102 @@ class Potential(Result):
     name: str = field(compare=False)
     form: Form
     lineage: str = field(default="", repr=False)
+    rotation: float = 0.0
+    centres: tuple[Centre, ...] = ()
+    escape_radius: float | None = None
 
-    def __init__(self, name: str, form: Form | Terms | Expression, lineage: str = "") -> None:
+    def __init__(
+        self,
+        name: str,
+        form: Form | Terms | Expression,
+        lineage: str = "",
+        rotation: float = 0.0,
+        centres: Sequence[Centre] = (),
+        escape_radius: float | None = None,
+    ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
             form = ExpressionForm(form)
         elif not isinstance(form, PolynomialForm | ExpressionForm):
             form = checked_form(form)
-        for attribute, value in (("name", name), ("form", form), ("lineage", lineage)):
+        check_type("centres", centres, Iterable)
+        for centre in centres:
+            check_type("centres", centre, Centre)
+        values = {
+            "name": name,
+            "form": form,
+            "lineage": lineage,
+            "rotation": checked_number("rotation", rotation),
+            "centres": tuple(centres),
+            "escape_radius": None if escape_radius is None else checked_radius("escape_radius", escape_radius),
+        }
+        for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
+
+    def in_rotating_frame(self, rotation: float) -> Potential:
+        """The potential in a frame that rotates about the origin at the rate Ω: Φ = V − ½ Ω² (x² + y²).
+
+        Parameters
+        ----------
+        rotation
+            Ω, counterclockwise for Ω > 0, at most 1e9 in magnitude, dimensionless.
+
+        Raises
+        ------
+        ValueError
+            If the rate is out of range, or the potential is one of a rotating frame already.
+        """
+        if self.rotation:
+            raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
+        half = -0.5 * checked_number("rotation", rotation) ** 2
+        return replace(self, form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+
+    def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
+        """The potential with other centres and another escape radius; parameters as of the potential."""
+        check_type("centres", centres, Iterable)
+        return replace(self, centres=tuple(centres), escape_radius=escape_radius)
+
+    @cached_property
+    def reversed_in_time(self) -> Potential:
+        """The potential whose orbits, with the velocities reversed, are those of this one backward in time: Ω is reversed."""
+        return replace(self, rotation=-self.rotation) if self.rotation else self
+
+    @property
+    def setting(self) -> Setting:
+        """What the compiled functions depend on besides the formula."""
+        return Setting(self.channels, len(self.centres), self.escape_radius is not None, self.rotation != 0.0)
+
+    @cached_property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
+        return outcomes_of(self.channels, self.centres, self.escape_radius is not None)
+
+    def check_at_rest(self, what: str) -> None:
+        """Raise ValueError in a rotating frame, for what rests on the symmetry of time reversal."""
+        if self.rotation:
+            raise ValueError(f"potential={self.name}: its frame rotates; {what} are for frames that do not rotate")
+
+    def check_without_centres(self, what: str) -> None:
+        """Raise ValueError around centres, for what is integrated with fixed steps."""
+        if self.centres:
+            raise ValueError(
+                f"potential={self.name}: has centres; {what} are computed with fixed steps, which cannot pass close to one"
+            )
+
+    @property
+    def certifies_tori(self) -> bool:
+        """Whether an invariant torus counts as evidence that its orbits are bounded for ever: only in a well at rest.
+
+        In a rotating frame, around centres and with an escape radius this evidence is not tested.
+        """
+        return not self.rotation and not self.centres and self.escape_radius is None
+
+    def is_closed_at(self, energy: Any) -> Any:
+        """Whether no orbit of the well at these energies ever ends: they are below all saddles, and there are no centres.
+
+        With an escape radius never. In a rotating frame orbits cannot pass the zero-velocity curve V = h either.
+        """
+        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.centres)
 
     def numbers(self) -> dict[str, Any]:
         """The name, the escape energy and the number of channels."""
@@ -137,13 +230,17 @@ class Potential(Result):
 
     @property
     def mirror_in_x(self) -> bool:
-        """Whether V(−x, y) = V(x, y): then (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point."""
-        return self.form.mirror_in_x
+        """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x, and nothing rotates."""
+        return self.form.mirror_in_x and self._mirrors_centres([-1.0, 1.0])
 
     @property
     def mirror_in_y(self) -> bool:
-        """Whether V(x, −y) = V(x, y): then (y, py) → (−y, −py) maps orbits to orbits."""
-        return self.form.mirror_in_y
+        """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y, and nothing rotates."""
+        return self.form.mirror_in_y and self._mirrors_centres([1.0, -1.0])
+
+    def _mirrors_centres(self, signs: Sequence[float]) -> bool:
+        discs = {(each.x, each.y, each.radius) for each in self.centres}
+        return not self.rotation and {(signs[0] * x, signs[1] * y, radius) for x, y, radius in discs} == discs
 
     @cached_property
     def critical_points(self) -> np.ndarray:
@@ -159,10 +256,14 @@ class Potential(Result):
 
         In counterclockwise order from the +x axis: channel k passes over ``saddles[k - 1]``. Only saddles from which exactly one
         of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without the
-        square of V_xy, which is a misprint.
+        square of V_xy, which is a misprint. With an escape radius there are none.
         """
-        points = self.critical_points
-        leads_out = stored_points("exit_saddles", self.form, lambda: leads_out_of_well(self.form.downhill, self.hessian, points))
+        if self.escape_radius is not None:
+            return read_only(np.empty((0, 2)))
+        points, sinks = self.critical_points, self.form.singular_points
+        leads_out = stored_points(
+            "exit_saddles", self.form, lambda: leads_out_of_well(self.form.downhill, self.hessian, points, sinks)
+        )
         return self._in_channel_order(points[leads_out])
 
     def continued(self, lineage: str, saddles: np.ndarray, mergers: Sequence[tuple[np.ndarray, tuple[int, ...]]]) -> Potential:
@@ -170,7 +271,7 @@ class Potential(Result):
 
         mergers: the place (2,) of each maximum, and the indices of the saddles around it.
         """
-        found = Potential(self.name, self.form, lineage)
+        found = replace(self, lineage=lineage)
         ordered = found._in_channel_order(saddles)
         channel = [1 + int(np.argmin(np.hypot(*(ordered - saddle).T))) for saddle in saddles]
         found.__dict__["saddles"] = ordered
@@ -196,10 +297,13 @@ class Potential(Result):
         """The units of the well, rounded to powers of 2; both are 1 for the three cases of Zotos (2014).
 
         The unit of length is the distance of the nearest exit saddle, the unit of time 1/ω of the fastest small oscillation in
-        the well. Without an exit, the unit of length is that of the form.
+        the well, see `fastest_frequency`. With an escape radius the unit of length is a tenth of it, without exits that of the
+        form.
         """
         frequency = self.fastest_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
+        if self.escape_radius is not None:
+            return WellUnits(nearest_power_of_two(self.typical_radius), time)
         if not self.channels:
             return WellUnits(self.form.length, time)
         return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
@@ -211,15 +315,41 @@ class Potential(Result):
 
     @property
     def exact_time_unit(self) -> float:
-        """The unit of time of the well before it is rounded: 1/ω of the fastest small oscillation; 1 without a well."""
+        """The unit of time of the well before it is rounded: 1/ω of the fastest small oscillation; 1 without a frequency."""
         frequency = self.fastest_frequency
         return 1.0 / frequency if np.isfinite(frequency) and frequency > 0.0 else 1.0
 
     @cached_property
+    def has_well(self) -> bool:
+        """Whether V curves upward in all directions at the origin."""
+        matrix = self.hessian_matrix(0.0, 0.0)
+        return bool(np.isfinite(matrix).all() and np.linalg.eigvalsh(matrix)[0] > 0.0)
+
+    @cached_property
     def fastest_frequency(self) -> float:
-        """The higher frequency of small oscillations in the well at the origin; NaN if there is no well."""
-        with np.errstate(invalid="ignore"):
-            return float(np.sqrt(np.linalg.eigvalsh(self.hessian_matrix(0.0, 0.0))[-1]))
+        """The higher frequency of small oscillations in the well at the origin; NaN if there is neither well nor centre.
+
+        Without a well that of a circle of typical size about the origin: the square is the average slope of V over the radius.
+        """
+        if self.has_well or not self.typical_radius:
+            matrix = self.hessian_matrix(0.0, 0.0)
+            with np.errstate(invalid="ignore"):
+                return float(np.sqrt(np.linalg.eigvalsh(matrix)[-1])) if np.isfinite(matrix).all() else np.nan
+        slope = np.hypot(*self.gradient(*self._typical_circle))
+        return float(np.sqrt(slope[np.isfinite(slope)].mean() / self.typical_radius))
+
+    @property
+    def typical_radius(self) -> float:
+        """Half the distance of the nearest exit saddle, or a share of the escape radius; 0 without either."""
+        if self.escape_radius is not None:
+            return _TYPICAL_SHARE * self.escape_radius
+        return 0.5 * float(np.hypot(*self.saddles.T).min(initial=0.0 if not self.channels else np.inf))
+
+    @property
+    def _typical_circle(self) -> np.ndarray:
+        angle = 2.0 * np.pi / _CIRCLE_POINTS * (0.5 + np.arange(_CIRCLE_POINTS))
+        circle: np.ndarray = self.typical_radius * np.array([np.cos(angle), np.sin(angle)])
+        return circle
 
     @cached_property
     def in_well_units(self) -> Potential:
@@ -230,7 +360,18 @@ class Potential(Result):
         units = self.units
         if units == WellUnits():
             return self
-        scaled = Potential(self.name, self.form.scaled(units.length, units.energy), self.lineage)
+        # Not through `__init__`: legal ranges are for the potential's own units.
+        scaled = object.__new__(Potential)
+        values = {
+            "name": self.name,
+            "form": self.form.scaled(units.length, units.energy),
+            "lineage": self.lineage,
+            "rotation": self.rotation * units.time,
+            "centres": tuple(centre.scaled(1.0 / units.length) for centre in self.centres),
+            "escape_radius": None if self.escape_radius is None else self.escape_radius / units.length,
+        }
+        for attribute, value in values.items():
+            object.__setattr__(scaled, attribute, value)
         derived = {
             "units": WellUnits(),
             "stated_units": units,
@@ -267,18 +408,25 @@ class Potential(Result):
         for (name, (low, high)), value in zip(PARAMETER_RANGES.items(), (omega_1, omega_2, epsilon), strict=True):
             if not low <= checked_number(name, value) <= high:
                 raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
+        is_changed = not omega_1 == omega_2 == epsilon == 1.0
+        if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
+            raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
         symbols = (("ω1", omega_1), ("ω2", omega_2), ("ε", epsilon))
         changed = ", ".join(f"{symbol}={value:g}" for symbol, value in symbols if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
-        return Potential(f"{self.name} ({changed})" if changed else self.name, form)
+        return replace(self, name=f"{self.name} ({changed})" if changed else self.name, form=form)
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
-        """(channels + 1,) the image of each channel number under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
-        if not self.channels:
-            return read_only(np.zeros(1, np.int8))
-        distance = np.hypot(*(self.saddles[:, None] - self.saddles * [-1.0, 1.0]).T)
-        return read_only(np.concatenate([[0], 1 + np.argmin(distance, axis=0)]).astype(np.int8))
+        """(outcomes + 1,) the image of each fate under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
+        places = (self.saddles, np.array([(centre.x, centre.y) for centre in self.centres]).reshape(-1, 2))
+        images = [np.arange(1)]
+        for points in places:
+            if len(points):
+                distance = np.hypot(*(points[:, None] - points * [-1.0, 1.0]).T)
+                images.append(sum(map(len, images)) + np.argmin(distance, axis=0))
+        own = np.arange(sum(map(len, images)), len(self.outcomes) + 1)
+        return read_only(np.concatenate([*images, own]).astype(np.int8))
 
     @cached_property
     def saddle_energies(self) -> np.ndarray:
@@ -287,7 +435,12 @@ class Potential(Result):
 
     @cached_property
     def escape_energy(self) -> float:
-        """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none."""
+        """The lowest energy at which orbits can escape: V at the lowest exit saddle; infinite if there is none.
+
+        With an escape radius −∞: at every energy there may be orbits outside the saddles.
+        """
+        if self.escape_radius is not None:
+            return -np.inf
         return float(self.saddle_energies.min(initial=np.inf))
 
     @cached_property
@@ -296,6 +449,8 @@ class Potential(Result):
 
         A maximum lies between two exits if a line of steepest ascent from the saddle of each ends at it.
         """
+        if not self.channels:
+            return ()
         points = self.critical_points
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
         beside = stored_points("maxima", self.form, lambda: find_maxima_beside(self.form.downhill, self.hessian, points, saddles))
@@ -305,10 +460,43 @@ class Potential(Result):
             mergers.append(ChannelMerger(float(self.value(x, y)), x, y, tuple(channels)))
         return tuple(sorted(mergers))
 
+    def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
+        """The exits of several channels, above a maximum between these. Such an exit has the lowest of their numbers."""
+        return merged_exits(self.channel_mergers, energy)
+
+    def exit_numbers(self, energy: Any) -> np.ndarray:
+        """(…, outcomes + 1) the number of the exit that each fate is part of at energies (…); entry 0 is 0."""
+        below = np.searchsorted([merger.energy for merger in self.channel_mergers], np.asarray(energy), side="left")
+        numbers: np.ndarray = exit_numbers(self.channel_mergers, len(self.outcomes))[below]
+        return numbers
+
+    def mirror_numbers(self, energy: Any) -> np.ndarray:
+        """(…, outcomes + 1) the image of each fate under x → −x at energies (…); entry 0 is 0. Only valid if `mirror_in_x`."""
+        numbers: np.ndarray = self.exit_numbers(energy)[..., self.mirror_channels]
+        return numbers
+
+    def outcomes_at(self, energy: float | tuple[float, float]) -> tuple[Outcome, ...]:
+        """The outcomes as `outcomes`, named as exits are at an energy, or in a range of energies (low, high)."""
+        low, high = energy if isinstance(energy, tuple) else (energy, energy)
+        if not self.merged_exits(high):
+            return self.outcomes
+        lowest = self.exit_numbers(low)
+        exits = [
+            exit_outcome(describe_channel(channel, self.channel_mergers, low, high), occurs=bool(lowest[channel] == channel))
+            for channel in range(1, self.channels + 1)
+        ]
+        return (*exits, *self.outcomes[self.channels :])
+
     @cached_property
     def bottom(self) -> float:
-        """V at the origin, from which multiples of the escape energy count."""
-        return float(self.value(0.0, 0.0))
+        """V at the origin, from which multiples of the escape energy count.
+
+        Without a well its average on a circle with half the distance of the nearest exit saddle, or a tenth of the escape radius.
+        """
+        if self.has_well or not self.typical_radius:
+            return float(self.value(0.0, 0.0))
+        value = self.value(*self._typical_circle)
+        return float(value[np.isfinite(value)].mean())
 
     def energy_at(self, multiple: float) -> float:
         """The energy at a multiple of the depth of the well: 0 at the bottom, 1 at the escape energy."""

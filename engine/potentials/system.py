@@ -6,19 +6,24 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from types import MappingProxyType
 
 from engine.potentials.catalogue import CATALOGUE, POTENTIALS
 from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange, energy_range
-from engine.potentials.formulas.formula_parser import formula_letters, parse_formula
+from engine.potentials.formulas.formula_parser import LARGEST_VALUE, formula_letters, parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.potential import CASES, Potential
+from engine.potentials.potential import CASES, PARAMETER_RANGES, Potential
+from engine.potentials.potential_entry import ROTATION, WELL_PARAMETERS
 from engine.validation import check_type
 
 TYPED = "typed"
 """Case of a potential that is given by a formula."""
 
-PARAMETERS = {"omega_1": "ω1", "omega_2": "ω2", "epsilon": "ε"}
+PARAMETERS = {"omega_1": "ω1", "omega_2": "ω2", "epsilon": "ε", ROTATION: "Ω"}
 """Symbols of the parameters."""
+
+RANGES: Mapping[str, tuple[float, float]] = MappingProxyType({**PARAMETER_RANGES, ROTATION: (-LARGEST_VALUE, LARGEST_VALUE)})
+"""Legal ranges of these parameters."""
 
 SHOWN_DIGITS = 12
 """Significant digits of the coefficients in formulas, where 1.46²/2 is 1.0658 without the rounding error of the product."""
@@ -26,7 +31,9 @@ SHOWN_DIGITS = 12
 
 @dataclass(frozen=True)
 class System:
-    """A potential with its parameters: those of Zotos (2014), V = ½(ω1² x² + ω2² y²) + ε V1, and the letters of a formula.
+    """A potential with its parameters: ω1, ω2 and ε of Zotos (2014), the rotation Ω of the frame, and the letters of a formula.
+
+    V = ½(ω1² x² + ω2² y²) + ε V1 − ½ Ω² (x² + y²). Systems of the catalogue with bodies have letters of their own instead.
 
     Attributes
     ----------
@@ -35,8 +42,9 @@ class System:
     formula
         V(x, y) as text for `TYPED`, else empty.
     parameters
-        Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, and the letters of the formula as in
-        `parse_formula`. One that is not given is 1; those that are 1 are left out.
+        Values by name: omega_1, omega_2 and epsilon as in `Potential.with_parameters`, rotation as in
+        `Potential.in_rotating_frame`, and the letters of the formula as in `parse_formula`. Those that have their default value,
+        `default_of`, are left out.
 
     Raises
     ------
@@ -57,7 +65,7 @@ class System:
         # Sorted, so that the order in which they were chosen changes neither titles nor links.
         places = {name: place for place, name in enumerate(PARAMETERS)}
         ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
-        changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != 1.0}
+        changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != self.default_of(name)}
         object.__setattr__(self, "parameters", changed)
 
     def __hash__(self) -> int:
@@ -71,29 +79,45 @@ class System:
     @property
     def letters(self) -> dict[str, float]:
         """The values of the letters of the formula; ValueError if a character of it is not understood."""
-        return {name: self.parameters.get(name, 1.0) for name in formula_letters(self.formula)}
+        return {name: self.value_of(name) for name in formula_letters(self.formula)}
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
         """The names of all parameters; ValueError if a character of the formula is not understood."""
-        return (*PARAMETERS, *self.letters)
+        return (*PARAMETERS, *self.letters) if self.case == TYPED else CATALOGUE[self.case].adjustable
+
+    def default_of(self, name: str) -> float:
+        """The value of a parameter that is not given."""
+        known: Mapping[str, float] = {ROTATION: 0.0} if self.case == TYPED else CATALOGUE[self.case].parameters
+        return known.get(name, 1.0)
 
     def value_of(self, name: str) -> float:
         """The value of a parameter."""
-        return self.parameters.get(name, 1.0)
+        return self.parameters.get(name, self.default_of(name))
 
     def with_parameter(self, name: str, value: float) -> System:
         """The system with another value of one parameter."""
         return replace(self, parameters={**self.parameters, name: value})
 
     @property
+    def as_typed(self) -> System:
+        """The same system given by a formula: a well with its coefficients, another system with its letters."""
+        if self.case == TYPED:
+            return self
+        entry = CATALOGUE[self.case]
+        if "epsilon" in entry.parameters:
+            well = POTENTIALS[self.case].with_parameters(**self.well_parameters)
+            return System(TYPED, write_formula(well, SHOWN_DIGITS), {ROTATION: self.value_of(ROTATION)})
+        return System(TYPED, entry.formula, {**entry.parameters, **self.parameters})
+
+    @property
     def well_parameters(self) -> dict[str, float]:
         """Those of ω1, ω2 and ε that are not 1."""
-        return {name: value for name, value in self.parameters.items() if name in PARAMETERS}
+        return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS}
 
     @property
     def letter_parameters(self) -> dict[str, float]:
-        """The values of letters that are not 1."""
+        """The values of letters that are not given by default."""
         return {name: value for name, value in self.parameters.items() if name not in PARAMETERS}
 
     @property
@@ -105,27 +129,30 @@ class System:
 
     @property
     def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of the parameters."""
-        if self.case == TYPED or self.parameters:
-            return write_formula(self.potential, SHOWN_DIGITS)
-        return CATALOGUE[self.case].formula
+        """V(x, y) as text, with the values of the parameters; of systems with letters with these."""
+        if self.case != TYPED and (not self.parameters or "epsilon" not in CATALOGUE[self.case].parameters):
+            return CATALOGUE[self.case].formula
+        if self.value_of(ROTATION):
+            return self.as_typed.formula
+        return write_formula(self.potential, SHOWN_DIGITS)
 
     @property
     def energies(self) -> EnergyRange:
         """Energy range of the paper for its cases, else multiples of the escape energy."""
         if self.case in CASES and not self.parameters:
             return PAPER_ENERGIES[self.case]
+        if self.case != TYPED and not self.parameters and (known := CATALOGUE[self.case].energies) is not None:
+            return known
         return energy_range(self.potential)
 
 
 @lru_cache(maxsize=64)
 def _potential(system: System) -> Potential:
-    letters = system.letter_parameters
     if system.case == TYPED:
-        plain = parse_formula(system.formula, parameters=letters)
-    elif letters:
-        known = ", ".join(PARAMETERS)
-        raise ValueError(f"parameters: {reprlib.repr(next(iter(letters)))} is no parameter of {system.case}; it has {known}")
-    else:
-        plain = POTENTIALS[system.case]
-    return plain.with_parameters(**system.well_parameters)
+        plain = parse_formula(system.formula, parameters=system.letter_parameters)
+        return plain.with_parameters(**system.well_parameters).in_rotating_frame(system.value_of(ROTATION))
+    known = system.parameter_names
+    if unknown := [name for name in system.parameters if name not in known]:
+        legal = ", ".join(known) or "none"
+        raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is no parameter of {system.case}; it has {legal}")
+    return CATALOGUE[system.case].build(system.parameters)

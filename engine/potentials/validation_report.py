@@ -15,7 +15,9 @@ from engine.potentials.forms.exit_saddles import DescentError
 from engine.potentials.formulas.formula_parser import LONGEST_TEXT
 from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.hill_region import SINGULAR_RATIO, is_open_below, is_open_without_saddle
+from engine.potentials.merged_channels import name_channels
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
+from engine.potentials.singularity_check import singularity_refusal
 from engine.results.result import Result
 from engine.validation import checks_types
 
@@ -62,8 +64,8 @@ class PotentialReview(Result):
     channels
         Number of exits.
     highest_energy
-        The energy of the lowest maximum between two exits, above which they merge; infinite if there is none. Lyapunov orbits may
-        cease to exist below it: see `find_lyapunov_orbits`.
+        The energy of the lowest maximum between two exits, above which they are one; infinite if there is none. Lyapunov orbits
+        may cease to exist below it: see `find_lyapunov_orbits`.
     mirror_in_x, mirror_in_y
         Whether V is even in x, in y.
     rotations
@@ -131,11 +133,11 @@ def review_potential(potential: Potential) -> PotentialReview:
     return PotentialReview(
         potential=potential,
         critical_points=points,
-        escape_energy=potential.escape_energy if points else float("inf"),
+        escape_energy=potential.escape_energy if points or potential.escape_radius is not None else float("inf"),
         channels=potential.channels if points else 0,
         highest_energy=potential.channel_mergers[0].energy if points and potential.channel_mergers else float("inf"),
-        mirror_in_x=potential.mirror_in_x,
-        mirror_in_y=potential.mirror_in_y,
+        mirror_in_x=potential.form.mirror_in_x,
+        mirror_in_y=potential.form.mirror_in_y,
         rotations=potential.form.count_rotations(),
         refusal=refusal,
         remarks=() if refusal else _remarks(potential, points),
@@ -144,9 +146,11 @@ def review_potential(potential: Potential) -> PotentialReview:
 
 
 def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoint, ...], str | None]:
-    refusal = potential.form.limits_refusal()
+    refusal = potential.form.limits_refusal() or singularity_refusal(potential)
     if refusal is not None:
         return (), refusal
+    if potential.escape_radius is not None:
+        return _known_critical_points(potential), None
     try:
         # Both follow lines of steepest descent or ascent, which may fail.
         points, _ = _critical_points(potential), potential.channel_mergers
@@ -161,6 +165,14 @@ def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoi
         )
     refusals = (check(potential, points) for check in (_well_refusal, _points_refusal, _exits_refusal))
     return points, next(filter(None, refusals), None)
+
+
+def _known_critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
+    """Those of a system with an escape radius, which does not need them; none where they are not found."""
+    try:
+        return _critical_points(potential)
+    except (UndecidedError, NotIsolatedError):
+        return ()
 
 
 def _critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
@@ -189,13 +201,15 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
     at_origin = _point_at_origin(points)
     if at_origin is not None and at_origin.kind is PointKind.MINIMUM:
         return None
+    if any(x == y == 0.0 for x, y in potential.form.singular_points.tolist()):
+        return None
     if at_origin is None:
         problem = "There is no well at the origin: the force is not zero there, because V has linear terms."
     else:
         problem = f"There is no well at the origin: V has a {at_origin.kind.value} there."
     minima = _minima(points)
     if not minima:
-        return f"{problem} Add quadratic terms that make the origin a minimum."
+        return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
     place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
     which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
     moved = _moved_to_well(potential, points)
@@ -214,7 +228,7 @@ def _minima(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
 
 def _moved_to_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
     nearest = next(iter(_minima(points)), None)
-    if nearest is None or nearest is _point_at_origin(points):
+    if nearest is None or nearest is _point_at_origin(points) or potential.rotation or potential.escape_radius is not None:
         return None
     form = potential.form.moved(nearest.x, nearest.y)
     if form is None:
@@ -253,7 +267,9 @@ def _no_exit_refusal(potential: Potential) -> str:
 
 
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
-    remarks = []
+    remarks: list[str] = []
+    if potential.escape_radius is not None:
+        return ()
     energies = potential.saddle_energies
     if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
         order = np.argsort(energies, kind="stable")
@@ -268,8 +284,9 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
         remarks.append(f"There are other wells, at {places}: an orbit that enters one counts as escaped but may return.")
     if potential.channel_mergers:
         lowest = potential.channel_mergers[0]
-        remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it {lowest.describe()} merge.")
-    if not potential.mirror_in_y:
+        merged = name_channels(lowest.channels)
+        remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it some are one exit, {merged}.")
+    if not potential.form.mirror_in_y:
         remarks.append("V is not even in y: y = 0 is not a symmetry axis, and an orbit may stay on one side of it.")
     if potential.form.has_constant:
         remarks.append("The constant term has no effect on the orbits, but all energies include it.")

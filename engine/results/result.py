@@ -5,7 +5,7 @@ The pictures are drawn by another package, which is imported at the first of the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -31,6 +31,11 @@ class Result(ReadOnlyArrays):
 
     row_dimension: ClassVar[str] = ""
     """Name of the dimension of the columns in files; empty if the first column, whose values are different, is its coordinate."""
+
+    @property
+    def fate_labels(self) -> Sequence[str]:
+        """Labels of the fates from 1 on, for `codes`; empty if they are not known."""
+        return ()
 
     def plot(self, ax: Axes | None = None, **options: Any) -> Axes:
         """Draw the result.
@@ -70,7 +75,7 @@ class Result(ReadOnlyArrays):
 
     def shown_numbers(self) -> dict[str, str]:
         """The scalar attributes as text: codes in words, other numbers to four digits."""
-        return show_numbers(self.numbers(), self.codes)
+        return show_numbers(self.numbers(), self.codes, self.fate_labels)
 
     def numbers(self) -> dict[str, Any]:
         """The scalar attributes by name."""
@@ -113,7 +118,7 @@ class Result(ReadOnlyArrays):
     def _meaning(self, name: str, values: Any) -> dict[str, str]:
         """Attributes of a variable: what its codes are, or that its numbers are dimensionless."""
         if name in self.codes:
-            return describe_codes(self.codes[name])
+            return describe_codes(self.codes[name], self.fate_labels)
         return {"units": "1"} if np.asarray(values).dtype.kind in "iuf" else {}
 
 

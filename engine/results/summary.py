@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import Enum, IntEnum
 from typing import Any
 
@@ -17,14 +17,14 @@ _WIDTH, _MOST_LINES = 100, 3
 _UNBROKEN = "\u00a0"
 
 
-def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]]) -> dict[str, str]:
-    """Scalars as text, by name: codes in words, other numbers to four digits."""
-    return {name: _show(value, codes.get(name)) for name, value in numbers.items()}
+def show_numbers(numbers: Mapping[str, Any], codes: Mapping[str, type[IntEnum]], labels: Sequence[str] = ()) -> dict[str, str]:
+    """Scalars as text, by name: codes in words, with the labels of fates from 1, other numbers to four digits."""
+    return {name: _show(value, codes.get(name), labels) for name, value in numbers.items()}
 
 
-def _show(value: Any, codes: type[IntEnum] | None) -> str:
+def _show(value: Any, codes: type[IntEnum] | None, labels: Sequence[str]) -> str:
     if codes is not None:
-        return name_code(codes, value)
+        return name_code(codes, value, labels)
     if isinstance(value, float):
         return format_number(value)
     return str(value.value if isinstance(value, Enum) else value)

@@ -19,7 +19,8 @@ class Coordinate(Enum):
     """A coordinate of a start; the value is its name.
 
     `THETA` is the angle of the velocity from the +x axis, px = v cos θ, py = v sin θ. `BETA` is its angle from the direction
-    away from the origin: 0 is radially outward, π/2 tangential, counterclockwise. `SPEED` is v, which only the energy decides.
+    away from the origin, at the origin from the +y axis: 0 is radially outward, π/2 tangential, counterclockwise. `SPEED` is v,
+    which only the energy decides.
     """
 
     X = "x"

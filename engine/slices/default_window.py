@@ -9,6 +9,7 @@ import numpy as np
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
+from engine.potentials.validation_report import review_potential
 from engine.potentials.well_units import WellUnits
 from engine.slices.axes import ANGLES, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy
@@ -19,11 +20,17 @@ from engine.validation import checks_types
 
 # Margin of the default window on each side, as a share of the size of the interior.
 _MARGIN = 0.03
+# Sides of an interior in units of the well that differ by more are shown at different scales.
+_LARGEST_ASPECT = 4.0
+# Share of the points between the edges whose momenta are shown of a system with centres, near which there is no largest one.
+_SHOWN_MOMENTA = 0.9
 _SCAN_POINTS = 801
-# The interior is searched up to this distance from the origin: in units of the distances of the nearest and of the
-# outermost exit saddle.
+# The interior is searched up to the first distance from the origin, in units of that of the nearest exit saddle, and where it is
+# larger up to twice as far until it ends, or up to the second distance, in units of that of the outermost exit saddle.
 _SEARCH_LENGTHS = 4.0
 _SEARCH_SADDLE_DISTANCES = 2.0
+# The same in units of the distance of the outermost body or critical point, where saddles are no exits.
+_SEARCH_BODY_DISTANCES = 2.5
 _RAYS = 180
 # Points along a side of the lattice on which the interior of an oblique slice is searched, and how often it is refined.
 _SCAN_SIDE, _SCANS = 201, 3
@@ -52,7 +59,7 @@ def default_window(potential: Potential, plane: Slice, energy: Energy) -> Window
 
     Returns
     -------
-    The window; on a slice of one energy it is a square in units of the well.
+    The window; on a slice of one energy it is a square in units of the well, unless the interior is much longer than wide.
 
     Raises
     ------
@@ -128,6 +135,9 @@ def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Windo
             *_edges(plane.abscissa, energy, x_low, x_high), *_edges(plane.ordinate, energy, ordinate_low, ordinate_high)
         )
     x_unit, unit = (_exact_unit(axis, potential) for axis in plane.axes)
+    sides = (x_high - x_low) / x_unit, (ordinate_high - ordinate_low) / unit
+    if max(sides) > _LARGEST_ASPECT * min(sides):
+        return Window(*_widened((x_low, x_high)), *_widened((ordinate_low, ordinate_high)))
     window = _square_window(x_low / x_unit, x_high / x_unit, ordinate_low / unit, ordinate_high / unit)
     return window.scaled(x_unit, unit)
 
@@ -181,7 +191,7 @@ def _edges(axis: Axis, energy: Energy, low: float, high: float) -> Range:
 
 def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[Range]:
     """The ranges of both axes over the interior of a slice with a direction, from points on a lattice, in units of the well."""
-    reach = 2.0 * _search_radius(potential)
+    reach = 2.0 * _search_radius(potential, highest_energy(energy))
     reaches = [reach * _exact_unit(axis, potential) for axis in plane.axes]
     ranges = [_edges(axis, energy, -each, each) for axis, each in zip(plane.axes, reaches, strict=True)]
     for _ in range(_SCANS):
@@ -214,9 +224,11 @@ def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:
-    """The range of a momentum of the starts between these positions."""
+    """The range of a momentum of the starts between these positions; near centres it would have no end."""
     x, y = (np.linspace(*ranges[coordinate], _SCAN_POINTS) for coordinate in (Coordinate.X, Coordinate.Y))
-    momentum = float(np.sqrt(2.0 * max(energy - np.min(potential.value(x, y)), 0.0)))
+    value = potential.value(x, y)
+    bottom = np.quantile(value[np.isfinite(value)], 1.0 - _SHOWN_MOMENTA) if potential.centres else np.min(value)
+    momentum = float(np.sqrt(2.0 * max(energy - bottom, 0.0)))
     return -momentum, momentum
 
 
@@ -243,28 +255,55 @@ def _run_around_middle(allowed: np.ndarray) -> slice:
 
 def _interior_interval(potential: Potential, energy: float, axis: Coordinate, held: dict[Coordinate, float]) -> np.ndarray:
     """(n,) x or y of the interior on the line on which the other one is held, with a resolution of about a thousandth."""
-    radius = _search_radius(potential)
+    radius = _search_radius(potential, energy)
     line = np.linspace(-radius, radius, 4 * _SCAN_POINTS)
     x, y = (line if axis is coordinate else np.full_like(line, held[coordinate]) for coordinate in (Coordinate.X, Coordinate.Y))
+    allowed = _is_inside(potential, energy, x, y)
+    return line[allowed if potential.escape_radius is not None else _run_around_middle(allowed)]
+
+
+def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether points are allowed and not beyond an exit; the discs of centres are gaps in an interior and count as inside."""
     outside = find_outside_channels(potential, energy, x, y)
-    return line[_run_around_middle((potential.value(x, y) <= energy) & (outside == 0))]
+    in_disc = (outside > potential.channels) & (outside <= potential.channels + len(potential.centres))
+    inside: np.ndarray = ~(potential.value(x, y) > energy) & ((outside == 0) | in_disc)
+    return inside
 
 
-def _search_radius(potential: Potential) -> float:
+def _search_radius(potential: Potential, energy: float) -> float:
     """A radius that contains the interior, unless the energy is many times the escape energy."""
+    if potential.escape_radius is not None:
+        return _shown_radius(potential, potential.escape_radius)
     distances = np.hypot(*potential.saddles.T)
     # Not in units of the well, which are rounded: edges found on the scanned points must not depend on the user's units.
     nearest, outermost = (float(distances.min()), float(distances.max())) if distances.size else (1.0, 0.0)
-    return max(_SEARCH_LENGTHS * nearest, _SEARCH_SADDLE_DISTANCES * outermost)
+    radius = _SEARCH_LENGTHS * nearest
+    # Not at once to the outermost saddle, which may be so far away that the points miss the interior.
+    while radius < _SEARCH_SADDLE_DISTANCES * outermost and _interior_on_rays(potential, energy, radius)[2][:, -1].any():
+        radius *= 2.0
+    return radius
+
+
+def _interior_on_rays(potential: Potential, energy: float, farthest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x, y, and whether in the interior, (rays, n), of points on rays from the origin; of a well up to where a ray leaves it."""
+    angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
+    radius = np.linspace(0.0, farthest, _SCAN_POINTS // 2)
+    x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
+    inside = _is_inside(potential, energy, x, y)
+    return x, y, inside if potential.escape_radius is not None else np.logical_and.accumulate(inside, axis=1)
+
+
+def _shown_radius(potential: Potential, escape_radius: float) -> float:
+    """A radius that contains the bodies and critical points of a system with an escape radius, with some space around."""
+    places = [(point.x, point.y) for point in review_potential(potential).critical_points]
+    places += [(centre.x, centre.y) for centre in potential.centres]
+    outermost = max((float(np.hypot(*place)) for place in places), default=0.0)
+    return min(_SEARCH_BODY_DISTANCES * outermost or escape_radius, escape_radius)
 
 
 def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, np.ndarray]:
     """(n,) x and y of points of the interior of the (x, y) plane, on rays that start at the origin, and of the exits."""
-    angle = np.linspace(0.0, 2.0 * np.pi, _RAYS + 1)
-    radius = np.linspace(0.0, _search_radius(potential), _SCAN_POINTS // 2)
-    x, y = radius * np.cos(angle)[:, None], radius * np.sin(angle)[:, None]
-    outside = find_outside_channels(potential, energy, x, y)
-    inside = np.logical_and.accumulate((potential.value(x, y) <= energy) & (outside == 0), axis=1)
+    x, y, inside = _interior_on_rays(potential, energy, _search_radius(potential, energy))
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():
         return np.empty(0), np.empty(0)

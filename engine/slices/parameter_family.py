@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from engine.potentials.outcomes import OutcomeKind, exit_outcome
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.slices.axes import ParameterAxis
@@ -45,18 +46,32 @@ class Member:
     potential
         The potential.
     numbers
-        (channels + 1,) int8: the number that each of its channels has in the family; entry 0 is 0.
+        (outcomes + 1,) int8: the fate in the family of each of its fates; entry 0 is 0.
     """
 
     potential: Potential
     numbers: np.ndarray
 
+    def numbers_at(self, energy: float) -> np.ndarray:
+        """`numbers` at an energy: an exit of several channels has the lowest of their numbers in the family."""
+        numbers = self.numbers.copy()
+        for merged in self.potential.merged_exits(energy):
+            channels = list(merged.channels)
+            numbers[channels] = np.sort(numbers[channels])
+        return read_only(numbers)
+
+    @property
+    def of_others(self) -> np.ndarray:
+        """The fates in the family of the outcomes after the exits."""
+        return self.numbers[self.potential.channels + 1 :]
+
 
 class ParameterFamily:
     """The potentials along one axis; made once for each axis, see `parameter_family`.
 
-    Channels have the numbers that they have at the system's own value of the parameter. Those that only exist elsewhere follow,
-    in the order in which they appear, first towards higher values.
+    Outcomes have the numbers that they have at the system's own value of the parameter, so that centres and the escape radius,
+    which all potentials of a family have, keep theirs. Exits that only exist elsewhere follow, in the order in which they
+    appear, first towards higher values; they are the next channels.
     """
 
     def __init__(self, axis: ParameterAxis) -> None:
@@ -71,9 +86,9 @@ class ParameterFamily:
         self._matched: dict[tuple[float, float], list[int] | None] = {}
         self._lock = threading.Lock()
         first = axis.potential(self._own)
-        self._nodes[self._own] = Member(first, read_only(np.arange(first.channels + 1, dtype=np.int8)))
-        self.channels = first.channels
-        """Number of channels of all potentials of the family that have been met."""
+        self._nodes[self._own] = Member(first, read_only(np.arange(len(first.outcomes) + 1, dtype=np.int8)))
+        self.outcomes = first.outcomes
+        """Those of all potentials of the family that have been met."""
         self._extend_to(axis.high)
         self._extend_to(axis.low)
 
@@ -149,14 +164,15 @@ class ParameterFamily:
                 f"parameter {self._axis.key}: its exits change too often up to {value:.6g}; choose a smaller range"
             )
         potential, neighbour = self._axis.potential(value), self._nodes[node]
-        numbers = np.zeros(potential.channels + 1, np.int8)
+        numbers = np.array([*np.zeros(potential.channels + 1), *neighbour.of_others], np.int8)
         for channel, place in enumerate(_continue(potential, neighbour.potential.saddles), start=1):
             k = _nearest(potential.saddles, place)
             if k is not None and not numbers[k + 1]:
                 numbers[k + 1] = neighbour.numbers[channel]
         new = np.flatnonzero(numbers[1:] == 0) + 1
-        numbers[new] = self.channels + 1 + np.arange(new.size)
-        self.channels += new.size
+        numbers[new] = len(self.outcomes) + 1 + np.arange(new.size)
+        known = sum(outcome.kind is OutcomeKind.EXIT for outcome in self.outcomes)
+        self.outcomes += tuple(exit_outcome(known + k) for k in range(1, new.size + 1))
         return Member(potential, read_only(numbers))
 
     def _matches(self, low: float, high: float) -> list[int] | None:
@@ -189,7 +205,7 @@ class ParameterFamily:
         ordered = [_nearest(saddles, place) for place in potential.saddles]
         if None in ordered or len(set(ordered)) < len(saddles):
             return None
-        numbers = np.array([0, *(first.numbers[k + 1] for k in ordered if k is not None)], np.int8)
+        numbers = np.array([0, *(first.numbers[k + 1] for k in ordered if k is not None), *first.of_others], np.int8)
         return Member(potential, read_only(numbers))
 
 

@@ -290,7 +290,8 @@ class Slice:
     def mirrored_axes(self) -> tuple[bool, bool] | None:
         """For each axis, whether its sign changes under x → −x; None if this mirror image of the slice is another one."""
         parities = [axis.parity for axis in self.axes]
-        held = [coordinate.parity for coordinate, _ in self.fixed]
+        # A coordinate that changes its sign is its own mirror image at 0.
+        held = [coordinate.parity for coordinate, value in self.fixed if value or coordinate.parity != -1]
         if None in parities or any(parity != 1 for parity in (self.decided.parity, *held)):
             return None
         return parities[0] == -1, parities[1] == -1
@@ -392,7 +393,7 @@ def _velocity(start: Mapping[Coordinate, np.ndarray], speed: np.ndarray) -> tupl
         return speed * np.cos(angle), speed * np.sin(angle)
     x, y, angle = start[Coordinate.X], start[Coordinate.Y], start[Coordinate.BETA]
     radius = np.hypot(x, y)
-    # At the origin, where no direction is radial, that of the +x axis is taken.
-    away_x, away_y = np.where(radius > 0, (x, y) / np.where(radius > 0, radius, 1.0), np.array([[1.0], [0.0]]))
+    # At the origin, where no direction is radial, that of the +y axis is taken, which is its own mirror image under x → −x.
+    away_x, away_y = np.where(radius > 0, (x, y) / np.where(radius > 0, radius, 1.0), np.array([[0.0], [1.0]]))
     cosine, sine = np.cos(angle), np.sin(angle)
     return speed * (cosine * away_x - sine * away_y), speed * (cosine * away_y + sine * away_x)

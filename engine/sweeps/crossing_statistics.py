@@ -116,7 +116,7 @@ def tabulate_crossing_statistics(
 
     Returns
     -------
-    Dataset, dimensionless throughout, with coordinates `h` (m,), `n` (0, 1, …) and `fate` (bounded, then channels 1, 2, …):
+    Dataset, dimensionless throughout, with coordinates `h` (m,), `n` (0, 1, …) and `fate` (bounded, then outcomes 1, 2, …):
 
     - `starts`, `escaped`, `direct`, `failed` (h): N0, Ne, Nde and the orbits whose integration failed, int64.
     - `escaped_share`, `direct_share` (h): Ne/N0, Nde/N0; NaN if N0 is 0.
@@ -198,7 +198,8 @@ def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
     )
     escapes = _pad([counts.crossing_counts for counts in statistics], most_crossings)
     remaining = decided[:, None] - np.cumsum(escapes, axis=1) + escapes
-    codes = (int(Fate.BOUNDED), *range(1, spec.potential.channels + 1))
+    labels = [outcome.label for outcome in spec.outcomes]
+    codes = (int(Fate.BOUNDED), *range(1, len(labels) + 1))
     by_fate = np.array([[counts.bounded, *counts.channel_counts] for counts in statistics], np.int64)
     columns = {
         "starts": starts, "escaped": escaped, "direct": direct, "failed": failed,
@@ -214,7 +215,11 @@ def _tabulate(rows: Sequence[_Row], most_crossings: int | None) -> xr.Dataset:
     coordinates = {
         "h": ("h", np.array([row.spec.energy for row in rows], float), {"long_name": "energy h", "units": "1"}),
         "n": ("n", np.arange(escapes.shape[1]), {"long_name": "upward crossings of y = 0", "units": "1"}),
-        "fate": ("fate", np.array(codes, np.int8), {"long_name": "exit channel (k >= 1) or bounded (0)", **describe_codes(Fate)}),
+        "fate": (
+            "fate",
+            np.array(codes, np.int8),
+            {"long_name": "exit channel (k >= 1) or bounded (0)", **describe_codes(Fate, labels)},
+        ),
         "edge": ("edge", list(_WINDOW)),
     }
     return xr.Dataset({name: _VARIABLES[name].with_values(values) for name, values in columns.items()}, coordinates)

@@ -37,9 +37,9 @@ class CurvePointSpec:
     value
         The energy, or the value of the parameter.
     numbers
-        The numbers of the channels of the map on the curves, after 0; as in `ParameterFamily`.
-    channels
-        Number of channels of the curves.
+        The fates on the curves of the outcomes of the map, after 0; as in `ParameterFamily`.
+    outcomes
+        Number of outcomes of the curves.
     exponent
         Whether to compute the uncertainty exponent, which takes longest.
     """
@@ -48,7 +48,7 @@ class CurvePointSpec:
     exponent: bool
     value: float
     numbers: tuple[int, ...]
-    channels: int
+    outcomes: int
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class CurvePoint:
     value
         h, or the parameter.
     shares
-        (channels + 1,) shares of the interior starts: bounded, then those that escape through channel 1, 2, ….
+        (outcomes + 1,) shares of the interior starts: bounded, then those of outcome 1, 2, …, such as escapes through a channel.
     bounded_low, bounded_high
         95 % interval of the share of bounded starts (Wilson 1927), as for independent random starts.
     bounded_area
@@ -142,9 +142,9 @@ def compute_curve_point(
 def _evaluate_map(spec: CurvePointSpec, frame: EscapeMap, execution: Execution) -> CurvePoint:
     statistics = compute_statistics(frame)
     rate, slowest, fastest = _find_decay_rate(statistics, spec.map_spec.t_max, execution)
-    shares = [0.0] * (spec.channels + 1)
-    for channel, number in enumerate(spec.numbers):
-        shares[number] = statistics.shares[channel]
+    shares = [0.0] * (spec.outcomes + 1)
+    for fate, number in enumerate(spec.numbers):
+        shares[number] = statistics.shares[fate]
     low, high = statistics.share_intervals[Fate.BOUNDED]
     entropy, areas = compute_basin_entropy(frame), _island_areas(frame)
     return CurvePoint(

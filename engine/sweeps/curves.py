@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
 from engine.maps.spec import MapSpec
+from engine.potentials.outcomes import Outcome, OutcomeKind
 from engine.potentials.potential import Potential
+from engine.results.codes import describe_codes
 from engine.results.result import Result
 from engine.slices.axes import Coordinate, ParameterAxis
 from engine.slices.parameter_family import parameter_family
@@ -49,7 +52,7 @@ class CurvesSpec:
     exponent
         Whether to compute the uncertainty exponent.
     along
-        The parameter; None for the energy. Exits have the numbers of its `ParameterAxis`.
+        The parameter; None for the energy. Outcomes have the numbers of its `ParameterAxis`.
     energy
         h of all maps along a parameter; None otherwise.
     refine
@@ -103,18 +106,20 @@ class CurvesSpec:
         return "h" if self.along is None else self.along.symbol
 
     @property
-    def channels(self) -> int:
-        """The number of channels of the curves."""
-        return self.potential.channels if self.along is None else parameter_family(self.along).channels
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What the curves are of, after bounded orbits."""
+        if self.along is not None:
+            return parameter_family(self.along).outcomes
+        return self.potential.outcomes_at((min(self.values), max(self.values)))
 
     def point(self, value: float) -> CurvePointSpec:
         """The measurement at one value; ValueError if the system has no potential there."""
-        potential, numbers = self.potential, tuple(range(self.potential.channels + 1))
+        potential, numbers = self.potential, tuple(range(len(self.potential.outcomes) + 1))
         if self.along is not None:
             member = parameter_family(self.along).member(value)
-            potential, numbers = member.potential, tuple(member.numbers.tolist())
+            potential, numbers = member.potential, tuple(member.numbers_at(self._energy_at(value)).tolist())
         map_spec = MapSpec(potential, self.plane, self._energy_at(value), self.resolution, t_max=self.t_max)
-        return CurvePointSpec(map_spec, self.exponent, value, numbers, self.channels)
+        return CurvePointSpec(map_spec, self.exponent, value, numbers, len(self.outcomes))
 
     def provenance(self) -> dict[str, Any]:
         """The request in plain values, with the integrator and the package version."""
@@ -168,8 +173,8 @@ class Curves(Result):
 
     @property
     def shares(self) -> np.ndarray:
-        """(n, channels + 1) share of bounded orbits, then of each channel."""
-        return np.array([point.shares for point in self.points]).reshape(-1, self.spec.channels + 1)
+        """(n, outcomes + 1) share of bounded orbits, then of each outcome."""
+        return np.array([point.shares for point in self.points]).reshape(-1, len(self.spec.outcomes) + 1)
 
     def curve(self, name: str) -> np.ndarray:
         """(n,) any other attribute of `CurvePoint`, by its name."""
@@ -183,7 +188,9 @@ class Curves(Result):
         spec = self.spec
         variables: dict[str, Any] = {"share": ((spec.name, "fate"), self.shares)}
         variables |= {name: (spec.name, self.curve(name)) for name in _CURVES}
-        coordinates = {spec.name: self.values, "fate": np.arange(spec.channels + 1)}
+        labels = [outcome.label for outcome in spec.outcomes]
+        fates = {} if all(outcome.kind is OutcomeKind.EXIT for outcome in spec.outcomes) else describe_codes(Fate, labels)
+        coordinates = {spec.name: self.values, "fate": ("fate", np.arange(len(labels) + 1), fates)}
         return xr.Dataset(variables, coordinates, {"result": type(self).__name__, **spec.provenance()})
 
 

@@ -14,10 +14,12 @@ from engine.dynamics.classification import Outcomes
 from engine.maps.origin_fates import OriginFateMap
 from engine.maps.regularity import RegularityMap
 from engine.maps.result import EscapeMap
-from engine.maps.stored_maps import read_map, read_potential, read_spec
+from engine.maps.stored_maps import read_map, read_spec
 from engine.maps.trust import TrustMap
 from engine.measures.basin_entropy import BasinEntropy
 from engine.measures.uncertainty_exponent import UncertaintyExponent
+from engine.potentials.outcomes import read_outcomes
+from engine.potentials.stored_potential import read_potential
 from engine.results.arrays import read_only
 from engine.results.extras import require_package
 from engine.results.result import Result
@@ -124,6 +126,8 @@ def _value(kind: Any, name: str, dataset: xr.Dataset) -> Any:
         return read_spec(dataset)
     if name == "potential":
         return read_potential(dataset.attrs) if "terms" in dataset.attrs else None
+    if name == "outcomes":
+        return read_outcomes(dataset.attrs.get(name, "[]"))
     if name in ("x", "ordinate") and kind is OriginFateMap:
         return read_only(read_spec(dataset).pixel_centres()[name == "ordinate"])
     if name in dataset.variables and dataset[name].ndim:
@@ -134,5 +138,5 @@ def _value(kind: Any, name: str, dataset: xr.Dataset) -> Any:
     number = np.asarray(found).item()
     if name == "complete":
         return bool(number)
-    # Fates are numbers, as some of them are channels.
+    # Fates are numbers, as some of them are outcomes.
     return kind.codes[name](number) if name == "certificate" else number

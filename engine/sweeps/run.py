@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.maps.compute import LARGEST_RUN, run_map
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
 from engine.maps.row_blocks import row_blocks

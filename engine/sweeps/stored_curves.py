@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from engine.maps.stored_maps import read_potential
+from engine.potentials.stored_potential import read_potential
 from engine.potentials.system import System
 from engine.slices.axes import ParameterAxis
 from engine.slices.slice_text import read_slice

@@ -12,7 +12,8 @@ import inspect
 import linecache
 import sys
 import threading
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Mapping
+from fractions import Fraction
 from types import ModuleType
 from typing import Any
 
@@ -22,21 +23,33 @@ from numba.core.dispatcher import Dispatcher
 from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Expression
 from engine.taylor.jit.compiled_operations import compiled_operations
-from engine.taylor.jit.decorator import kernel
+from engine.taylor.jit.decorator import exact_kernel, kernel
+from engine.taylor.jit.double_double import VECTOR, lanes_of_pairs
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.jit.llvm_emitter import straight_line, table_reader
-from engine.taylor.kernels import fixed_step, interior, periodic_shooting, propagate, section_passages
-from engine.taylor.source.recurrence import REACH, Definition, GeneratedCode, generate_code
+from engine.taylor.kernels import deep, fixed_step, interior, periodic_shooting, propagate, section_passages
+from engine.taylor.source.cauchy_products import Monomial
+from engine.taylor.source.deep_step import generate_deep_step
+from engine.taylor.source.recurrence import Definition, GeneratedCode, generate_code
+from engine.taylor.source.series import REACH, Setting
 
 _KERNEL_MODULES = (propagate, periodic_shooting, fixed_step, section_passages, interior)
 # Cached potentials; binding the coefficients of one more of a known structure takes milliseconds.
 _BOUND_POTENTIALS = 256
 _lock = threading.Lock()
 # The potentials whose functions are generated, see `_outline`.
-_generated: set[tuple[Hashable, int]] = set()
+_generated: set[tuple[Hashable, Setting]] = set()
 
 
-def load_kernels(definition: Definition, channels: int, reach: float = REACH) -> ModuleType:
+def load_kernels(
+    definition: Definition,
+    channels: int,
+    reach: float = REACH,
+    *,
+    discs: int = 0,
+    ring: bool = False,
+    rotation: float = 0.0,
+) -> ModuleType:
     """The kernels of a potential: ``step``, ``fixed_step``, ``jets``, ``tangent``, ``propagate``, ``shoot``, …
 
     Parameters
@@ -47,6 +60,12 @@ def load_kernels(definition: Definition, channels: int, reach: float = REACH) ->
         Number of exit channels, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
+    discs
+        Number of centres, at whose discs orbits end; 0 or more.
+    ring
+        Whether orbits end at a circle around the origin.
+    rotation
+        Ω of the frame, finite, dimensionless.
 
     Returns
     -------
@@ -55,12 +74,12 @@ def load_kernels(definition: Definition, channels: int, reach: float = REACH) ->
     loaded from the cache.
     """
     with _lock:
-        return _load(definition, channels, reach)
+        return _load(definition, Setting(channels, discs, ring, rotation != 0.0), rotation, reach)
 
 
-def is_generated(definition: Definition, channels: int) -> bool:
-    """Whether functions were generated for a potential of the same form with as many channels; to generate them takes 0.3 s."""
-    return (_outline(definition), channels) in _generated
+def is_generated(definition: Definition, setting: Setting) -> bool:
+    """Whether functions were generated for a potential of the same form and setting; to generate them takes 0.3 s."""
+    return (_outline(definition), setting) in _generated
 
 
 class GeneratedKernel:
@@ -129,11 +148,11 @@ class _BoundKernel:
 
 
 @functools.lru_cache(maxsize=_BOUND_POTENTIALS)
-def _load(definition: Definition, channels: int, reach: float) -> ModuleType:
-    code = generate_code(definition, channels, reach)
+def _load(definition: Definition, setting: Setting, rotation: float, reach: float) -> ModuleType:
+    code = generate_code(definition, reach=reach, **setting._asdict())
     name, generated = _define_module(code)
-    _generated.add((_outline(definition), channels))
-    coefficients = code.tabulate(definition)
+    _generated.add((_outline(definition), setting))
+    coefficients = code.tabulate(definition, rotation)
     bound = ModuleType(name)
     for each, function in generated.items():
         setattr(bound, each, _BoundKernel(function, (), coefficients))
@@ -153,9 +172,23 @@ def _outline(definition: Definition) -> Hashable:
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
+def load_deep_propagation(coefficients: Mapping[Monomial, Fraction]) -> Callable[..., None]:
+    """`propagate_deeply` for V = Σ c x^i y^j with exact coefficients {(i, j): c}, to be called from `todo` on."""
+    with _lock:
+        code, table = generate_deep_step(tuple(coefficients.items()), VECTOR)
+        _, generated = _define_module(code, exact_kernel, lanes_of_pairs)
+    bound = _BoundKernel(deep.propagate_deeply, (generated["deep_step"],), table)
+    return functools.partial(bound, code.structure.can_hide)
+
+
 @functools.cache
-def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]]:
-    """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled."""
+def _define_module(
+    code: GeneratedCode, decorator: Callable[..., Any] = kernel, write: Callable[..., Any] = straight_line
+) -> tuple[str, dict[str, GeneratedKernel]]:
+    """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled.
+
+    decorator, write: what compiles the kernels, and what makes a function of a program.
+    """
     compiled_operations.add(code.operations)
     name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
@@ -163,8 +196,8 @@ def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]
     sys.modules[name] = module
     source = "\n\n".join(function.kernel for function in code.functions)
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
-    programs = {function.program.name: straight_line(function.program) for function in code.functions}
-    vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
+    programs = {function.program.name: write(function.program) for function in code.functions}
+    vars(module).update(kernel=decorator, read_table=table_reader(len(code.entries)), **programs)
     exec(compile(source, f"<{name}>", "exec"), vars(module))
     return name, {
         function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 from engine.dynamics.batch import OrbitBatch, propagate_batch
-from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, Regularity, describe_fate, judge_regularity
+from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, describe_fate, is_chaotic, outcome_of
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import exit_curves
-from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, WINDOWS, count_agreeing_digits
+from engine.exits.exit_rows import exit_curves
+from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
@@ -45,9 +45,6 @@ CHAOTIC_POWER = 2.0
 
 REGULAR_POWER = 1.5
 """Fastest growth from t/10 to t, as a power of t, that is no sign of chaos. On a torus a deviation vector grows like t."""
-
-REGULAR_DIGITS = 7.0
-"""Digits from which averages over both halves of an orbit agree as on a torus, see `benchmarks.verdicts`."""
 
 CHAOTIC_DIGITS = dict(zip(WINDOWS, (1.0, 2.0, 3.0, 4.0), strict=True))
 """By window T: fewer digits than this are chaotic. The smallest values on tori were 1.4, 2.2, 3.8 and 6.8."""
@@ -141,6 +138,7 @@ def compute_birkhoff_digits(
     -------
     The `BirkhoffDigits` for T = 1000, 4000, 16 000 and 64 000 time units of the well, as long as the orbit is bounded for
     2T ≤ t_max. They end early if the averages cannot be compared: on an orbit along an axis one coordinate is 0 throughout.
+    There are none around centres, which the fixed steps of the averages cannot pass.
 
     Raises
     ------
@@ -170,7 +168,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
     unit = potential.exact_time_unit
     windows = [window * unit for window in WINDOWS]
     for window in windows:
-        if 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
+        if potential.centres or 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):
             break
         found = count_agreeing_digits(potential, start, window, execution=execution.in_this_thread())[0]
         execution.raise_if_cancelled()
@@ -224,7 +222,7 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
     elif orbit.fate >= 1:
         judged = [_judge_sali_inside(orbit), _judge_growth_inside(orbit), (None, _describe_escape(orbit))][: len(values)]
     else:
-        judged = [(None, describe_fate(orbit.fate))] * len(values)
+        judged = [(None, describe_fate(orbit.fate, orbit.outcomes))] * len(values)
     return tuple(IndicatorVerdict(name, value, *verdict) for (name, value), verdict in zip(values, judged, strict=True))
 
 
@@ -239,18 +237,22 @@ def _final_values(orbit: Orbit, digits: BirkhoffDigits | None) -> list[tuple[str
 
 
 def _describe_escape(orbit: Orbit) -> str:
-    return f"The orbit escapes at t = {format_time(orbit.escape_time)}, so this is not a verdict."
+    verb = outcome_of(orbit.fate, orbit.outcomes).present.partition(" ")[0]
+    return f"The orbit {verb} at t = {format_time(orbit.escape_time)}, so this is not a verdict."
+
+
+def _describe_end(orbit: Orbit) -> str:
+    return f"{outcome_of(orbit.fate, orbit.outcomes).event} at t = {format_time(orbit.escape_time)}"
 
 
 def _judge_sali_inside(orbit: Orbit) -> tuple[Verdict | None, str]:
     """Verdict on an orbit that escapes, whose history ends there."""
     least = float(np.min(orbit.sali))
-    if judge_regularity(least) is not Regularity.CHAOTIC:
+    if not is_chaotic(least):
         return None, _describe_escape(orbit)
-    time = format_time(orbit.escape_time)
     return (
         Verdict.CHAOTIC_INSIDE,
-        f"SALI fell to {least:.2g} before the escape at t = {time}: {CHAOS_THRESHOLD:g} or below is chaotic.",
+        f"SALI fell to {least:.2g} before the {_describe_end(orbit)}: {CHAOS_THRESHOLD:g} or below is chaotic.",
     )
 
 
@@ -260,10 +262,10 @@ def _judge_growth_inside(orbit: Orbit) -> tuple[Verdict | None, str]:
     log_growth = float(orbit.lyapunov_exponent[-1]) * t_end
     if t_end < MIN_GROWTH_TIME * orbit.time_unit or log_growth <= _growth_limit(t_end, orbit.time_unit):
         return None, _describe_escape(orbit)
-    time, power = format_time(t_end), f"t^{CHAOTIC_POWER:g}"
+    power = f"t^{CHAOTIC_POWER:g}"
     return (
         Verdict.CHAOTIC_INSIDE,
-        f"A deviation vector grew by e^{log_growth:.3g} before the escape at t = {time}, more than {power}.",
+        f"A deviation vector grew by e^{log_growth:.3g} before the {_describe_end(orbit)}, more than {power}.",
     )
 
 
@@ -274,7 +276,7 @@ def _growth_limit(t_end: float, time_unit: float) -> float:
 
 def _judge_sali(orbit: Orbit) -> tuple[Verdict, str]:
     value, t_end = float(orbit.sali[-1]), float(orbit.t[-1])
-    if judge_regularity(value) is Regularity.CHAOTIC:
+    if is_chaotic(value):
         verdict, reason = Verdict.CHAOTIC, f"{CHAOS_THRESHOLD:g} or below: the two deviation vectors are aligned"
     elif t_end < MIN_REGULAR_TIME * orbit.time_unit:
         verdict, reason = _undecided_too_short(t_end)

@@ -44,7 +44,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     Raises
     ------
     ValueError
-        If a parameter is out of range, or all exits are closed at this energy.
+        If a parameter is out of range, all exits are closed at this energy, or the frame rotates.
 
     Examples
     --------
@@ -54,6 +54,7 @@ def sample_entrances(potential: Potential, energy: float, count: int, *, seed: i
     >>> round(float(times.mean()), 1), round(compute_flux(CASES["III"], 0.6).mean_passage_time, 1)
     (4.0, 4.0)
     """
+    potential.check_at_rest("random entrances")
     h = checked_number("energy", energy)
     count = checked_count("count", count, 1, LARGEST_SAMPLE)
     random = np.random.default_rng(checked_count("seed", seed, 0, 2**63 - 1))

@@ -120,7 +120,8 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     Raises
     ------
     ValueError
-        If `energy` is not finite or below the well, or exits are not defined at it; see `find_lyapunov_orbits`.
+        If `energy` is not finite or below the well, or exits are not defined at it; see `find_lyapunov_orbits`. If the frame
+        rotates.
 
     Examples
     --------
@@ -129,6 +130,7 @@ def compute_flux(potential: Potential, energy: float) -> EscapeFlux:
     >>> flux.flux.round(4).tolist(), round(flux.decay_rate, 4)
     ([0.893, 0.893, 0.893, 0.893], 0.167)
     """
+    potential.check_at_rest("the flux and the volume inside")
     h = checked_number("energy", energy)
     if h <= float(potential.value(0.0, 0.0)):
         raise ValueError(f"energy={h}: must be above the bottom of the well, {float(potential.value(0.0, 0.0)):.6g}")

@@ -9,11 +9,11 @@ from typing import ClassVar
 import numpy as np
 
 from engine.dynamics.classification import classify_orbits
-from engine.dynamics.fates import Fate
+from engine.dynamics.fates import Fate, OrbitResult, name_fate
 from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import LENGTH
-from engine.results.result import Result
 from engine.slices.energies import Energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
@@ -35,8 +35,8 @@ _SHORTEST_HORIZON = 1000.0
 
 
 @dataclass(frozen=True)
-class DivergentStart(Result):
-    """A neighbouring start on the same plane whose orbit escapes through a different channel; lengths are dimensionless.
+class DivergentStart(OrbitResult):
+    """A neighbouring start on the same plane whose orbit has another outcome; lengths are dimensionless.
 
     Attributes
     ----------
@@ -45,9 +45,11 @@ class DivergentStart(Result):
     distance
         Distance from the given start in that plane, with momenta in units in which the well's time unit is 1.
     fate
-        Channel through which this orbit escapes, k ≥ 1.
+        Fate of this orbit, k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k.
     reference_fate
-        Fate of the given start: another channel, or a `Fate`.
+        Fate of the given start: another outcome, or a `Fate`.
+    outcomes
+        Those of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     x: float
@@ -55,6 +57,7 @@ class DivergentStart(Result):
     distance: float = field(metadata=LENGTH)
     fate: int
     reference_fate: int
+    outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     codes: ClassVar = {"fate": Fate, "reference_fate": Fate}
 
 
@@ -70,7 +73,7 @@ def find_divergent_start(
     furthest: float | None = None,
     execution: Execution = DEFAULT_EXECUTION,
 ) -> DivergentStart | None:
-    """Find the nearest neighbour of a start that escapes through another channel, or at all if the start is bounded.
+    """Find the nearest neighbour of a start that has another outcome, or any if the start is bounded.
 
     Neighbours lie on rings around the start: 16 directions on rings that grow by a factor of 1.6, or, with an axis h, the two
     directions of constant energy on rings that grow by a factor of 1.06. Between the first ring with a divergent start and the
@@ -128,7 +131,7 @@ def find_divergent_start(
     search = _Search(potential.in_well_units, plane.in_well_units(units), h / units.energy, centre, execution)
     search.classify_centre(t_max / units.time)
     if search.centre_fate in (Fate.FORBIDDEN, Fate.OUTSIDE):
-        fate, inside = Fate(search.centre_fate).name.lower(), plane.limiting_curve.replace("=", "≤")
+        fate, inside = name_fate(search.centre_fate), plane.limiting_curve.replace("=", "≤")
         start = ", ".join(f"{name}={value}" for name, value in zip(plane.axis_names, (x, ordinate), strict=True))
         raise ValueError(f"{start}: {fate} on {plane.title} at h={h}; must have {inside} and lie inside all exits")
     found = search.find_nearest(furthest / units.length)
@@ -150,13 +153,13 @@ def _checked_energy(plane: Slice, energy: Energy, x: float, ordinate: float) -> 
 class _Bracket:
     """Bounds of the distance to the nearest divergent start along some directions (m, 2).
 
-    There is none at radius `low`. At radius `high` the start in each direction escapes through its entry of `channels` (m,).
+    There is none at radius `low`. At radius `high` the start in each direction has its entry of `fates` (m,).
     """
 
     low: float
     high: float
     directions: np.ndarray
-    channels: np.ndarray
+    fates: np.ndarray
 
 
 class _Search:
@@ -192,7 +195,7 @@ class _Search:
             bracket = self.find_bracket(radii, bracket.directions) or bracket
         x, ordinate = (self.centre + bracket.high * bracket.directions[0]).tolist()
         distance = float(np.hypot(*(self.centre - [x, ordinate])))
-        return DivergentStart(x, ordinate, distance, int(bracket.channels[0]), self.centre_fate)
+        return DivergentStart(x, ordinate, distance, int(bracket.fates[0]), self.centre_fate, self.potential.outcomes_at(self.h))
 
     def find_bracket(self, radii: np.ndarray, directions: np.ndarray) -> _Bracket | None:
         """The smallest of the increasing radii with a divergent start, if any; the first radius is known to have none."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from engine.dynamics.certificates import Certificate, describe_certificate
-from engine.dynamics.fates import Fate, describe_fate
+from engine.dynamics.fates import Fate, OrbitResult, describe_fate, name_fate, outcome_of
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS
-from engine.results.result import Result
+from engine.potentials.outcomes import Outcome
 from engine.results.wording import format_count, format_time
 from engine.trajectories.chaos_indicators import BirkhoffDigits, IndicatorVerdict, Verdict, evaluate_indicators
 from engine.trajectories.trajectory import Orbit
@@ -17,13 +17,13 @@ from engine.validation import checks_types
 
 
 @dataclass(frozen=True)
-class OrbitVerdict(Result):
+class OrbitVerdict(OrbitResult):
     """What is known of one orbit.
 
     Attributes
     ----------
     fate
-        Channel k ≥ 1, or a `Fate`.
+        k ≥ 1 for the outcome ``outcomes[k - 1]``, such as channel k, or a `Fate`.
     t_end
         Time of the escape, or time until which the orbit is integrated, dimensionless.
     crossings
@@ -35,6 +35,8 @@ class OrbitVerdict(Result):
         If the orbit is bounded, what its indicators show until `t_end`; chaotic while inside or None if it is not.
     evidence
         The indicators that decide on the character, with their values; empty if none does.
+    outcomes
+        Those of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     fate: int
@@ -43,6 +45,7 @@ class OrbitVerdict(Result):
     certificate: Certificate
     character: Verdict | None
     evidence: str
+    outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     codes: ClassVar = {"fate": Fate, "certificate": Certificate}
 
     @property
@@ -55,9 +58,9 @@ class OrbitVerdict(Result):
         crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
         if self.fate >= 1:
             kind = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
-            return f"Escaped through channel {self.fate} at t = {time}, {kind}{self._inside}."
+            return f"{outcome_of(self.fate, self.outcomes).past} at t = {time}, {kind}{self._inside}."
         if self.character is None:
-            return describe_fate(self.fate)
+            return describe_fate(self.fate, self.outcomes)
         reason = describe_certificate(self.certificate)
         match self.certificate:
             case Certificate.CLOSED:
@@ -70,9 +73,9 @@ class OrbitVerdict(Result):
     def summarize(self) -> str:
         """The verdict in a few words, for lists."""
         if self.fate >= 1:
-            return f"channel {self.fate} at t = {format_time(self.t_end, digits=5)}{self._inside}"
+            return f"{name_fate(self.fate, self.outcomes)} at t = {format_time(self.t_end, digits=5)}{self._inside}"
         if self.character is None:
-            return Fate(self.fate).name.lower().replace("_", " ")
+            return name_fate(self.fate, self.outcomes)
         return f"bounded {'for ever' if self.is_bounded_for_ever else f'until t = {format_time(self.t_end)}'}, {self.character}"
 
     @property
@@ -97,9 +100,10 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     """The verdict on an orbit, from its energy, its outcome and its chaos indicators.
 
     A bounded orbit is regular or chaotic if an indicator of `evaluate_indicators` concludes so and none concludes the opposite.
-    Without either, it shows no sign of chaos until the end if none of its deviation vectors does, and is undecided otherwise. It
-    is bounded for ever if its energy is below every saddle; Birkhoff averages that agree as on an invariant torus are evidence
-    for that, unless another indicator shows chaos. One that escapes is chaotic while inside if an indicator says so.
+    Without either, it shows no sign of chaos until the end if none of its deviation vectors does, and is undecided otherwise.
+    It is bounded for ever if its energy is below every saddle; Birkhoff averages that agree as on an invariant torus are
+    evidence for that in a well at rest (`Potential.certifies_tori`), unless another indicator shows chaos. One that escapes is
+    chaotic while inside if an indicator says so.
 
     Parameters
     ----------
@@ -121,7 +125,7 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
     certificate = _certificate(orbit, digits, Verdict.CHAOTIC in conclusions)
     evidence = _evidence(indicators, character)
-    return OrbitVerdict(orbit.fate, float(orbit.t[-1]), orbit.crossings, certificate, character, evidence)
+    return OrbitVerdict(orbit.fate, float(orbit.t[-1]), orbit.crossings, certificate, character, evidence, orbit.outcomes)
 
 
 def _combine(conclusions: Sequence[Verdict | None]) -> Verdict:
@@ -144,5 +148,7 @@ def _evidence(indicators: Sequence[IndicatorVerdict], character: Verdict | None)
 
 def _certificate(orbit: Orbit, digits: BirkhoffDigits | None, shows_chaos: bool) -> Certificate:
     if orbit.certificate is not Certificate.INTEGRATED or shows_chaos or digits is None or not digits.digits.size:
+        return orbit.certificate
+    if orbit.potential is not None and not orbit.potential.certifies_tori:
         return orbit.certificate
     return Certificate.QUASI_PERIODIC if digits.digits[-1] >= CERTIFIED_DIGITS else Certificate.INTEGRATED

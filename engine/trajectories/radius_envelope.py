@@ -70,7 +70,7 @@ def compute_radius_envelope(
     potential
         The `Potential`.
     state
-        (4,) x, y, px, py; finite, dimensionless; inside every Lyapunov orbit.
+        (4,) x, y, px, py; finite, dimensionless; inside: beyond no exit, in no body, within the escape radius.
     t_max
         Longest integration time, 0 < t_max ≤ 1e8, dimensionless.
     intervals
@@ -83,7 +83,7 @@ def compute_radius_envelope(
     concurrent.futures.CancelledError
         If cancelled.
     ValueError
-        If a parameter is out of range, or the start lies beyond a Lyapunov orbit.
+        If a parameter is out of range, or the start lies outside.
     """
     start, t_max = checked_state("state", state), checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
@@ -92,7 +92,7 @@ def compute_radius_envelope(
     outcome = classify_orbits(well, float(well.energy(start)), start[None], t_max, execution=execution.in_this_thread())
     execution.raise_if_cancelled()
     if outcome.fate[0] == Fate.OUTSIDE:
-        raise ValueError(f"state={short_repr(state)}: lies beyond a Lyapunov orbit; must lie inside")
+        raise ValueError(f"state={short_repr(state)}: lies beyond an exit, in a body or beyond the escape radius; must be inside")
     return units.restore(_find_envelope(well, start, outcome, t_max, intervals, execution))
 
 
@@ -120,7 +120,7 @@ def _sample_r2(
     All quantities are in units of the well.
     """
     kernels = kernels_of(potential)
-    for steps, until in trace_pieces(kernels, start, float(boundaries[-1]), potential.channels, execution):
+    for steps, until in trace_pieces(kernels, start, float(boundaries[-1]), len(potential.outcomes), execution):
         begin = steps[0, 4]
         even = np.linspace(begin, until, int(np.ceil((until - begin) / _SAMPLE_INTERVAL)) + 1)
         times = np.union1d(even, boundaries[(boundaries >= begin) & (boundaries <= until)])

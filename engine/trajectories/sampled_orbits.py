@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from engine.dynamics.classification import Outcomes
-from engine.dynamics.fates import Fate
+from engine.dynamics.fates import Fate, OrbitResult
 from engine.dynamics.orbit_steps import record_orbit
 from engine.execution import DEFAULT_EXECUTION, SERIAL_EXECUTION, Execution, shows_progress
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.potentials.compiled import kernels_of
+from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME
 from engine.results.arrays import read_only
-from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_path
 from engine.trajectories.trajectory import MAX_ORBIT_TIME
 from engine.validation import LARGEST_NUMBER, checked_array, checked_t_max, checks_types, short_repr
@@ -28,7 +28,7 @@ _STATE = 4
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SampledOrbits(Result):
+class SampledOrbits(OrbitResult):
     """The paths of n orbits at m times each, dimensionless; arrays are read-only.
 
     Attributes
@@ -41,6 +41,8 @@ class SampledOrbits(Result):
         (n,) outcome of each orbit until its last time, as in `Outcomes`.
     energy
         (n,) h of each orbit.
+    outcomes
+        Those of the potential, see `Potential.outcomes`; empty if they are not known.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -52,6 +54,7 @@ class SampledOrbits(Result):
     escape_time: np.ndarray = field(metadata=TIME)
     crossings: np.ndarray
     energy: np.ndarray = field(metadata=ENERGY)
+    outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
     codes: ClassVar = {"fate": Fate}
     row_dimension: ClassVar = "orbit"
 
@@ -121,7 +124,9 @@ def sample_orbits(potential: Potential, states: Any, times: Any, *, execution: E
         execution.raise_if_cancelled()
         rows.append(execution.collect(future))
         execution.report(lambda place=place: (place + 1) / len(futures))  # type: ignore[misc]
-    return units.restore(_join(well, states / units.state, times / units.time, rows))
+    energies = potential.energy(states)
+    outcomes = potential.outcomes_at((float(energies.min()), float(energies.max()))) if len(states) else potential.outcomes
+    return replace(units.restore(_join(well, states / units.state, times / units.time, rows)), outcomes=outcomes)
 
 
 def _sample_orbit(potential: Potential, start: np.ndarray, times: np.ndarray) -> tuple[np.ndarray, Outcomes]:
@@ -143,7 +148,8 @@ def _join(potential: Potential, states: np.ndarray, times: np.ndarray, rows: lis
     paths = np.array([path for path, _ in rows]).reshape(len(rows), _STATE, times.shape[1])
     ends = (np.concatenate([getattr(outcome, name) for _, outcome in rows]) for name in ("fate", "escape_time", "crossings"))
     arrays = (times, *paths.transpose(1, 0, 2), *ends, np.atleast_1d(potential.energy(states)))
-    return SampledOrbits(*(read_only(np.ascontiguousarray(array)) for array in arrays))
+    filled: list[Any] = [read_only(np.ascontiguousarray(array)) for array in arrays]
+    return SampledOrbits(*filled)
 
 
 def _checked_starts(states: Any) -> np.ndarray:

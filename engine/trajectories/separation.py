@@ -87,6 +87,6 @@ def compute_separation(
     paths = []
     for name, state in (("first", first), ("second", second)):
         start = checked_state(name, state) / units.state
-        steps = trace_steps(kernels, start, float(times[-1]), potential.channels, execution)
+        steps = trace_steps(kernels, start, float(times[-1]), len(potential.outcomes), execution)
         paths.append(sample_path(kernels, steps, times, execution))
     return units.restore(Separation(read_only(times), read_only(np.linalg.norm(paths[1] - paths[0], axis=0))))

@@ -10,16 +10,17 @@ import numpy as np
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
-from engine.dynamics.fates import Fate
+from engine.dynamics.fates import Fate, OrbitResult
 from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.invariant_sets.birkhoff_averages import compare_halves
 from engine.potentials.compiled import kernels_of
+from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
+from engine.potentials.stored_potential import describe_potential
 from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
-from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_deviations, sample_path
 from engine.validation import checked_state, checked_t_max, checks_types
 
@@ -36,7 +37,7 @@ _MAX_SAMPLES = 500_000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Orbit(Result):
+class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
 
     Attributes
@@ -86,6 +87,11 @@ class Orbit(Result):
     potential: Potential | None = field(default=None, repr=False)
     codes: ClassVar = {"fate": Fate, "certificate": Certificate}
 
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:  # type: ignore[override]
+        """Those of the potential; empty without it."""
+        return () if self.potential is None else self.potential.outcomes_at(self.energy)
+
     @cached_property
     def digits_of_halves(self) -> float:
         """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree: many on a torus."""
@@ -94,7 +100,7 @@ class Orbit(Result):
     def to_xarray(self) -> xr.Dataset:
         """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""
         dataset = super().to_xarray()
-        made = {} if self.potential is None else {"potential": self.potential.name, "terms": self.potential.form.text}
+        made = {} if self.potential is None else describe_potential(self.potential)
         return dataset.assign_attrs(made)
 
     @property
@@ -161,7 +167,7 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
     if fate != Fate.BOUNDED:
         return Certificate.NONE
-    return Certificate.CLOSED if energy <= potential.escape_energy else Certificate.INTEGRATED
+    return Certificate.CLOSED if potential.is_closed_at(energy) else Certificate.INTEGRATED
 
 
 def _sample_orbit(

@@ -113,4 +113,4 @@ def _colour_handles(case: str, picture: str) -> list[Artist]:
     bounded = PAPER.outcomes[Fate.BOUNDED]
     if picture == "times":
         return patches([bounded])
-    return patches([bounded, *(PAPER.channel_entries(CASES[case].channels) if picture == "basins" else PAPER.crossing_entries)])
+    return patches([bounded, *(PAPER.end_entries(CASES[case].outcomes) if picture == "basins" else PAPER.crossing_entries)])

@@ -49,7 +49,7 @@ def draw_characters(shelf: MapShelf) -> Figure:
     figure = new_figure(replace(SCREEN, width=17.3), 18.3, title, equal=True)
     axes = figure.subplots()
     draw_map_panel(axes, frame, "characters", frame.spec.find_window(), analyses=MapAnalyses(regularity=regularity))
-    add_figure_legend(figure, [*patches(PAPER.character_entries[1:3]), *axes.collections])
+    add_figure_legend(figure, [*patches(PAPER.character_entries[1:-1]), *axes.collections])
     return figure
 
 

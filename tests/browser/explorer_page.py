@@ -34,6 +34,12 @@ _RANGES = """name => {
     return [x_range.start, x_range.end, y_range.start, y_range.end]
 }"""
 
+_ADDRESSED = """name => {
+    const {x_range, y_range} = Bokeh.documents[0].get_model_by_name(name)
+    const edges = new URL(location.href).searchParams.get("window")?.split(",").map(Number)
+    return edges && [x_range.start, x_range.end, y_range.start, y_range.end].every((end, k) => Math.abs(end - edges[k]) < 1e-9)
+}"""
+
 _RETURNED = """() => history.state.entry === 0
     && [...Bokeh.documents[0].all_models].some(model => model.data?.attributes?.address?.entry === 0)"""
 
@@ -101,6 +107,10 @@ class ExplorerPage:
 
     def ranges(self, picture: str) -> list[float]:
         return self.page.evaluate(_RANGES, picture)
+
+    def wait_for_address_of(self, picture: str) -> None:
+        """Wait until the window in the address is the one that a picture shows."""
+        self.page.wait_for_function(_ADDRESSED, arg=picture)
 
     def button(self, label: str) -> Locator:
         return self.page.get_by_role("button", name=label, exact=True)

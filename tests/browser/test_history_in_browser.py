@@ -64,7 +64,7 @@ def test_all_steps_of_the_wheel_are_one_entry(explorer: ExplorerPage) -> None:
     explorer.turn_wheel("basins", 0.1, 0.1, -100)
     for _ in range(2):
         explorer.page.mouse.wheel(0, -100)
-    explorer.wait_for_view("window=")
+    explorer.wait_for_address_of("basins")
     explorer.page.go_back()
     explorer.wait_for_view(HOME)
     expect(explorer.button("Whole plane")).to_be_hidden()

@@ -155,6 +155,13 @@ def test_on_a_phone_one_map_is_shown_and_can_be_chosen(phone: ExplorerPage) -> N
         assert set(figures(phone)) == {name}
 
 
+def test_a_window_that_is_made_narrow_has_the_layout_of_a_phone(open_explorer: OpenExplorer) -> None:
+    explorer = open_explorer(1280, 900, QUICK)
+    explorer.page.set_viewport_size({"width": 420, "height": 900})
+    explorer.pick(SHORT_TITLES["times"])
+    explorer.page.wait_for_function(f"() => {{ const shown = ({_FIGURES})(); return shown.times && !shown.basins }}")
+
+
 @pytest.mark.parametrize(("page", "width"), [("wide", 1600), ("middling", 1280), ("phone", 420)])
 def test_pictures_are_square_and_nothing_is_wider_than_the_screen(page: str, width: int, request: pytest.FixtureRequest) -> None:
     explorer: ExplorerPage = request.getfixturevalue(page)

@@ -32,7 +32,7 @@ LINKS = (
 )
 # Only entries of the gallery whose maps take moments.
 QUICK = [preset for preset in PRESETS if preset.t_max <= 1e4 and preset.case in CASES and preset.resolution <= 224]
-ACTIONS, SEEDS = 120, range(200, 206)
+ACTIONS, SEEDS = 80, range(200, 206)
 ROUNDS = 20
 """Most states that follow each other after an action."""
 

@@ -164,9 +164,9 @@ def test_resumed_maps_and_origins(name: str, scaling: Scaling) -> None:
 @exactly_scaled
 def test_curve_points_with_uncertainty_exponents(name: str, scaling: Scaling) -> None:
     usual, scaled = escape_map(name, Plane.X_PX), escape_map(name, Plane.X_PX, scaling)
-    channels = usual.spec.channels
+    outcomes = len(usual.spec.outcomes)
     point, scaled_point = (
-        compute_curve_point(CurvePointSpec(m.spec, False, 0.2, tuple(range(channels + 1)), channels), frame=m)
+        compute_curve_point(CurvePointSpec(m.spec, False, 0.2, tuple(range(outcomes + 1)), outcomes), frame=m)
         for m in (usual, scaled)
     )
     assert scaled_point.shares == point.shares

@@ -30,6 +30,7 @@ from engine import (
     sample_orbits,
     start_states,
 )
+from engine.potentials.outcomes import Centre
 
 LONGEST = 400
 
@@ -45,7 +46,7 @@ def names() -> dict[str, Any]:
         "stats": compute_statistics(whole), "sw": SweepSpec(case, Plane.X_PX, (0.3, 0.4), (10, 10), t_max=20.0),
         "cs": CurvesSpec(case, Plane.X_PX, (0.4,), (10, 10), t_max=20.0, exponent=False),
         "other": Curves(CurvesSpec(case, Plane.X_PX, (0.4,), (12, 12), t_max=30.0, exponent=False), ()),
-        "well": parse_formula("x² + y²"), "np": np, "threading": threading, "axes": Figure().subplots(),
+        "well": parse_formula("x² + y²"), "Centre": Centre, "np": np, "threading": threading, "axes": Figure().subplots(),
     }  # fmt: skip
 
 
@@ -127,6 +128,7 @@ WRONG_CALLS = (
     ('find_divergent_start(III, Plane.X_PX, 0.45, "a", 0.0)', "x='a': must be a finite number, at most 1e+09 in magnitude"),
     ('find_divergent_start("III", Plane.X_PX, 0.45, 0.1, 0.0)', "potential='III': must be a Potential"),
     ('find_lyapunov_orbits("III", 0.45)', "potential='III': must be a Potential"),
+    ("find_multipliers(III, orbit)", "orbit=…: must be a LyapunovOrbit"),
     ('find_lyapunov_orbits(III, "high")', "energy='high': must be a finite number, at most 1e+09 in magnitude"),
     ('find_stable_manifolds("III", 0.45)', "potential='III': must be a Potential"),
     ("find_stable_manifolds(III, 0.45, images=0)", "images=0: must be an integer from 1 to 6"),
@@ -216,6 +218,45 @@ WRONG_CALLS = (
     ('m.plot(axes, color="red")', "color: no such option; the picture of EscapeMap has palette, picture"),
     ('m.plot(axes, picture="nice")', "picture='nice': must be one of curves, basins, times, crossings, characters, origins"),
     ("m.plot(ax=3)", "ax=3: must be Matplotlib axes or None"),
+    ('III.in_rotating_frame(float("nan"))', "rotation=nan: must be a finite number, at most 1e+09 in magnitude"),
+    ('III.in_rotating_frame(float("inf"))', "rotation=inf: must be a finite number, at most 1e+09 in magnitude"),
+    ('III.in_rotating_frame("a")', "rotation='a': must be a finite number, at most 1e+09 in magnitude"),
+    ("III.in_rotating_frame(0.1).in_rotating_frame(0.1)", "potential=III: must be one of a frame that does not rotate"),
+    ('Potential("p", III.form, rotation="a")', "rotation='a': must be a finite number, at most 1e+09 in magnitude"),
+    (
+        'System("Barred galaxy", parameters={"rotation": "a"}).potential',
+        "rotation='a': must be a finite number, at most 1e+09 in",
+    ),
+    ('System("Hill", parameters={"rotation": 2.0}).potential', "parameters: 'rotation' is no parameter of Hill; it has none"),
+    ('System("Copenhagen", parameters={"m": "a"}).potential', "m='a': must be a finite number, at most 1e+09 in magnitude"),
+    ('Potential("p", III.form, centres=3)', "centres=3: must be a sequence"),
+    ("III.with_outcomes(3)", "centres=3: must be a sequence"),
+    ("III.with_outcomes([(0, 0, 1)])", "centres=(0, 0, 1): must be a Centre"),
+    ("III.with_outcomes(escape_radius=0)", "escape_radius=0.0: must be from 1e-06 to 1e+06"),
+    ('III.with_outcomes(escape_radius=float("nan"))', "escape_radius=nan: must be a number from 1e-06 to 1e+06"),
+    ("Centre(1e10, 0, 1)", "centre x=10000000000.0: must be a finite number, at most 1e+09 in magnitude"),
+    ('Centre(0, "a", 1)', "centre y='a': must be a finite number, at most 1e+09 in magnitude"),
+    ("Centre(0, 0, 0)", "centre radius=0.0: must be from 1e-06 to 1e+06"),
+    ("Centre(0, 0, -1)", "centre radius=-1.0: must be from 1e-06 to 1e+06"),
+    ("Centre(0, 0, 1, 3)", "name=3: must be text"),
+    ('parse_formula("−1/r; centre (0, 0) 0")', "formula, character 20: centre radius=0.0: must be from 1e-06 to 1e+06"),
+    ('parse_formula("−1/r; centre (1e10, 0) 1")', "formula, character 23: centre x=10000000000.0: must be a finite number"),
+    ('parse_formula("−1/r; centre (x, 0) 1")', "formula, character 15: a place or a radius must be a number, without x and y"),
+    ('parse_formula("−1/r; escape 0")', "escape_radius=0.0: must be from 1e-06 to 1e+06"),
+    ('integrate_orbit(parse_formula("1/x"), S)', "potential=x⁻¹: must have exits, or a closed well at the origin"),
+    ('integrate_orbit(parse_formula("1/r"), S)', "potential=(x² + y²)^(−1/2): must have exits, or a closed well at the origin"),
+    ('integrate_orbit(parse_formula("1/r; escape 9"), S)', "potential=(x² + y²)^(−1/2): must be defined everywhere within the "),
+    ('integrate_orbit(parse_formula("1/x; escape 9"), S)', "potential=x⁻¹: must be defined everywhere within the escape radius"),
+    ('integrate_orbit(parse_formula("log(1 − r²); escape 3"), S)', "potential=log(−x² − y² + 1): must be defined everywhere "),
+    ("integrate_orbit(III.in_rotating_frame(3.0), S)", "potential=III: must have exits, or a closed well at the origin"),
+    (
+        'find_stable_manifolds(System("Hill").potential, -2.0)',
+        "potential=Hill: its frame rotates; stable manifolds are for frame",
+    ),
+    (
+        'classify_orbits(System("Hill").potential, -2.0, [(0.0, 0.0, 0.0, 1.0)])',
+        "states: row 0 has energy -inf; must be energy=-",
+    ),
     ('m.fractions(count_outside="no")', "count_outside='no': must be True or False"),
 )
 

@@ -13,10 +13,11 @@ from app.state.permalink import write_link
 from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
-from engine import POTENTIALS, Potential, PotentialReview, System, parse_formula, review_potential, write_formula
+from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
 from engine.service import PARAMETERS, TYPED
 from plots.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link
+from tests.contracts.potentials import WELLS
 from tests.fuzz.hostile import LONGEST_MESSAGE, anything, case_strings, formulas, mostly, result_or_error
 
 LONGEST_REVIEW = 3.0
@@ -66,13 +67,13 @@ def test_any_formula(text: str) -> None:
         check_display(System(TYPED, text), reviewed(potential))
 
 
-@given(st.sampled_from(list(POTENTIALS)), *[mostly(st.floats(0.5, 2.0))] * 3)
+@given(st.sampled_from(list(WELLS)), *[mostly(st.floats(0.5, 2.0))] * 3)
 def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: Any, epsilon: Any) -> None:
-    plain = POTENTIALS[name]
+    plain = WELLS[name]
     changed = result_or_error(lambda: plain.with_parameters(omega_1, omega_2, epsilon), PARAMETERS)
     if changed is not None:
         check_display(
-            System(name, "", dict(zip(PARAMETERS, map(float, (omega_1, omega_2, epsilon)), strict=True))), reviewed(changed)
+            System(name, "", {"omega_1": float(omega_1), "omega_2": float(omega_2), "epsilon": float(epsilon)}), reviewed(changed)
         )
 
 

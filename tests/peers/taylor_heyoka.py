@@ -17,7 +17,7 @@ from tests.peers.exit_lines import ExitLine
 
 _DEGREE = 12
 # Crossings up to this time are the start itself and are not counted.
-_START_TIME = 1e-9
+START_TIME = 1e-9
 
 
 def coordinates():
@@ -27,6 +27,8 @@ def coordinates():
 def equations(potential: Potential) -> list:
     x, y, px, py = coordinates()
     fx, fy = (_in_heyoka(potential.form.force(axis)) for axis in (0, 1))
+    if potential.rotation:
+        fx, fy = fx + 2.0 * potential.rotation * py, fy - 2.0 * potential.rotation * px
     return [(x, px), (y, py), (px, fx), (py, fy)]
 
 
@@ -116,7 +118,7 @@ class Classifier:
         return callback
 
     def _upward(self, _integrator, time: float, _sign: int) -> None:
-        self.crossings += time > _START_TIME
+        self.crossings += time > START_TIME
 
     def set_exits(self, lines: list[ExitLine]) -> None:
         """Set the exits for an energy."""

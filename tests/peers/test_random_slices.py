@@ -45,7 +45,7 @@ def random_slice(random: np.random.Generator, system: System) -> Slice:
     held = round(float(random.uniform(-0.15, 0.15)), 3)
     momentum, other = random.permutation([C.PX, C.PY]).tolist()
     angle = random.choice([C.THETA, C.BETA])
-    parameter = random.choice(list(system.parameter_names))
+    parameter = random.choice([name for name in system.parameter_names if system.value_of(name)])
     value = system.value_of(str(parameter))
     along = ParameterAxis(str(parameter), 0.8 * value, 1.25 * value, system)
     sign = int(random.choice([-1, 1]))

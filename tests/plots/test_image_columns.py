@@ -21,8 +21,17 @@ from engine import (
     compute_regularity,
 )
 from plots import palette
-from plots.image_columns import NO_LAYER, character_column, difference_column, draw_over, map_columns, passage_column
+from plots.image_columns import (
+    NO_LAYER,
+    character_column,
+    difference_column,
+    draw_over,
+    map_columns,
+    passage_column,
+    pixel_coding,
+)
 from plots.palette import DIFFERENCES, OUTCOMES, PAPER
+from tests.disc import DISC, disc_map
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +46,28 @@ def test_every_pixel_has_the_colour_of_its_fate(escape_map: EscapeMap) -> None:
         assert set(colours[escape_map.fate == channel]) == {PAPER.channels[channel - 1]}
     for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE):
         assert set(colours[escape_map.fate == fate]) == {PAPER.outcomes[fate].colour}
+
+
+def test_a_collision_has_a_colour_and_words_of_its_own() -> None:
+    columns, fate = map_columns(frame := disc_map()), frame.fate
+    assert set(np.array(PAPER.fate_colours)[columns["fate"][0]][fate == 3]) == {PAPER.collisions[0]}
+    (code,) = set(columns["fate"][0][fate == 3].tolist())
+    assert columns["ends"][0][code - len(OUTCOMES)] == "collides with a disc"
+
+
+def test_the_coding_gives_the_codes_of_the_columns() -> None:
+    coding, frame = pixel_coding(DISC.outcomes), disc_map()
+    codes = map_columns(frame)["fate"][0]
+    assert coding["words"] == map_columns(frame)["ends"][0]
+    for fate in (1, 2, 3):
+        assert set(codes[frame.fate == fate].tolist()) == {coding["first"] + coding["ends"][fate - 1]}
+
+
+def test_passages_from_and_to_a_collision_have_their_colours() -> None:
+    origins = compute_origin_fates(disc_map().spec)
+    colours = np.array(PAPER.passage_colours)[passage_column(origins)["passage"][0]]
+    where = (origins.origin == 1) & (origins.fate == 3)
+    assert set(colours[where]) == {PAPER.passage_colour(1, len(PAPER.channels) + 1)}
 
 
 @pytest.mark.parametrize(("crossings", "label"), [(0, "0 (direct)"), (1, "1"), (2, "2"), (3, "3–10"), (10, "3–10"), (11, "> 10")])
@@ -83,10 +114,11 @@ def character_colours(columns: dict) -> np.ndarray:
 
 
 def test_regular_and_chaotic_orbits_have_different_colours() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=2000.0))
     regularity = compute_regularity(whole)
     colours = character_colours(character_column(whole, regularity))
-    for character in (Regularity.REGULAR, Regularity.CHAOTIC):
+    for character in (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS):
+        assert character in regularity.character
         assert set(colours[regularity.character == character]) == {character_colour(character)}
     assert set(colours[whole.fate == Fate.FORBIDDEN]) == {PAPER.outcomes[Fate.FORBIDDEN].colour}
 

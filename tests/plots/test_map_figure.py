@@ -123,10 +123,11 @@ def test_slow_escapes_have_later_colours_and_others_that_of_their_outcome(escape
 
 
 def test_classified_orbits_have_the_colour_of_their_class() -> None:
-    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=1000.0))
+    whole = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.15, (25, 25), t_max=2000.0))
     regularity = compute_regularity(whole)
     pixels = picture_pixels(whole, "characters", PAPER, MapAnalyses(regularity=regularity))[::-1]
-    for character, colour in ((Regularity.REGULAR, PAPER.characters[1]), (Regularity.CHAOTIC, PAPER.characters[2])):
+    for character in (Regularity.REGULAR, Regularity.CHAOTIC, Regularity.NO_SIGN_OF_CHAOS):
+        colour = PAPER.character_entries[character].colour
         where = regularity.character == character
         assert where.any()
         assert np.all(pixels[where] == rgba(colour))
@@ -273,7 +274,12 @@ def test_a_map_without_escapes_shows_bounded_orbits(picture: str) -> None:
 
 
 def test_the_font_has_every_character_of_the_texts(escape_map: EscapeMap) -> None:
-    entries = [*PAPER.outcomes.values(), *PAPER.crossing_entries, *PAPER.character_entries, *PAPER.channel_entries(4)]
+    entries = [
+        *PAPER.outcomes.values(),
+        *PAPER.crossing_entries,
+        *PAPER.character_entries,
+        *PAPER.end_entries(CASES["III"].outcomes),
+    ]
     texts = [*(entry.label for entry in entries), *TITLES.values(), provenance_line(escape_map), "(x − 0.12) / 1e-11", "R²"]
     font = ft2font.FT2Font(findfont(FontProperties(family="STIXGeneral")))
     assert [character for character in set("".join(texts)) if not font.get_char_index(ord(character))] == []

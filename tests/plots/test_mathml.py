@@ -10,6 +10,7 @@ import sympy
 
 from engine import CASES, POTENTIALS, Potential, parse_formula
 from plots.mathml import equations, potential_formula
+from tests.contracts.potentials import WELLS
 
 X, Y = sympy.symbols("x y")
 
@@ -57,7 +58,7 @@ def potential_of(potential: Potential) -> sympy.Expr:
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.75), (1, 1, -0.123456), (3, 0, 1.0), (2, 1, -(2.0**0.5)), (0, 4, -0.3)))
 
 
-@pytest.mark.parametrize("name", POTENTIALS)
+@pytest.mark.parametrize("name", WELLS)
 def test_the_formula_is_that_of_the_potential(name: str) -> None:
     (formula,) = rows(POTENTIALS[name])["Potential"]
     assert sympy.expand(after_last_equals(formula) - potential_of(POTENTIALS[name])) == 0

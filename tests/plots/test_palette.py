@@ -8,16 +8,21 @@ import numpy as np
 import pytest
 
 from app.views.components.legends import passage_legend
+from engine import CASES
+from engine.potentials.outcomes import Centre, outcomes_of
 from plots.palette import (
     CROSSING_CLASSES,
     DARK,
     DOUBT,
     LIGHT,
     MOST_CHANNELS,
+    MOST_COLLISIONS,
     MOST_ORBITS,
     PALETTES,
     Palette,
+    end_places,
 )
+from tests.disc import DISC, LABELS
 from tests.plots.colour_vision import VISIONS, contrast, differences, lab
 
 # Differences CIEDE2000: 2 is just visible, 10 is clear at a glance.
@@ -36,13 +41,21 @@ def closest(colours: list[str] | tuple[str, ...], vision: str = "normal") -> flo
 @of_each_palette
 def test_there_is_a_colour_for_every_channel_class_and_orbit(palette: Palette) -> None:
     assert len(palette.channels) == MOST_CHANNELS
+    assert len(palette.collisions) == MOST_COLLISIONS
     assert len(palette.classes) == len(CROSSING_CLASSES)
     assert len(palette.orbits) == MOST_ORBITS
 
 
 @of_each_palette
 def test_channels_crossing_classes_characters_and_orbits_have_no_colour_in_common(palette: Palette) -> None:
-    kinds = (palette.channels, palette.classes, palette.characters[1:], palette.orbits, (palette.bounded,))
+    kinds = (
+        palette.channels,
+        (*palette.collisions, palette.escape),
+        palette.classes,
+        palette.characters[1:],
+        palette.orbits,
+        (palette.bounded,),
+    )
     for ones, others in itertools.combinations(kinds, 2):
         assert differences(ones, others).min() > CLEAR
 
@@ -74,6 +87,32 @@ def test_regular_and_chaotic_orbits_differ_from_each_other_and_from_the_rest(pal
 def test_channels_of_the_safe_palette_are_distinguishable(vision: str) -> None:
     safe = PALETTES["safe"]
     assert closest([*safe.channels[:4], safe.bounded], vision) > CLEAR
+
+
+@of_each_palette
+@for_each_vision
+def test_collisions_and_escape_differ_from_each_other_and_from_exits_and_bounded_orbits(palette: Palette, vision: str) -> None:
+    others = (*palette.collisions, palette.escape)
+    assert closest(others, vision) > CLEAR
+    assert differences(others, [*palette.channels, palette.bounded], vision).min() > CLEAR
+
+
+@of_each_palette
+@pytest.mark.parametrize("page", PAGES)
+def test_collisions_and_escape_are_visible_on_the_page(palette: Palette, page: str) -> None:
+    assert min(contrast(colour, PAGES[page]) for colour in (*palette.collisions, palette.escape)) > 1.5
+
+
+@of_each_palette
+def test_each_outcome_has_its_label_and_the_colour_of_its_kind(palette: Palette) -> None:
+    entries = palette.end_entries(DISC.outcomes)
+    assert [entry.label for entry in entries] == LABELS
+    assert [entry.colour for entry in entries] == [*palette.channels[:2], palette.collisions[0]]
+
+
+def test_an_outcome_has_the_same_place_whatever_the_number_of_exits() -> None:
+    systems = [outcomes_of(exits, (Centre(0.0, 0.0, 0.1),), has_escape_radius=True) for exits in (0, 2, 8)]
+    assert [end_places(outcomes)[-2:] for outcomes in systems] == [[8, 12]] * 3
 
 
 @of_each_palette
@@ -113,7 +152,7 @@ def test_an_orbit_that_is_bounded_in_both_directions_has_the_colour_of_bounded_o
 
 @of_each_palette
 def test_the_legend_of_passages_has_a_patch_for_each_pair(palette: Palette) -> None:
-    html = passage_legend(palette, 3)
+    html = passage_legend(palette, CASES["II"].outcomes)
     for origin, fate in itertools.product(range(4), repeat=2):
         assert palette.passage_colour(origin, fate) in html
     assert html.count("--colour:") == 16

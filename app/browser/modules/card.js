@@ -27,11 +27,12 @@ const [PADDING, TEXT_HEIGHT] = [6, 22]
 const STYLE = `position:fixed;pointer-events:none;z-index:5;display:none;background:var(--ui-surface,#fff);
   border:1px solid var(--ui-edge,#ccc);border-radius:4px;box-sizing:border-box`
 
-/** What is known of an orbit, in words. @type {(trace: import("./trace.js").Trace, unit: number) => string} */
-function describe({channel, time, crossings}, unit) {
+/** What is known of an orbit, in words. @type {(trace: import("./trace.js").Trace, unit: number, labels: string[]) => string} */
+export function describe({channel, time, crossings}, unit, labels) {
   const t = Number((time * unit).toPrecision(4))
   const count = crossings === 1 ? "1 crossing" : `${crossings} crossings`
-  return channel > 0 ? `Exit ${channel} at t = ${t}, ${count}` : `Inside until t = ${t}, ${count}`
+  const label = labels[channel - 1] ?? "inside until"
+  return `${label[0].toUpperCase()}${label.slice(1)} ${channel > 0 ? "at " : ""}t = ${t}, ${count}`
 }
 
 /**
@@ -50,12 +51,12 @@ export class Card {
    * @param {HTMLElement} el
    * @param {() => import("./frames.js").Wish | null} wish  what the pictures show
    * @param {() => any} maps  the columns of the pictures
-   * @param {() => string[]} colours  of the channels
+   * @param {() => {colours: string[], labels: string[]}} view  colours and labels of the outcomes
    */
-  constructor(el, wish, maps, colours) {
+  constructor(el, wish, maps, view) {
     this.#wish = wish
     this.#maps = maps
-    this.#colours = colours
+    this.#view = view
     this.#canvas = document.createElement("canvas")
     this.#canvas.className = "orbit-card"
     this.#canvas.style.cssText = STYLE
@@ -75,7 +76,7 @@ export class Card {
 
   #wish
   #maps
-  #colours
+  #view
   #canvas
   #limits = new LimitingCurves()
   /** @type {import("./system.js").System | null} */
@@ -223,11 +224,11 @@ export class Card {
     ) => strokeLine(context, window, box, line, colour, width)
     const limit = this.#limits.trace(system, engine.potential, {slice: space(system.units), window, energy: h})
     for (const line of limit) draw(line, ink, 1.5)
-    const colours = this.#colours()
+    const {colours, labels} = this.#view()
     for (const {channel, xs, ys} of exitLines(system, h)) draw({xs, ys}, colours[channel - 1], 3)
     const {xs, ys} = pathOf(trace, system.units)
     draw({xs, ys}, trace.channel > 0 ? colours[trace.channel - 1] : ink, 1)
-    const text = describe(trace, system.units.time)
+    const text = describe(trace, system.units.time, labels)
     context.fillStyle = ink
     context.beginPath()
     const scale = box.width / (window.xHigh - window.xLow)

@@ -5,6 +5,8 @@
  * @typedef {object} Coding
  * @property {[number, number][]} outcomes  fate and code of the outcomes that are no escapes
  * @property {number} first  code of the first class
+ * @property {number[]} ends  place of the outcomes from fate 1 on among all ends
+ * @property {string[]} words  of all ends
  * @property {number[]} leastCrossings  fewest crossings of each class
  * @property {number} undecided  code of pixels that are not decided
  * @property {number[]} withoutOrbit  codes of pixels without an orbit
@@ -25,7 +27,7 @@ import {energyAxis} from "./slice.js"
  * @returns {Columns}
  */
 export function pixelColumns(coding, view, pixels, like, compared) {
-  const {outcomes, first, leastCrossings} = coding
+  const {outcomes, first, ends, leastCrossings} = coding
   const {window, columns, rows} = view
   const codes = new Map(outcomes)
   const count = columns * rows
@@ -33,7 +35,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
   const crossingClass = new Uint8Array(count)
   for (let i = 0; i < count; i++) {
     const outcome = codes.get(pixels.fate[i])
-    fate[i] = outcome ?? first + pixels.fate[i] - 1
+    fate[i] = outcome ?? first + ends[pixels.fate[i] - 1]
     crossingClass[i] = outcome ?? first + leastCrossings.findLastIndex(least => pixels.crossings[i] >= least)
   }
   const [Bytes, Floats] = [like.fate[0].constructor, like.escape_time[0].constructor]
@@ -47,6 +49,7 @@ export function pixelColumns(coding, view, pixels, like, compared) {
     character: [none],
     passage: [none],
     difference: [compared ? new Bytes(differences(coding, view, fate, compared).buffer, shape) : none],
+    ends: [coding.words],
     x: [window.xLow],
     y: [window.ordinateLow],
     dw: [window.xHigh - window.xLow],

@@ -1,12 +1,12 @@
 // @ts-check
-/** The lines over the pictures at an energy of a preview: the limiting curve, and the exits with their numbers. */
+/** The lines over the pictures at an energy of a preview: the limiting curve, and the exits, circles included. */
 
 import {exitCurves, exitPoint} from "./exits.js"
 import {sampleGrid, levelLines} from "./contours.js"
 import {energyAxis, energyUnit, Starts} from "./slice.js"
 
-/** Points along an exit. */
-const EXIT_POINTS = 41
+/** Points along an exit over a saddle, and along a circle. */
+const [EXIT_POINTS, CIRCLE_POINTS] = [41, 121]
 /** Place of the number of a channel, as a share of the distance of its exit. */
 const LABEL_SHARE = 0.86
 
@@ -34,7 +34,7 @@ export class LimitingCurves {
 }
 
 /**
- * The lines of the open exits in units of the page, with the numbers of their channels.
+ * The lines of the open exits in units of the page, with the places of their numbers; NaN for circles.
  *
  * @param {import("./system.js").System} system
  * @param {number} energy  in units of the page
@@ -42,10 +42,12 @@ export class LimitingCurves {
  */
 export function exitLines({exits, units}, energy) {
   const lines = exitCurves(exits, energy / energyUnit(units)).map((curve, k) => {
-    const points = Array.from({length: EXIT_POINTS}, (_, i) => exitPoint(curve, (2 * i) / (EXIT_POINTS - 1) - 1))
+    const count = curve.side === 0 ? EXIT_POINTS : CIRCLE_POINTS
+    const points = Array.from({length: count}, (_, i) => exitPoint(curve, (2 * i) / (count - 1) - 1))
     const [xs, ys] = [0, 1].map(axis => points.map(point => point[axis] * units.length))
-    const middle = EXIT_POINTS >> 1
-    const label = /** @type {[number, number]} */ ([LABEL_SHARE * xs[middle], LABEL_SHARE * ys[middle]])
+    const middle = count >> 1
+    const share = curve.side === 0 ? LABEL_SHARE : NaN
+    const label = /** @type {[number, number]} */ ([share * xs[middle], share * ys[middle]])
     return {channel: k + 1, xs, ys, label, open: curve.open}
   })
   return lines.filter(({open}) => open)

@@ -1,5 +1,5 @@
 // @ts-check
-/** Through which exit each orbit of an ensemble will leave, found in portions between the frames of the display. */
+/** At which exit each orbit of an ensemble will end, found in portions between the frames of the display. */
 
 import {exitCurves} from "./exits.js"
 import {Integrator} from "./integrator.js"
@@ -25,7 +25,7 @@ export class Destinies {
     this.#fate = new Int8Array(count)
     this.#time = new Float64Array(count)
     this.#crossings = new Uint16Array(count)
-    /** Channel of each orbit; 0 where it is not known yet, and for those that stay until the horizon. */
+    /** Number of the exit of each orbit; 0 where it is not known yet, and for those that stay until the horizon. */
     this.channel = new Uint8Array(count)
   }
 

@@ -4,11 +4,11 @@
  * polynomials; steps are taken in full vectors of lanes.
  */
 
-import {crossedExit, exitCurves, findExitTime} from "./exits.js"
-import {PX, PY, SIZE, T, X, Y} from "./integrator.js"
+import {crossedExit, exitCurves, findExitTime, passedExit} from "./exits.js"
+import {FLAGS, PX, PY, SIZE, T, X, Y} from "./integrator.js"
 import {seriesSlope, seriesValue} from "./series.js"
 
-/** Orbits are followed for this long beyond an exit, in units of the well. */
+/** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
 export const AFTERGLOW = 1.5
 const ROOT_HALVINGS = 40
 
@@ -33,9 +33,10 @@ export class Ensemble {
     /** Places at the present time; NaN for orbits that are far outside. */
     this.x = new Float64Array(count)
     this.y = new Float64Array(count)
-    /** Channel through which each orbit has left so far, 0 for orbits inside, and when. */
+    /** Number of the exit at which each orbit has ended so far, 0 for orbits inside, and when. */
     this.channel = new Uint8Array(count)
     this.escapeTime = new Float64Array(count)
+    this.#last = new Float64Array(count)
     /** x and px of the last upward crossing of y = 0; NaN before the first one. */
     this.sectionX = new Float64Array(count)
     this.sectionPx = new Float64Array(count)
@@ -52,8 +53,10 @@ export class Ensemble {
   #ends
   #begin
   #size
-  /** Channel through which the present step leads out, or an earlier one has; 0 for none. */
+  /** Number of the exit through which the present step leads out, or an earlier one has; 0 for none. */
   #leaving
+  /** Time until which each orbit is shown. */
+  #last
 
   /** Put all orbits back to their starts. */
   restart() {
@@ -64,6 +67,7 @@ export class Ensemble {
     this.#leaving.fill(0)
     this.channel.fill(0)
     this.escapeTime.fill(Infinity)
+    this.#last.fill(Infinity)
     this.sectionX.fill(NaN)
     this.sectionPx.fill(NaN)
     for (let i = 0; i < this.count; i++) {
@@ -117,7 +121,7 @@ export class Ensemble {
     for (let i = 0; i < this.count; i++) {
       const end = this.#begin[i] + this.#size[i]
       // A size that is no number is that of an orbit that has broken down far outside.
-      if (end < time && end < this.escapeTime[i] + AFTERGLOW) late.push(i)
+      if (end < time && end < this.#last[i]) late.push(i)
     }
     return late
   }
@@ -166,9 +170,15 @@ export class Ensemble {
     for (const [place, row] of [X, Y, PX, PY].entries()) this.#ends[4 * orbit + place] = now.rows[row * lanes + lane]
     const [x1, y1] = [this.#ends[4 * orbit], this.#ends[4 * orbit + 1]]
     if (this.escapeTime[orbit] < Infinity) return
-    const channel = crossedExit(this.#exits, x0, y0, x1, y1)
+    const isNear = now.integers[2 * (FLAGS * lanes + lane)] & this.#integrator.system.layout.near
+    const crossed = crossedExit(this.#exits, x0, y0, x1, y1)
+    const channel = crossed === 0 && isNear ? passedExit(this.#exits, x, y, lane, size) : crossed
     this.#leaving[orbit] = channel
-    if (channel > 0) this.escapeTime[orbit] = this.#begin[orbit] + findExitTime(this.#exits[channel - 1], x, y, lane, size)
+    if (channel > 0) {
+      const exit = this.#exits[channel - 1]
+      this.escapeTime[orbit] = this.#begin[orbit] + findExitTime(exit, x, y, lane, size)
+      this.#last[orbit] = this.escapeTime[orbit] + (exit.side < 0 ? 0 : AFTERGLOW)
+    }
     if (y0 < 0 && y1 >= 0) this.#cross(orbit, lane, size)
   }
 
@@ -202,7 +212,7 @@ export class Ensemble {
     if (time >= left) this.channel[orbit] = this.#leaving[orbit]
     const tau = time - this.#begin[orbit]
     const first = 2 * this.#terms * orbit
-    const far = time > left + AFTERGLOW || !(tau <= this.#size[orbit])
+    const far = time > this.#last[orbit] || !(tau <= this.#size[orbit])
     // An orbit that has not begun its first step is at its start.
     if (tau === 0 && this.#size[orbit] === 0) return
     this.x[orbit] = far ? NaN : horner(this.#series, first, this.#terms, tau)

@@ -3,6 +3,8 @@
 
 import {Ensemble} from "./ensemble.js"
 import {exitPoint} from "./exits.js"
+import {Integrator} from "./integrator.js"
+import {reversedInTime} from "./system.js"
 
 /** Parts of an exit, each with the flux through it. */
 const PARTS = 200
@@ -20,7 +22,7 @@ const BEFORE = 9
  */
 
 /**
- * States on the Lyapunov orbits that move into the well, distributed as the flux, as of `sample_entrances` of the library.
+ * States on the exits over saddles that move into the well, distributed as the flux, as of `sample_entrances` of the library.
  *
  * @param {number} count
  * @param {import("./exits.js").ExitCurve[]} exits  at the energy
@@ -39,7 +41,8 @@ export function drawEntrances(count, exits, potential, energy, random) {
 
 /**
  * States at the edge of the tubes of orbits that approach the Lyapunov orbits, some time before they come near: half of them inside,
- * which pass the exit, and half outside, which turn back. As motion is reversible, they are the ends of orbits that go into the well.
+ * which pass the exit, and half outside, which turn back. They are the ends of orbits that go into the well backward in time. The
+ * lines in a frame that rotates are no Lyapunov orbits, and have none.
  *
  * @param {number} count
  * @param {import("./exits.js").ExitCurve[]} exits
@@ -49,14 +52,15 @@ export function drawEntrances(count, exits, potential, energy, random) {
  * @param {() => number} random
  */
 export function drawTubes(count, exits, potential, integrator, energy, random) {
-  const draw = drawPlaces(exits, potential, energy, random)
+  const curves = exits.filter(({returns}) => !returns)
+  const draw = drawPlaces(curves, potential, energy, random)
   const states = collect(count, () => {
     const place = draw()
     const along = random() < 0.5 ? 1 : -1
     const [shift, inward] = random() < 0.5 ? [SHIFT, FROM_EDGE] : [FROM_EDGE, 0]
     return place && launch(place, shift, along * Math.sqrt(1 - inward * inward), potential, energy)
   })
-  const ensemble = new Ensemble(integrator, energy, states)
+  const ensemble = new Ensemble(new Integrator(reversedInTime(integrator.system), integrator.module), energy, states)
   ensemble.advance(BEFORE)
   return reverse(ensemble)
 }
@@ -89,7 +93,7 @@ function collect(count, draw) {
 }
 
 /**
- * A function that draws places on the exits, as often as the flux through them; null if all are closed.
+ * A function that draws places on the exits over saddles, as often as the flux through them; null if all are closed.
  *
  * @param {import("./exits.js").ExitCurve[]} exits
  * @param {import("./potential.js").Potential} potential
@@ -100,7 +104,7 @@ function drawPlaces(exits, potential, energy, random) {
   /** @type {Part[]} */
   const parts = []
   let flux = 0
-  for (const curve of exits.filter(({open}) => open)) {
+  for (const curve of exits.filter(({open, side}) => open && side === 0)) {
     for (let k = 0; k < PARTS; k++) {
       const s = -1 + (2 * k + 1) / PARTS
       const [x, y] = exitPoint(curve, s)

@@ -1,12 +1,15 @@
 // @ts-check
 /**
- * Exits at one energy, interpolated in the table of a system. In coordinates u outward and q across (90° counterclockwise from
- * u) an exit is the graph u = f(s), s = (q − middle) / halfWidth ∈ [−1, 1], f a Chebyshev series; straight lines continue it
- * beyond its ends. See `engine/taylor/kernels/events.py`.
+ * Exits at one energy: over saddles, interpolated in the tables of a system, discs around centres, and the escape circle. In
+ * coordinates u outward and q across (90° counterclockwise from u) an exit over a saddle is the graph u = f(s), s = (q − middle) /
+ * halfWidth ∈ [−1, 1], f a Chebyshev series; straight lines continue it beyond its ends. A disc or a circle has its centre as
+ * origin and its radius as half width. See `engine/taylor/kernels/events.py`.
  *
  * @typedef {object} ExitCurve
  * @property {boolean} open
- * @property {number} gate  beyond this distance along `outward` an orbit may be outside
+ * @property {-1 | 0 | 1} side  on which side of a circle it is outside: −1 within, 1 beyond; 0 for an exit over a saddle
+ * @property {boolean} returns  whether an orbit can pass it and return
+ * @property {[number, number, number]} gate  g_x, g_y, g: beyond g_x x + g_y y = g an orbit may be outside; centre and radius of a circle
  * @property {number} reach
  * @property {number} middle
  * @property {number} halfWidth
@@ -17,7 +20,7 @@
  * @property {[number, number]} outward
  */
 
-import {seriesValue} from "./series.js"
+import {seriesSlope, seriesValue} from "./series.js"
 
 /**
  * A channel that no orbit can pass: its gate is out of reach.
@@ -26,7 +29,9 @@ import {seriesValue} from "./series.js"
  */
 const CLOSED = {
   open: false,
-  gate: Infinity,
+  side: 0,
+  returns: false,
+  gate: [1, 0, Infinity],
   reach: 1,
   origin: [0, 0],
   outward: [1, 0],
@@ -36,32 +41,65 @@ const CLOSED = {
   slopeHigh: 0,
   coefficients: [0],
 }
+/** @type {Record<import("./system.js").ExitData["shape"], Pick<ExitCurve, "side" | "returns">>} */
+const SHAPES = {
+  curve: {side: 0, returns: false},
+  line: {side: 0, returns: true},
+  disc: {side: -1, returns: true},
+  circle: {side: 1, returns: true},
+}
 const MOST_ITERATIONS = 80
+/** Parts of a step that are examined in turn for an orbit that passes an exit and returns. */
+const PARTS = 8
 /** Escape times are shown as colours and with five digits. */
 const ROOT_ACCURACY = 1e-9
 
 /**
- * The exits of all channels at an energy.
+ * The exits of all outcomes at an energy.
  *
- * @param {import("./system.js").ExitTable[]} tables
+ * @param {import("./system.js").ExitData[]} exits
  * @param {number} energy
  * @returns {ExitCurve[]}
  */
-export const exitCurves = (tables, energy) => tables.map(table => exitCurve(table, energy))
+export const exitCurves = (exits, energy) => exits.map(exit => ("radius" in exit ? circleOf(exit) : exitCurve(exit, energy)))
+
+/** @type {(circle: import("./system.js").Circle) => ExitCurve} */
+const circleOf = ({shape, x, y, radius}) => ({
+  ...CLOSED,
+  ...SHAPES[shape],
+  open: true,
+  gate: [x, y, radius],
+  origin: [x, y],
+  halfWidth: radius,
+})
 
 /**
  * @param {import("./system.js").ExitTable} table
  * @param {number} energy
  * @returns {ExitCurve}
  */
-function exitCurve({saddle, nodes, rows}, energy) {
+function exitCurve({shape, saddle, nodes, rows}, energy) {
   if (!(energy > saddle) || nodes.length === 0) return CLOSED
   const row = interpolate(nodes, rows, Math.sqrt(energy - saddle))
   const [gate, reach, originX, originY, outwardX, outwardY, middle, halfWidth, slopeLow, slopeHigh, ...coefficients] = row
   const length = Math.hypot(outwardX, outwardY)
   /** @type {[number, number]} */
   const outward = [outwardX / length, outwardY / length]
-  return {open: true, gate, reach, origin: [originX, originY], outward, middle, halfWidth, slopeLow, slopeHigh, coefficients}
+  const {side, returns} = SHAPES[shape]
+  return {
+    open: true,
+    side,
+    returns,
+    gate: [outward[0], outward[1], gate],
+    reach,
+    origin: [originX, originY],
+    outward,
+    middle,
+    halfWidth,
+    slopeLow,
+    slopeHigh,
+    coefficients,
+  }
 }
 
 /**
@@ -90,7 +128,7 @@ function interpolate(nodes, rows, place) {
 }
 
 /**
- * s of a point, −1 and 1 at the ends of the exit.
+ * s of a point, −1 and 1 at the ends of an exit over a saddle.
  *
  * @param {ExitCurve} curve
  * @param {number} x
@@ -101,14 +139,15 @@ export function positionAcross({outward, origin, middle, halfWidth}, x, y) {
 }
 
 /**
- * Distance of a point from an exit along the channel: positive outside, negative inside.
+ * Distance of a point from an exit, along the channel or the radius: positive outside, negative inside.
  *
  * @param {ExitCurve} curve
  * @param {number} x
  * @param {number} y
  */
 export function exitDistance(curve, x, y) {
-  const {outward, origin} = curve
+  const {outward, origin, side, halfWidth} = curve
+  if (side !== 0) return side * (Math.sqrt((x - origin[0]) ** 2 + (y - origin[1]) ** 2) - halfWidth)
   const u = outward[0] * (x - origin[0]) + outward[1] * (y - origin[1])
   return u - exitHeight(curve, positionAcross(curve, x, y))
 }
@@ -133,21 +172,22 @@ function exitHeight({coefficients, slopeLow, slopeHigh}, position) {
 }
 
 /**
- * The point of an exit at s.
+ * The point of an exit at s; around a circle s goes from −1 to 1.
  *
  * @param {ExitCurve} curve
  * @param {number} s
  * @returns {[number, number]}
  */
 export function exitPoint(curve, s) {
-  const {origin, outward, middle, halfWidth} = curve
+  const {origin, outward, middle, halfWidth, side} = curve
+  if (side !== 0) return [origin[0] + halfWidth * Math.cos(Math.PI * s), origin[1] + halfWidth * Math.sin(Math.PI * s)]
   const u = exitHeight(curve, s)
   const q = middle + halfWidth * s
   return [origin[0] + u * outward[0] - q * outward[1], origin[1] + u * outward[1] + q * outward[0]]
 }
 
 /**
- * The channel whose exit an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none.
+ * The number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none.
  *
  * @param {ExitCurve[]} curves
  * @param {number} x0
@@ -158,11 +198,12 @@ export function exitPoint(curve, s) {
 export function crossedExit(curves, x0, y0, x1, y1) {
   for (let k = 0; k < curves.length; k++) {
     const curve = curves[k]
-    if (!(curve.outward[0] * x1 + curve.outward[1] * y1 > curve.gate)) continue
+    if (curve.side === 0 && !(curve.gate[0] * x1 + curve.gate[1] * y1 > curve.gate[2])) continue
     const after = exitDistance(curve, x1, y1)
     if (!(after > 0)) continue
     const before = exitDistance(curve, x0, y0)
     if (before > 0) continue
+    if (curve.side !== 0) return k + 1
     const s0 = positionAcross(curve, x0, y0)
     const s1 = positionAcross(curve, x1, y1)
     if (Math.abs(s0 + ((s1 - s0) * before) / (before - after)) <= curve.reach) return k + 1
@@ -171,7 +212,96 @@ export function crossedExit(curves, x0, y0, x1, y1) {
 }
 
 /**
- * Time from the start of a step that ends outside to the crossing of the exit, by the Illinois method.
+ * What has the sign of the time derivative of the distance from a line or a circle.
+ *
+ * @param {ExitCurve} curve
+ * @param {import("./series.js").Jet} x
+ * @param {import("./series.js").Jet} y
+ * @param {number} lane
+ * @param {number} tau
+ */
+function exitRate(curve, x, y, lane, tau) {
+  const {side, origin, outward, coefficients, halfWidth} = curve
+  const [vx, vy] = [seriesSlope(x, lane, tau), seriesSlope(y, lane, tau)]
+  if (side === 0) {
+    const position = positionAcross(curve, seriesValue(x, lane, tau), seriesValue(y, lane, tau))
+    const s = Math.min(Math.max(position, -1), 1)
+    // The line is a parabola.
+    const slope = ((coefficients[1] ?? 0) + 4 * s * (coefficients[2] ?? 0)) / halfWidth
+    return outward[0] * vx + outward[1] * vy - slope * (outward[0] * vy - outward[1] * vx)
+  }
+  return side * ((seriesValue(x, lane, tau) - origin[0]) * vx + (seriesValue(y, lane, tau) - origin[1]) * vy)
+}
+
+/**
+ * When, within `duration` of the start of a step, an orbit is furthest beyond an exit to which it returns; −1 for never.
+ *
+ * @param {ExitCurve} curve
+ * @param {import("./series.js").Jet} x
+ * @param {import("./series.js").Jet} y
+ * @param {number} lane
+ * @param {number} duration
+ */
+function findExcursion(curve, x, y, lane, duration) {
+  let low = 0
+  let rises = exitRate(curve, x, y, lane, low) > 0
+  for (let part = 1; part <= PARTS; part++) {
+    const high = (duration * part) / PARTS
+    const goesOn = exitRate(curve, x, y, lane, high) > 0
+    if (rises && !goesOn) {
+      const turning = findTurning(curve, x, y, lane, low, high)
+      if (isBeyond(curve, seriesValue(x, lane, turning), seriesValue(y, lane, turning))) return turning
+    }
+    low = high
+    rises = goesOn
+  }
+  return -1
+}
+
+/**
+ * The last time at which an orbit still goes away from an exit between two times, by bisection.
+ *
+ * @param {ExitCurve} curve
+ * @param {import("./series.js").Jet} x
+ * @param {import("./series.js").Jet} y
+ * @param {number} lane
+ * @param {number} low
+ * @param {number} high
+ */
+function findTurning(curve, x, y, lane, low, high) {
+  for (let i = 0; i < MOST_ITERATIONS; i++) {
+    const middle = 0.5 * (low + high)
+    if (middle <= low || middle >= high) break
+    if (exitRate(curve, x, y, lane, middle) > 0) low = middle
+    else high = middle
+  }
+  return low
+}
+
+/**
+ * Whether a point is beyond an exit, and within the reach of a line.
+ *
+ * @param {ExitCurve} curve
+ * @param {number} x
+ * @param {number} y
+ */
+const isBeyond = (curve, x, y) =>
+  exitDistance(curve, x, y) > 0 && (curve.side !== 0 || Math.abs(positionAcross(curve, x, y)) <= curve.reach)
+
+/**
+ * The number of the exit that an orbit passes and leaves again within `duration` of the start of a step, 0 for none.
+ *
+ * @param {ExitCurve[]} curves
+ * @param {import("./series.js").Jet} x
+ * @param {import("./series.js").Jet} y
+ * @param {number} lane
+ * @param {number} duration
+ */
+export const passedExit = (curves, x, y, lane, duration) =>
+  curves.findIndex(curve => curve.returns && findExcursion(curve, x, y, lane, duration) >= 0) + 1
+
+/**
+ * Time from the start of a step to the crossing of an exit in it, by the Illinois method.
  *
  * @param {ExitCurve} curve
  * @param {import("./series.js").Jet} x
@@ -181,7 +311,8 @@ export function crossedExit(curves, x0, y0, x1, y1) {
  */
 export function findExitTime(curve, x, y, lane, duration) {
   const distance = (/** @type {number} */ tau) => exitDistance(curve, seriesValue(x, lane, tau), seriesValue(y, lane, tau))
-  let [low, high] = [0, duration]
+  const excursion = curve.returns ? findExcursion(curve, x, y, lane, duration) : -1
+  let [low, high] = [0, excursion >= 0 ? excursion : duration]
   let [atLow, atHigh] = [distance(low), distance(high)]
   if (atLow >= 0) return low
   let side = 0

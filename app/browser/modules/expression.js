@@ -5,16 +5,17 @@
  * @typedef {object} Node
  * @property {string} kind
  * @property {number[]} operands  indices of nodes
- * @property {number[]} numbers  coefficients of a sum, one for each operand, and its constant
+ * @property {number[]} numbers  coefficients of a sum, one for each operand, and its constant; the number of a shift
  * @property {number} exponent  of a power
  *
  * @typedef {object} Graph
  * @property {Node[]} nodes
  * @property {[number, number, number]} results  indices of V, V_x and V_y
+ * @property {number} hole  radius of the disc around a centre at the origin; 0 for a well there
  */
 
-/** Parts of a line to the origin. */
-const PIECES = 32
+/** Parts of a line to the origin, and points at the edge of a disc there. */
+const [PIECES, EDGE_POINTS] = [32, 64]
 
 /** @type {Record<string, (node: Node, values: Float64Array, x: number, y: number) => number>} */
 const OPERATIONS = {
@@ -25,6 +26,7 @@ const OPERATIONS = {
     for (let k = 0; k < operands.length; k++) total += numbers[k] * values[operands[k]]
     return total
   },
+  shift: ({operands, numbers}, values) => values[operands[0]] + numbers[0],
   product: ({operands}, values) => values[operands[0]] * values[operands[1]],
   power: ({operands, exponent}, values) => values[operands[0]] ** exponent,
   exp: ({operands}, values) => Math.exp(values[operands[0]]),
@@ -35,20 +37,23 @@ const OPERATIONS = {
 
 export class Expression {
   /** @param {Graph} graph */
-  constructor({nodes, results}) {
+  constructor({nodes, results, hole}) {
     this.#nodes = nodes
     this.#operations = nodes.map(({kind}) => OPERATIONS[kind])
     this.#results = results
     this.#values = new Float64Array(nodes.length)
     this.slopeX = 0
     this.slopeY = 0
-    this.bottom = this.value(0, 0)
+    this.#hole = hole
+    const edge = Array.from({length: EDGE_POINTS}, (_, k) => (2 * Math.PI * k) / EDGE_POINTS)
+    this.bottom = Math.min(...edge.map(angle => this.value(hole * Math.cos(angle), hole * Math.sin(angle))))
   }
 
   #nodes
   #operations
   #results
   #values
+  #hole
   #x = 0
   #y = 0
 
@@ -81,11 +86,13 @@ export class Expression {
    * @param {number} level
    */
   staysBelow(level) {
+    const first = this.#hole > 0 ? this.#hole / Math.max(this.#hole, Math.hypot(this.#x, this.#y)) : 0
+    const part = (1 - first) / PIECES
     for (let piece = 0; piece <= PIECES; piece++) {
-      const t = piece / PIECES
+      const t = first + piece * part
       const value = this.value(t * this.#x, t * this.#y)
       const slope = this.#values[this.#results[1]] * this.#x + this.#values[this.#results[2]] * this.#y
-      const rise = slope / (3 * PIECES)
+      const rise = (slope * part) / 3
       const highest = Math.max(value, piece > 0 ? value - rise : value, piece < PIECES ? value + rise : value)
       if (!(highest <= level)) return false
     }

@@ -36,6 +36,7 @@ export class Integrator {
   constructor(system, module) {
     const {lanes, order} = system.layout
     this.system = system
+    this.module = module
     this.lanes = lanes
     const sizes = [system.table.length, system.constants.length, BLOCK_ROWS * lanes, BLOCK_ROWS * lanes, STATE_ROWS * lanes]
     const total = sizes.reduce((sum, size) => sum + size, 2 * (order + 1) * lanes)
@@ -86,13 +87,13 @@ export class Integrator {
    *
    * @param {number} tolerance
    * @param {number} horizon
-   * @param {{outward: [number, number], gate: number}[]} gates
+   * @param {Pick<import("./exits.js").ExitCurve, "gate">[]} gates
    */
   prepare(tolerance, horizon, gates) {
     /** @type {Record<string, number>} */
     const values = {tolerance, horizon}
-    gates.forEach(({outward, gate}, k) => {
-      ;[values[`g${k}x`], values[`g${k}y`], values[`g${k}`]] = [...outward, gate]
+    gates.forEach(({gate}, k) => {
+      ;[values[`g${k}x`], values[`g${k}y`], values[`g${k}`]] = gate
     })
     this.#constants.set(this.system.constants.map(name => values[name]))
   }
@@ -113,6 +114,24 @@ export class Integrator {
    * @param {number} n
    */
   jets(n) {
-    this.#exports.jets(this.#table, this.#addresses.constants, this.#addresses.starts, this.#addresses.jet, n)
+    this.#jets(0, n)
+  }
+
+  /**
+   * Compute the series of one of `starts`, and of its neighbour in the pair that is computed together.
+   *
+   * @param {number} lane
+   */
+  jetsOf(lane) {
+    this.#jets(BYTES * (lane & ~1), 1)
+  }
+
+  /**
+   * @param {number} offset  of the first lane, in bytes
+   * @param {number} n
+   */
+  #jets(offset, n) {
+    const {constants, starts, jet} = this.#addresses
+    this.#exports.jets(this.#table, constants, starts + offset, jet + offset, n)
   }
 }

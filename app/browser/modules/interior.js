@@ -1,7 +1,8 @@
 // @ts-check
 /**
  * Which starts lie inside the exits: connected to the origin below the energy without crossing an exit. The path downhill from
- * the point is that of `engine/taylor/kernels/interior.py`.
+ * the point is that of `engine/taylor/kernels/interior.py`. With an escape circle all points within it lie inside; discs around
+ * centres belong to no interior.
  */
 
 import {exitDistance, positionAcross} from "./exits.js"
@@ -9,6 +10,8 @@ import {exitDistance, positionAcross} from "./exits.js"
 // Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
 const [LONGEST_STEP, SHORTEST_STEP] = [1 / 32, 1e-6]
 const MOST_STEPS = 10_000
+// Far from the exits steps grow with the distance, by this factor.
+const FAR_SHARE = 0.25
 // The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
 const [COS, SIN] = [Math.cos(0.1), Math.sin(0.1)]
 // Smallest decrease of V in a step, relative to that along the gradient.
@@ -37,6 +40,19 @@ export class Interior {
    * @param {number} y
    */
   isOutside(curves, energy, x, y) {
+    if (curves.some(curve => curve.side !== 0 && exitDistance(curve, x, y) > 0)) return true
+    return !curves.some(({side}) => side > 0) && this.#leadsOutside(curves, energy, x, y)
+  }
+
+  /**
+   * Whether the path downhill from a point ends outside.
+   *
+   * @param {import("./exits.js").ExitCurve[]} curves
+   * @param {number} energy
+   * @param {number} x
+   * @param {number} y
+   */
+  #leadsOutside(curves, energy, x, y) {
     const potential = this.#potential
     const level = energy - ENERGY_MARGIN
     let odd = false
@@ -51,7 +67,7 @@ export class Interior {
       if (potential.staysBelow(level)) return odd !== crossesExits(curves, x, y, 0, 0)
       const directionX = -(COS * slopeX - SIN * slopeY) / slope
       const directionY = -(SIN * slopeX + COS * slopeY) / slope
-      step = Math.min(2 * step, LONGEST_STEP)
+      step = Math.min(2 * step, LONGEST_STEP * Math.max(1, FAR_SHARE * (Math.abs(x) + Math.abs(y))))
       while (step > SHORTEST_STEP) {
         if (potential.value(x + step * directionX, y + step * directionY) < value - DECREASE * step * slope) break
         step *= 0.5
@@ -66,7 +82,7 @@ export class Interior {
 }
 
 /**
- * Whether a line crosses the open exits an odd number of times.
+ * Whether a line crosses the open exits over saddles an odd number of times.
  *
  * @param {import("./exits.js").ExitCurve[]} curves
  * @param {number} x0
@@ -77,7 +93,7 @@ export class Interior {
 function crossesExits(curves, x0, y0, x1, y1) {
   let odd = false
   for (const curve of curves) {
-    if (!curve.open) continue
+    if (!curve.open || curve.side !== 0) continue
     const s0 = positionAcross(curve, x0, y0)
     const s1 = positionAcross(curve, x1, y1)
     // The part of the line with −1 ≤ s ≤ 1.

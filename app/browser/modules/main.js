@@ -56,15 +56,17 @@ export function start(model, el) {
     el,
     () => preview.wish,
     () => find("maps").data,
-    () => model.view.colours,
+    () => model.view,
   )
   document.addEventListener("energydragged", event => preview.showEnergy(/** @type {CustomEvent} */ (event).detail))
   document.addEventListener("energyreleased", () => preview.release())
   /** @type {{system: import("./system.js").System, module: WebAssembly.Module} | null} */
   let taken = null
   const tellPresent = () => {
-    const colours = () => model.view.colours ?? []
-    setPresent(taken && model.view.system === taken.system.key ? {...taken, wish: () => preview.wish, colours, host: el} : null)
+    const [colours, labels] = [() => model.view.colours ?? [], () => model.view.labels ?? []]
+    setPresent(
+      taken && model.view.system === taken.system.key ? {...taken, wish: () => preview.wish, colours, labels, host: el} : null,
+    )
   }
   const takeView = () => {
     if (!model.view.system) return

@@ -37,15 +37,18 @@ const ERROR_IN_PIXELS = 1e-6
 const LARGEST_TOLERANCE = 1e-9
 
 /**
- * Norm of the last coefficients of a step, small enough for the pixels of a view.
+ * Norm of the last coefficients of a step, small enough for the pixels of a view. An orbit that passes close to a body magnifies
+ * errors, the more so the smaller the body.
  *
  * @param {import("./system.js").System} system
  * @param {View} view
  */
-export function toleranceFor({layout}, {slice, window, columns, rows}) {
+export function toleranceFor({layout, exits}, {slice, window, columns, rows}) {
   const width = (window.xHigh - window.xLow) / columns / slice.units[0]
   const height = (window.ordinateHigh - window.ordinateLow) / rows / slice.units[1]
-  return Math.min(Math.max(ERROR_IN_PIXELS * Math.min(width, height), layout.tolerance), LARGEST_TOLERANCE)
+  const smallest = Math.min(1, ...exits.flatMap(exit => (exit.shape === "disc" ? [exit.radius] : [])))
+  const tolerance = Math.min(ERROR_IN_PIXELS * Math.min(width, height), LARGEST_TOLERANCE) * smallest
+  return Math.max(tolerance, layout.tolerance)
 }
 
 /**
@@ -114,5 +117,7 @@ export function computePixels(integrator, interior, potential, view, part) {
  * @param {import("./exits.js").ExitCurve[][]} exits
  */
 function gatesOf(exits) {
-  return exits[0].map(({outward}, k) => ({outward, gate: Math.min(...exits.map(curves => curves[k].gate))}))
+  return exits[0].map((_, k) =>
+    exits.map(curves => curves[k]).reduce((one, other) => (other.gate[2] < one.gate[2] ? other : one)),
+  )
 }

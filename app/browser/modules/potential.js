@@ -7,10 +7,10 @@ import {Expression} from "./expression.js"
  * @typedef {object} Potential
  * @property {number} slopeX  V_x at the last point expanded
  * @property {number} slopeY
- * @property {number} bottom  V at the origin
+ * @property {number} bottom  V at the origin; at a centre there the lowest V at the edge of its disc
  * @property {(x: number, y: number) => number} value
  * @property {(x: number, y: number) => number} expand  V; sets the slopes as well
- * @property {(level: number) => boolean} staysBelow  whether V on the line from the origin to the last point expanded is at most a level
+ * @property {(level: number) => boolean} staysBelow  whether V on the line from the origin, or from the disc around a centre there, to the last point expanded is at most a level
  */
 
 /** @type {Record<string, (formula: any) => Potential>} */

@@ -6,7 +6,8 @@
  * @property {import("./system.js").System} system
  * @property {WebAssembly.Module} module
  * @property {() => import("./frames.js").Wish | null} wish  slice, energy and window in view; null if the browser cannot compute it
- * @property {() => string[]} colours  of the channels
+ * @property {() => string[]} colours  of the outcomes, exits first
+ * @property {() => string[]} labels  of the outcomes
  * @property {HTMLElement} host  for canvases over the pictures
  */
 

@@ -22,7 +22,8 @@ import {coversEnergy, windowAt} from "./system.js"
  * @property {import("./system.js").Slice | null} slice  null for one that only the server knows
  * @property {number} energy
  * @property {boolean} home  whether the window is the default one
- * @property {string[]} colours  of the channels
+ * @property {string[]} colours  of the outcomes, exits first
+ * @property {string[]} labels  of the outcomes
  * @property {import("./columns.js").Coding} coding
  * @property {number} resolution  pixels along a side of the server's map
  *

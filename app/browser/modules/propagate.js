@@ -5,7 +5,7 @@
  * their series can be computed together.
  */
 
-import {crossedExit, findExitTime} from "./exits.js"
+import {crossedExit, findExitTime, passedExit} from "./exits.js"
 import {CROSSED, FLAGS, SIZE, T, X, Y} from "./integrator.js"
 import {countUpwardCrossings, seriesValue} from "./series.js"
 
@@ -31,7 +31,7 @@ const MOST_CROSSINGS = 65535
  * @param {Orbits} orbits
  * @param {number} horizon
  * @param {number} tolerance
- * @param {{outward: [number, number], gate: number}[]} gates  inside the exits of all orbits
+ * @param {Pick<import("./exits.js").ExitCurve, "gate">[]} gates  inside the exits of all orbits
  */
 export function propagate(integrator, orbits, horizon, tolerance, gates) {
   integrator.prepare(tolerance, horizon, gates)
@@ -107,9 +107,10 @@ class Propagation {
     const failed = !(Number.isFinite(x) && Number.isFinite(y) && next[SIZE * lanes + i] > 0)
     const late = (flags & layout.overshoot) !== 0
     let channel = 0
-    if (!late && flags & layout.gate) {
+    if (!late && flags & (layout.gate | layout.near)) {
       channel = crossedExit(orbits.exits(orbit), now[X * lanes + i], now[Y * lanes + i], x, y)
     }
+    if (flags & layout.near && !late && channel === 0 && !failed) channel = this.findPassed(i, now, next)
     const ends = late || channel > 0 || failed
     if (failed) orbits.fate[orbit] = layout.fates.failed
     else if (ends || flags & layout.hidden) this.buffer(i, now, next, ends ? channel : GOES_ON)
@@ -117,6 +118,21 @@ class Propagation {
     if (!ends) return
     if (this.following < orbits.todo.length) this.load(after, i)
     else this.move(after, --this.active, i)
+  }
+
+  /**
+   * The number of the exit that the orbit of lane i passes and leaves again within a step, 0 for none.
+   *
+   * @param {number} i
+   * @param {Float64Array} now
+   * @param {Float64Array} next
+   */
+  findPassed(i, now, next) {
+    const {lanes, integrator} = this
+    const k = this.buffered
+    for (let row = 0; row < 4; row++) integrator.starts[row * lanes + k] = now[(X + row) * lanes + i]
+    integrator.jetsOf(k)
+    return passedExit(this.orbits.exits(this.lane_orbit[i]), integrator.x, integrator.y, k, next[SIZE * lanes + i])
   }
 
   /**
@@ -183,6 +199,7 @@ class Propagation {
       if (channel === 0) {
         const [x0, y0] = [seriesValue(x, k, 0), seriesValue(y, k, 0)]
         channel = crossedExit(curves, x0, y0, seriesValue(x, k, size), seriesValue(y, k, size))
+        if (channel === 0) channel = passedExit(curves, x, y, k, size)
       }
       const tau = channel > 0 ? findExitTime(curves[channel - 1], x, y, k, size) : size
       const escapes = channel > 0 && begin + tau <= horizon

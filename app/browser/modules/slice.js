@@ -130,7 +130,7 @@ export class Starts {
   }
 
   /**
-   * The momenta of a speed: θ is the angle from the +x axis, β that from the direction away from the origin.
+   * The momenta of a speed: θ is the angle from the +x axis, β that from the direction away from the origin, there from +y.
    *
    * @param {number} speed
    */
@@ -143,7 +143,7 @@ export class Starts {
       return
     }
     const radius = Math.hypot(x, y)
-    const [awayX, awayY] = radius > 0 ? [x / radius, y / radius] : [1, 0]
+    const [awayX, awayY] = radius > 0 ? [x / radius, y / radius] : [0, 1]
     found.px = speed * (Math.cos(beta) * awayX - Math.sin(beta) * awayY)
     found.py = speed * (Math.cos(beta) * awayY + Math.sin(beta) * awayX)
   }

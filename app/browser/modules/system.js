@@ -8,9 +8,10 @@
  * @property {string[]} constants  names of the numbers that are the same for all lanes, in the order in which step takes them
  * @property {Layout} layout
  * @property {number[]} table  coefficients in the form that step and jets take
+ * @property {number | null} rotation  index of 2Ω in the table; null in a frame that does not rotate
  * @property {Formula} formula  of V
- * @property {ExitTable[]} exits  one for each channel
- * @property {number[] | null} mirror  image of each channel number under x → −x; null without this symmetry
+ * @property {ExitData[]} exits  one for each outcome: the exits of channels, discs around centres, the escape circle
+ * @property {number[] | null} mirror  image of each outcome's number under x → −x; null without this symmetry
  * @property {{length: number, time: number}} units
  * @property {Record<string, WindowTable>} windows  default windows of the slices, by their names
  *
@@ -22,6 +23,7 @@
  * @property {number} order  order of the series
  * @property {number} hidden  flag: the step may hide crossings of y = 0
  * @property {number} gate  flag: the step ends beyond the gate of an exit
+ * @property {number} near  flag: the step may pass an exit although its end is not beyond
  * @property {number} overshoot  flag: the step ends after the horizon
  * @property {number} tolerance  of the steps that the server takes
  * @property {Record<"bounded" | "not_computed" | "failed" | "outside" | "forbidden", number>} fates
@@ -30,7 +32,14 @@
  * @property {number[]} energies  rising, in units of the page
  * @property {[number, number, number, number][]} windows  lowest and highest abscissa, lowest and highest ordinate
  *
+ * @typedef {ExitTable | Circle} ExitData
+ *
+ * The edge of a disc around a centre, or the escape circle.
+ *
+ * @typedef {{shape: "disc" | "circle", x: number, y: number, radius: number}} Circle
+ *
  * @typedef {object} ExitTable
+ * @property {"curve" | "line"} shape  a line in a frame that rotates
  * @property {number} saddle  energy at which the channel opens
  * @property {number} highest  energy up to which the table is valid
  * @property {number[]} nodes  √(h − saddle) at which the curve is tabulated, rising
@@ -68,7 +77,18 @@
  * @param {System} system
  * @param {number} energy
  */
-export const coversEnergy = (system, energy) => system.exits.every(({highest}) => energy <= highest)
+export const coversEnergy = (system, energy) => system.exits.every(exit => "radius" in exit || energy <= exit.highest)
+
+/**
+ * The system whose orbits, with reversed velocities, are those of a system backward in time.
+ *
+ * @param {System} system
+ * @returns {System}
+ */
+export const reversedInTime = system => ({
+  ...system,
+  table: system.table.map((value, entry) => (entry === system.rotation ? -value : value)),
+})
 
 /**
  * The default window at an energy, linear between tabulated ones; null beyond the table.

@@ -1,15 +1,15 @@
 // @ts-check
 /** One orbit with its path, for the card beside the cursor. */
 
-import {crossedExit, exitCurves, findExitTime} from "./exits.js"
-import {PX, PY, SIZE, T, X, Y} from "./integrator.js"
+import {crossedExit, exitCurves, findExitTime, passedExit} from "./exits.js"
+import {FLAGS, PX, PY, SIZE, T, X, Y} from "./integrator.js"
 import {countUpwardCrossings, seriesValue} from "./series.js"
 
 /**
  * @typedef {object} Trace
  * @property {number[]} x
  * @property {number[]} y
- * @property {number} channel  of the exit, 0 if the orbit is inside at the end
+ * @property {number} channel  number of the exit, 0 if the orbit is inside at the end
  * @property {number} time  at the end, in units of the well
  * @property {number} crossings
  *
@@ -46,12 +46,14 @@ export function traceOrbit(integrator, start, duration) {
   while (trace.time < duration && trace.channel === 0) {
     integrator.step(1)
     const [before, after] = [integrator.next.rows, integrator.now.rows]
+    const isNear = integrator.now.integers[2 * FLAGS * lanes] & system.layout.near
     const size = after[SIZE * lanes]
     if (!(size > 0)) break
     for (const [row, place] of [X, Y, PX, PY].entries()) starts[row * lanes] = before[place * lanes]
     integrator.jets(1)
     const [x0, y0] = [before[X * lanes], before[Y * lanes]]
     trace.channel = crossedExit(exits, x0, y0, after[X * lanes], after[Y * lanes])
+    if (trace.channel === 0 && isNear) trace.channel = passedExit(exits, x, y, 0, size)
     let taken = Math.min(size, duration - trace.time)
     if (trace.channel > 0) {
       const tau = findExitTime(exits[trace.channel - 1], x, y, 0, size)

@@ -51,9 +51,12 @@ const make = (tag, attributes = {}, ...children) => {
   return node
 }
 
+/** @type {(options: Record<string, string>) => HTMLElement[]} */
+const makeOptions = options => Object.entries(options).map(([value, text]) => make("option", {value}, text))
+
 /** @type {(label: string, options: Record<string, string>) => any} */
 const makeList = (label, options) => {
-  const list = make("select", {}, ...Object.entries(options).map(([value, text]) => make("option", {value}, text)))
+  const list = make("select", {}, ...makeOptions(options))
   list.setAttribute("aria-label", label)
   return list
 }
@@ -137,6 +140,10 @@ class Watch {
     this.#play.onclick = () => this.#setPlaying(this.#frame === 0)
     this.#step.onclick = () => this.#show(PACES[this.#pace.value](this.#time, STEP_SECONDS))
     this.#rail.oninput = () => this.#show((this.#rail.valueAsNumber / STEPS) * LONGEST)
+    model.on("places", () => {
+      this.#where.replaceChildren(...makeOptions(model.places))
+      this.#where.value = model.where
+    })
     model.on(["where", "count", "seed", "radius", "point", "box", "rate"], () => this.#follow())
     model.on("lifecycle:remove", () => this.#end())
   }
@@ -263,7 +270,7 @@ class Watch {
     this.#paintSection(ensemble, shown)
     // While the time goes on, numbers that change in every frame cannot be read.
     if (this.#frame !== 0 && this.#painted++ % FRAMES_PER_NUMBER) return
-    this.#writeCounters(ensemble, shown.colours())
+    this.#writeCounters(ensemble, shown)
     this.#writeGrowth(ensemble, time)
     const ink = getComputedStyle(this.#chart).color
     drawSurvival(this.#chart, ensemble, {longest: LONGEST, unit: shown.system.units.time, rate: this.#model.rate, ink})
@@ -358,14 +365,13 @@ class Watch {
 
   /**
    * @param {Ensemble} ensemble
-   * @param {string[]} colours
+   * @param {import("./present.js").Shown} shown
    */
-  #writeCounters({channel, count}, colours) {
-    const numbers = new Array(colours.length + 1).fill(0)
+  #writeCounters({channel, count}, shown) {
+    const [names, colours] = [["inside", ...shown.labels()], shown.colours()]
+    const numbers = new Array(names.length).fill(0)
     for (const code of channel) numbers[code]++
-    const names = ["inside", ...colours.map((_, k) => `exit ${k + 1}`)]
-    const channels = present()?.system.exits.length ?? 0
-    const cells = numbers.slice(0, channels + 1).map((number, code) => {
+    const cells = numbers.map((number, code) => {
       const share = count ? ((100 * number) / count).toFixed(1) : "0"
       const cell = make("td", {}, `${names[code]}: ${number} (${share} %)`)
       if (code) cell.style.setProperty("--colour", colours[code - 1])

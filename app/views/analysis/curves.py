@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from html import escape
 
 import numpy as np
@@ -17,7 +17,7 @@ from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
-from engine import Curves, System
+from engine import Curves, Outcome, System
 from engine.service import PARAMETERS
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 
@@ -124,15 +124,15 @@ class CurvesView:
             return
         self.points.data = {name: curves.values if name == "value" else curves.curve(name) for name in _COLUMNS}
         shares = curves.shares.T
-        colours = [self._palette.bounded, *self._palette.channels[: len(shares) - 1]]
+        entries, outcomes = self._entries(curves.spec.outcomes), curves.spec.outcomes
         # Symmetric channels have equal shares: dashed curves, drawn last, leave the solid ones visible.
         order = sorted(range(len(shares)), key=_is_dashed)
         self._shares.data = {
             "xs": [curves.values] * len(shares),
             "ys": [shares[k] for k in order],
-            "colour": [colours[k] for k in order],
+            "colour": [entries[k].colour for k in order],
             "dash": [_DASH if _is_dashed(k) else "solid" for k in order],
-            "fate": [f"escape through channel {k}" if k else "are bounded" for k in order],
+            "fate": [outcomes[k - 1].action if k else "are bounded" for k in order],
         }
         swept = curves.spec.values
         if len(swept) > 1:
@@ -142,7 +142,7 @@ class CurvesView:
         self._mark()
         self._scale_values(curves)
         self.text.object = _progress(curves)
-        self._legend.object = legend(self._entries(len(shares) - 1))
+        self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Curves) -> None:
         """Fit the ranges of all but the shares and the exponents."""
@@ -167,13 +167,13 @@ class CurvesView:
             self._on_value(float(values[np.argmin(np.abs(values - value))]))
 
     def set_palette(self, palette: Palette) -> None:
-        """Colours of the channels."""
+        """Colours of the outcomes."""
         self._palette = palette
         if self.shown is not None:
             self.show(self.shown)
 
-    def _entries(self, channels: int) -> list[Entry]:
-        return [Entry("bounded", self._palette.bounded), *self._palette.channel_entries(channels)]
+    def _entries(self, outcomes: Sequence[Outcome]) -> list[Entry]:
+        return [Entry("bounded", self._palette.bounded), *self._palette.end_entries(outcomes)]
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Make the button and the place of the plots, which are made with the first curves."""
@@ -249,7 +249,7 @@ def _finite(curves: Curves, *columns: str) -> np.ndarray:
 
 
 def _is_dashed(code: int) -> bool:
-    """Whether the curve of a channel is dashed; 0 stands for bounded starts."""
+    """Whether the curve of an outcome is dashed; 0 stands for bounded starts."""
     return code > 0 and code % 2 == 0
 
 

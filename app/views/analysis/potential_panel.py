@@ -15,33 +15,35 @@ from app.state.system_review import SystemReview
 from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button
-from engine import PotentialReview, System, write_formula
+from engine import PotentialReview, System
 from engine.service import (
     CATALOGUE,
     LARGEST_VALUE,
     LONGEST_TEXT,
-    PARAMETER_RANGES,
     PARAMETERS,
-    SHOWN_DIGITS,
+    RANGES,
     TYPED,
     formula_letters,
 )
-from plots.mathml import potential_formula
+from plots.mathml import potential_formula, potential_symbol
 from plots.palette import MOST_CHANNELS
 
 # Ends of the sliders; their boxes, links and the command line allow wider ranges.
 _LOW, _HIGH = 0.2, 2.0
+_ENDS = {"rotation": (-1.0, 1.0)}
 # Ends of the slider of a letter, unless its value lies beyond their halves.
 _LETTER_REACH = 2.0
 _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
-    f"Numbers, x, y, r², letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
-    "for example 0.5(x^2+y^2) - a x^2 y."
+    f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
+    "for example 0.5(x^2+y^2) - a x^2 y. “; centre (0, 0) 0.001” adds a body with a radius of collision, “; escape 10” an escape "
+    "radius in place of exits over saddles."
 )
-NEW_INTEGRATOR = (
-    "Press Enter to use it: an integrator for its powers of x and y and its channels is compiled first, which takes some seconds."
-)
+NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
 """What is said of a text that the maps do not follow while it is typed."""
+
+
+_DEFINITION = "V = ½(ω1² x² + ω2² y²) + ε V1, and Φ = V − ½Ω²(x² + y²) in a frame that rotates at the rate Ω"
 
 
 class Propose(Protocol):
@@ -82,14 +84,15 @@ class PotentialPanel:
         self.sliders = {name: self._make_slider(name) for name in PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
-        self.reset = button("Reset to 1", lambda: self._choose(System(self.shown.case, self.shown.formula)), margin=(8, 0))
+        reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
+        self.reset = button("Reset parameters", reset, margin=(8, 0))
+        self.definition = TextPane(_DEFINITION, margin=(8, 0), sizing_mode="stretch_width")
         self.facts = TextPane("", sizing_mode="stretch_width", margin=0)
         self._show(used.system)
         self.known.param.watch(lambda event: self._take_known(event.new), "value")
 
     def build(self) -> list[pn.viewable.Viewable]:
         """Parts of a column, those of fixed height first, so that none moves while the formula is typed."""
-        parameters = TextPane("V = ½(ω1² x² + ω2² y²) + ε V1", margin=(8, 0), sizing_mode="stretch_width")
         buttons = flex_row(self.reset, self.move, gap="8px")
         return [
             self.known,
@@ -97,16 +100,17 @@ class PotentialPanel:
             self.typeset,
             self.message,
             self.letters,
-            parameters,
+            self.definition,
             *self.sliders.values(),
             buttons,
             self.facts,
         ]
 
     def _make_slider(self, name: str) -> ParameterSlider:
-        (lowest, highest), label = PARAMETER_RANGES[name], PARAMETERS[name]
+        (lowest, highest), label = RANGES[name], PARAMETERS[name]
+        low, high = _ENDS.get(name, (_LOW, _HIGH))
         return ParameterSlider(
-            partial(self._slide, name), label=label, low=_LOW, high=_HIGH, lowest=lowest, highest=highest,
+            partial(self._slide, name), label=label, low=low, high=high, lowest=lowest, highest=highest,
             sizing_mode="stretch_width", margin=(2, 0),
         )  # fmt: skip
 
@@ -119,15 +123,15 @@ class PotentialPanel:
 
     def _show_letters(self, system: System) -> None:
         """Show a slider for each letter of the formula; one that stays keeps its range."""
-        letters = _letters(system.formula) if system.case == TYPED else ()
+        letters = tuple(name for name in _parameter_names(system) if name not in PARAMETERS)
         if letters != tuple(self.letter_sliders):
             before = self.letter_sliders
             self.letter_sliders = {
-                name: before.get(name) or self._make_letter_slider(name, system.parameters.get(name, 1.0)) for name in letters
+                name: before.get(name) or self._make_letter_slider(name, system.value_of(name)) for name in letters
             }
             self.letters.objects = list(self.letter_sliders.values())
         for name, slider in self.letter_sliders.items():
-            slider.show(system.parameters.get(name, 1.0))
+            slider.show(system.value_of(name))
 
     def follow(self, used: SystemReview) -> None:
         """Show the system of the maps."""
@@ -177,8 +181,11 @@ class PotentialPanel:
         """Update all widgets but the text, which is being typed."""
         self.shown = system
         self.known.value = system.case
+        names = _parameter_names(system)
         for name, slider in self.sliders.items():
-            slider.show(system.parameters.get(name, 1.0))
+            slider.visible = name in names
+            slider.show(system.value_of(name))
+        self.definition.visible = "epsilon" in names
         self.reset.disabled = not system.parameters
         self._show_letters(system)
 
@@ -189,7 +196,7 @@ class PotentialPanel:
             self._choose(self.used.system)
         else:
             # A typed potential starts from the formula of the previous one.
-            self._choose(System(case, write_formula(self.shown.potential, SHOWN_DIGITS) if case == TYPED else ""))
+            self._choose(self.shown.as_typed if case == TYPED else System(case))
 
     def _take_text(self, text: str, done: bool) -> None:
         """Propose the text that the visitor types."""
@@ -214,8 +221,7 @@ def _text(system: System) -> str:
 
 def _typed(text: str, before: System) -> System:
     """A system of a formula, with the parameters of the previous one that it still has."""
-    kept = before.well_parameters | {name: value for name, value in before.parameters.items() if name in _letters(text)}
-    return System(TYPED, text, kept)
+    return System(TYPED, text, {name: before.value_of(name) for name in (*PARAMETERS, *_letters(text))})
 
 
 def _letters(text: str) -> tuple[str, ...]:
@@ -226,11 +232,20 @@ def _letters(text: str) -> tuple[str, ...]:
         return ()
 
 
+def _parameter_names(system: System) -> tuple[str, ...]:
+    """The parameters of a system, also while its formula is not understood."""
+    return (*PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
+
+
 def _alert(sentence: str) -> str:
     return f"<div class='alert'>{escape(sentence)}</div>"
 
 
 def _channels(review: PotentialReview) -> str:
+    if review.potential.escape_radius is not None or review.potential.centres:
+        labels = ", ".join(outcome.label for outcome in review.potential.outcomes)
+        opened = f"; channels open above h = {review.escape_energy:.6g}" if review.channels else ""
+        return f"Orbits end at: {labels}{opened}"
     if not review.channels:
         return "no channels"
     return f"{review.channels} channels above the escape energy h = {review.escape_energy:.6g}"
@@ -243,7 +258,7 @@ def _points(review: PotentialReview) -> str:
         f"<td>{point.energy:.6g}</td><td>{point.channel or ''}</td></tr>"
         for point in sorted(review.critical_points, key=lambda point: point.channel or MOST_CHANNELS + 1)
     )
-    names = ("critical point", "(x, y)", "V", "channel")
+    names = ("critical point", "(x, y)", potential_symbol(review.potential), "channel")
     head = "".join(f"<th scope=col>{name}</th>" for name in names)
     return f"<table><tr>{head}</tr>{rows}</table>" if rows else ""
 

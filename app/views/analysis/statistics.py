@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 from typing import Any
 
 import holoviews as hv
@@ -18,6 +19,7 @@ from app.views.components.numbers import grouped, percent, percent_range
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
+from engine.service import UNRESOLVED
 from plots.palette import PAPER, Palette
 from plots.statistics_charts import BINS, MOST_CROSSINGS
 
@@ -72,7 +74,7 @@ class StatisticsView:
         self._count()
 
     def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the channels."""
+        """Set the colours of the outcomes."""
         self._palette = palette
         self._count()
 
@@ -108,15 +110,17 @@ class StatisticsView:
 
     def _shares(self, statistics: EscapeStatistics) -> list[tuple[str, str, int]]:
         """Name, colour and code of each fate in the table."""
-        channels = [(f"channel {k}", self._palette.channels[k - 1], k) for k in range(1, len(statistics.channel_counts) + 1)]
-        undecided = [("undecided", self._palette.outcomes[Fate.NOT_COMPUTED].colour, int(Fate.NOT_COMPUTED))]
-        bounded = [("bounded", self._palette.bounded, int(Fate.BOUNDED))]
-        return [*channels, *bounded, *(undecided if statistics.undecided else [])]
+        palette, outcomes = self._palette, statistics.outcomes
+        entries = zip(palette.end_entries(outcomes), outcomes, strict=True)
+        ends = [(entry.label, entry.colour, fate) for fate, (entry, outcome) in enumerate(entries, 1) if outcome.occurs]
+        bounded = [("bounded", palette.bounded, int(Fate.BOUNDED))]
+        others = (("undecided", Fate.NOT_COMPUTED, statistics.undecided), (UNRESOLVED, Fate.FAILED, statistics.failed))
+        return [*ends, *bounded, *((name, palette.outcomes[fate].colour, int(fate)) for name, fate, count in others if count)]
 
     def _table(self, statistics: EscapeStatistics) -> str:
         shares, intervals = statistics.shares, statistics.share_intervals
         body = "".join(
-            f"<tr><td>{patch(colour, name)}</td><td>{percent(shares[code], 2)}</td>"
+            f"<tr><td>{patch(colour, escape(name))}</td><td>{percent(shares[code], 2)}</td>"
             f"<td class='quiet'>{percent_range(*intervals[code])}</td></tr>"
             for name, colour, code in self._shares(statistics)
         )

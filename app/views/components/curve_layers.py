@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits, trace_zero_velocity_curve
-from engine.service import trace_equipotentials
+from engine.service import critical_energies, depth_levels, trace_equipotentials
 from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 
 # Energies of the faint equipotentials, in units of the escape energy.
@@ -77,10 +77,11 @@ class CurveLayers:
         # Do not send empty data again.
         if orbits or self._exits.data["xs"]:
             self._show_exits(orbits)
-        energies = [spec.potential.energy_at(level) for level in (1.0, *_LEVELS)] if h is not None else []
-        critical, *others = trace_equipotentials(spec.potential, spec.plane, energies, window) if energies else [[]]
-        self._critical.data = _lines(critical)
-        self._levels.data = _lines([line for lines in others for line in lines])
+        critical = critical_energies(spec.potential)
+        energies = [*critical, *depth_levels(spec.potential, _LEVELS)]
+        traced = trace_equipotentials(spec.potential, spec.plane, energies, window) if h is not None else []
+        self._critical.data = _lines([line for lines in traced[: len(critical)] for line in lines])
+        self._levels.data = _lines([line for lines in traced[len(critical) :] for line in lines])
 
     def _show_exits(self, orbits: Sequence[LyapunovOrbit]) -> None:
         if orbits:
@@ -93,7 +94,7 @@ class CurveLayers:
         self._labels.data = {
             "x": [*(0.86 * point[0] for point in middles), *[np.nan] * missing],
             "y": [*(0.86 * point[1] for point in middles), *[np.nan] * missing],
-            "text": [*(str(orbit.channel) for orbit in orbits), *[""] * missing],
+            "text": [*(orbit.name for orbit in orbits), *[""] * missing],
             "colour": [*colours, *[self._palette.bounded] * missing],
         }
 
@@ -101,8 +102,9 @@ class CurveLayers:
         """Legend entries of the curves shown on this plane."""
         entries = [Entry(spec.plane.limiting_curve, self._inks.limiting_curve)]
         if spec.common_energy is not None:
-            entries += [Entry("escape energy", self._inks.critical_equipotential)]
-            entries += [Entry("others", self._inks.equipotential)]
+            has_exits = spec.potential.escape_radius is None
+            entries += [Entry("escape energy" if has_exits else "through saddles", self._inks.critical_equipotential)]
+            entries += [Entry("others", self._inks.equipotential)] if has_exits else []
         return entries
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from html import escape
 
-from plots.palette import Entry, Palette
+from engine import Outcome
+from plots.palette import Entry, Palette, end_places, short_label
 
 
 def patch(colour: str, label: str = "") -> str:
@@ -14,13 +16,13 @@ def patch(colour: str, label: str = "") -> str:
 
 def legend_items(entries: Iterable[Entry]) -> str:
     """HTML of the entries of a legend."""
-    return "".join(patch(entry.colour, entry.label) for entry in entries)
+    return "".join(patch(entry.colour, escape(entry.label)) for entry in entries)
 
 
 def chips(entries: Iterable[Entry]) -> str:
     """HTML of the entries of a legend where there is little room: a number or a word, which the whole label explains."""
-    parts = ((entry, entry.label.removeprefix("channel ").partition(":")[0]) for entry in entries)
-    return "".join(f"<span title='{entry.label}'>{patch(entry.colour, short)}</span>" for entry, short in parts)
+    parts = ((entry.colour, escape(entry.label), escape(short_label(entry.label))) for entry in entries)
+    return "".join(f"<span title='{label}'>{patch(colour, short)}</span>" for colour, label, short in parts)
 
 
 def legend(entries: Iterable[Entry]) -> str:
@@ -28,10 +30,11 @@ def legend(entries: Iterable[Entry]) -> str:
     return f"<div class='legend'>{legend_items(entries)}</div>"
 
 
-def passage_legend(palette: Palette, channels: int) -> str:
-    """HTML of the table of passage colours: a row for each channel of entry, a column for each channel of escape."""
-    ends = (*range(1, channels + 1), 0)
-    name = {0: "bounded", **{k: str(k) for k in ends if k}}
+def passage_legend(palette: Palette, outcomes: Sequence[Outcome]) -> str:
+    """HTML of the table of passage colours: a row for each outcome backward in time, a column for each forward."""
+    name = {place + 1: escape(short_label(end.label)) for place, end in zip(end_places(outcomes), outcomes, strict=True)}
+    name |= {0: "bounded"}
+    ends = tuple(name)
     head = "".join(f"<th scope=col>{name[fate]}</th>" for fate in ends)
     rows = "".join(
         f"<tr><th scope=row>{name[origin]}</th>"

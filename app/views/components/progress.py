@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from html import escape
 
 import numpy as np
 import panel as pn
@@ -15,7 +16,7 @@ from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button, keep_place
 from engine import Certificate, EscapeMap, Fate
-from engine.service import format_number
+from engine.service import UNRESOLVED, OutcomeKind, format_number
 
 STOP, CONTINUE, TEST = "Stop", "Continue", LAYER_LABELS["trust"]
 
@@ -108,12 +109,19 @@ def _stage(frame: EscapeMap) -> str:
 def _result(frame: EscapeMap) -> str:
     """Shares and accuracy of a complete map."""
     shares = frame.fractions()
-    last = frame.spec.channels
     # A share is not broken over two lines.
-    parts = [percent(shares[k]).replace(" ", "\N{NO-BREAK SPACE}") for k in (*range(1, last + 1), Fate.BOUNDED)]
-    escapes = f"channel{f's 1 to {last}' if last > 1 else ' 1'}: {', '.join(parts[:-1])}, " if last else ""
+    part = {fate: percent(share).replace(" ", "\N{NO-BREAK SPACE}") for fate, share in shares.items()}
+    ends = [(fate, end) for fate, end in enumerate(frame.spec.outcomes, 1) if end.occurs]
+    # Exits of several channels have longer names.
+    exits = [(fate, end.label) for fate, end in ends if end.kind is OutcomeKind.EXIT]
+    numbered = [fate for fate, _ in exits] if all(label == f"channel {fate}" for fate, label in exits) else []
+    numbers = f"s 1 to {len(numbered)}" if len(numbered) > 1 else " 1"
+    parts = [f"channel{numbers}: {', '.join(part[fate] for fate in numbered)}"] if numbered else []
+    parts += [f"{escape(end.label)} {part[fate]}" for fate, end in ends if fate not in numbered]
+    parts += [f"bounded {part[Fate.BOUNDED]}{_certified(frame)}"]
+    parts += [f"{UNRESOLVED} {part[Fate.FAILED]}"] if shares[Fate.FAILED] else []
     return (
-        f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {escapes}bounded {parts[-1]}{_certified(frame)}. "
+        f"Done, t = {grouped(frame.spec.t_max)}. Interior starts: {', '.join(parts)}. "
         f"Energy error ≤ {format_number(frame.worst_energy_error, 2)}.{_rounding(frame)}"
     )
 

@@ -18,7 +18,7 @@ from plots.palette import Palette
 Columns = dict[str, list[Any]]
 """Columns of a data source of images."""
 
-_IMAGE = ("fate", "x", "y", "dw", "dh")
+_IMAGE = ("fate", "x", "y", "dw", "dh", "ends")
 
 
 class ComparedMap:
@@ -32,8 +32,8 @@ class ComparedMap:
 
     def __init__(self, ranges: MapRanges) -> None:
         # In the toolbar from the start: Bokeh warns when tools change together with the pictures.
-        self.hover = fate_hover(ranges.x, ranges.ordinate)
         self.source = ColumnDataSource(_no_map(), name="compared_map")
+        self.hover = fate_hover(self.source, ranges.x, ranges.ordinate)
         self.other: OtherView | None = None
         """What is shown; None for nothing."""
         self._outlines = CurveLayers()
@@ -46,7 +46,7 @@ class ComparedMap:
 
     def show(self, frame: EscapeMap, title: str) -> None:
         """Show the other map."""
-        self.other = OtherView(title, frame.spec.channels, frame.spec.plane.axis_symbols)
+        self.other = OtherView(title, frame.spec.outcomes, frame.spec.plane.axis_symbols)
         columns = map_columns(frame, characters=False)
         self.source.data = {name: columns[name] for name in _IMAGE}
         self._outlines.show(frame.spec)
@@ -57,7 +57,7 @@ class ComparedMap:
         self.source.data = _no_map()
 
     def set_palette(self, palette: Palette) -> None:
-        """Set the colours of the channels."""
+        """Set the colours of the outcomes."""
         self._outlines.set_palette(palette)
 
     def set_dark(self, dark: bool) -> None:
@@ -71,4 +71,4 @@ class ComparedMap:
 
 
 def _no_map() -> Columns:
-    return {"fate": NO_LAYER, "x": [0.0], "y": [0.0], "dw": [0.0], "dh": [0.0]}
+    return {"fate": NO_LAYER, "x": [0.0], "y": [0.0], "dw": [0.0], "dh": [0.0], "ends": [[]]}

@@ -20,12 +20,14 @@ TRUST = {
 CHARACTER = {
     Regularity.REGULAR: "regular",
     Regularity.CHAOTIC: "chaotic",
+    Regularity.NO_SIGN_OF_CHAOS: "no sign of chaos until t_max",
     Regularity.NOT_JUDGED: "regular or chaotic: not known yet",
 }
 """What is known of a bounded orbit while the layer "Regular or chaotic" is on."""
 
 _COLUMNS = "{maps: maps.data, doubts: doubts.data, compared: compared.data}"
 _DETAILS = callback_code("hover_texts.js", f"pixelDetails(special_vars.image_index.flat_index, {_COLUMNS}, codes, words)")
+_FATE = callback_code("hover_texts.js", "fateName(value, names, maps.data)")
 _PLACE = callback_code("hover_texts.js", "coordinate(value, range)")
 
 _DETAILS_TEXT = '<div style="white-space:pre-line">@crossing_class{custom}</div>'
@@ -35,20 +37,24 @@ _TEXT = (
 )
 
 
-_FATES = [*OUTCOMES.values(), *(f"escapes through channel {k + 1}" for k in range(len(PAPER.channels)))]
+_FATES = list(OUTCOMES.values())
 
 
-def fate_hover(x: Range1d, ordinate: Range1d) -> HoverTool:
-    """A tool that says how the orbit under the mouse ends; the caller adds images of the codes of fates to its renderers."""
-    formatters = _fate_and_place(x, ordinate)
+def fate_hover(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> HoverTool:
+    """A tool that says how the orbit under the mouse ends; the caller adds images of the codes of fates to its renderers.
+
+    source
+        Columns ``fate`` and ``ends`` of `plots.image_columns.map_columns`.
+    """
+    formatters = _fate_and_place(source, x, ordinate)
     return HoverTool(
         tooltips=_TEXT.format(details=""), formatters=formatters, attachment="vertical", show_arrow=False, renderers=[]
     )
 
 
-def _fate_and_place(x: Range1d, ordinate: Range1d) -> dict[str, CustomJSHover]:
+def _fate_and_place(source: ColumnDataSource, x: Range1d, ordinate: Range1d) -> dict[str, CustomJSHover]:
     return {
-        "@fate": CustomJSHover(args={"names": _FATES}, code="return names[value] ?? names[0]"),
+        "@fate": CustomJSHover(args={"names": _FATES, "maps": source}, code=_FATE),
         "$x": CustomJSHover(args={"range": x}, code=_PLACE),
         "$y": CustomJSHover(args={"range": ordinate}, code=_PLACE),
     }
@@ -76,7 +82,8 @@ def pixel_hover(
         "bounded": list(OUTCOMES).index(Fate.BOUNDED),
         "first": len(OUTCOMES),
         "firstCertificate": len(OUTCOMES) + len(CROSSING_CLASSES),
-        "ends": MOST_CHANNELS + 1,
+        "ends": len(PAPER.ends) + 1,
+        "channels": MOST_CHANNELS,
     }
     words = {
         "certificates": [describe_certificate(code) for code in Certificate],
@@ -85,6 +92,6 @@ def pixel_hover(
         "fates": _FATES,
     }
     arguments = {"maps": source, "doubts": doubts, "compared": compared, "codes": codes, "words": words}
-    formatters = _fate_and_place(x, ordinate) | {"@crossing_class": CustomJSHover(args=arguments, code=_DETAILS)}
+    formatters = _fate_and_place(source, x, ordinate) | {"@crossing_class": CustomJSHover(args=arguments, code=_DETAILS)}
     text = _TEXT.format(details=_DETAILS_TEXT)
     return HoverTool(tooltips=text, formatters=formatters, attachment="vertical", show_arrow=False, renderers=[])

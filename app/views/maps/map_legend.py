@@ -8,7 +8,7 @@ from html import escape
 
 from app.views.components.legends import chips, legend_items, passage_legend
 from app.views.components.numbers import grouped
-from engine import MapSpec
+from engine import MapSpec, Outcome
 from plots.palette import Entry, Palette
 from plots.time_scale import TimeScale
 
@@ -23,14 +23,14 @@ class OtherView:
     ----------
     title
         The view in words.
-    channels
-        Number of its channels.
+    outcomes
+        What its orbits can end at.
     axes
         Symbols of its axes.
     """
 
     title: str
-    channels: int
+    outcomes: tuple[Outcome, ...]
     axes: tuple[str, str]
 
 
@@ -67,14 +67,14 @@ class Described:
 
 def map_legend(name: str, described: Described, overlays: Iterable[Entry]) -> str:
     """HTML of the legend of a map, by the name of its picture, with the entries of what is drawn over it."""
-    palette, channels = described.palette, described.spec.channels
+    palette, ends = described.palette, described.spec.outcomes
     outcomes = [entry for fate, entry in reversed(palette.outcomes.items()) if fate in described.fates]
     items = {
-        "basins": lambda: chips([*palette.channel_entries(channels), *outcomes]),
+        "basins": lambda: chips([*palette.legend_entries(ends), *outcomes]),
         "times": lambda: _colour_scale(palette, described.times, locked=described.locked),
         "crossings": lambda: legend_items(palette.crossing_entries),
         "characters": lambda: f"{legend_items(palette.character_entries[1:])} <span>{described.regularity}</span>",
-        "origins": lambda: passage_legend(palette, channels),
+        "origins": lambda: passage_legend(palette, ends),
         "compared": lambda: _other_legend(palette, described.other),
         "differences": lambda: _difference_legend(described),
     }[name]()
@@ -82,8 +82,8 @@ def map_legend(name: str, described: Described, overlays: Iterable[Entry]) -> st
 
 
 def _other_legend(palette: Palette, other: OtherView | None) -> str:
-    """The channels of the other view, and its title."""
-    return f"{chips(palette.channel_entries(other.channels))} <span>{escape(other.title)}</span>" if other is not None else "…"
+    """The outcomes of the other view, and its title."""
+    return f"{chips(palette.legend_entries(other.outcomes))} <span>{escape(other.title)}</span>" if other is not None else "…"
 
 
 def _difference_legend(described: Described) -> str:

@@ -128,11 +128,10 @@ class MapsView:
         self.describe()
 
     def begin_touch(self) -> None:
-        """The page is used by touch: two fingers zoom, and on a narrow screen one picture is shown."""
+        """The page is used by touch: two fingers zoom."""
         # The wheel's tool would answer to two fingers, too.
         others = [tool for tool in self._toolbar.tools if not isinstance(tool, WheelZoomTool)]
         self._toolbar.update(tools=others, active_scroll=None)
-        self.grid.begin_touch()
 
     def set_drag(self, drag: Drag) -> None:
         """Choose what dragging over a picture does."""
@@ -325,8 +324,8 @@ def _describe_regularity(regularity: RegularityMap, bounded: np.ndarray) -> str:
     if not bounded.size:
         return "No bounded orbits."
     if regularity.complete:
-        caveat = " Too short a t_max to call the others regular: no chaos so far." if regularity.is_too_short else ""
-        return f"{percent(regularity.chaotic_share)} of the bounded orbits are chaotic.{caveat}"
+        unsure = percent(regularity.share_of(Regularity.NO_SIGN_OF_CHAOS))
+        return f"{percent(regularity.chaotic_share)} of the bounded orbits are chaotic, {unsure} show no sign of chaos."
     return f"{percent(np.mean(bounded == Regularity.NOT_JUDGED))} of the bounded orbits left …"
 
 
@@ -336,4 +335,4 @@ def _blank() -> dict[str, list[Any]]:
     images = ("fate", "crossing_class", "crossings", "character", "passage", "difference")
     columns: dict[str, list[Any]] = {name: [codes] for name in images}
     columns |= {"escape_time": [np.full((1, 1), np.nan, np.float32)]}
-    return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "energy": [np.nan], "complete": [False]}
+    return columns | {"x": [-1.0], "y": [-1.0], "dw": [2.0], "dh": [2.0], "energy": [np.nan], "complete": [False], "ends": [[]]}

@@ -51,6 +51,11 @@ class MapRanges:
             self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
             self._following = False
 
+    def go_to(self, window: Window) -> None:
+        """Go to a window that is chosen, also by something else than a move, which is dropped if it is not reported yet."""
+        self._stop_waiting()
+        self.follow(window)
+
     def set_home(self, home: MapSpec) -> None:
         """Set the map of the whole interior, and with it the smallest window, where zooming ends."""
         self._home = home.find_window()

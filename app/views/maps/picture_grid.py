@@ -83,8 +83,8 @@ class PictureGrid:
         """Grey the pictures out while they do not belong to the controls, or show them as they are."""
         self._set_class("stale", stale)
 
-    def begin_touch(self) -> None:
-        """The page is used by touch: offer the choice of the picture, of which a narrow screen shows one."""
+    def offer_choice(self) -> None:
+        """Offer the choice of the picture, of which a narrow page shows one."""
         self.picker.visible = True
         self._place()
 

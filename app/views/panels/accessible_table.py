@@ -12,7 +12,7 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from engine import EscapeMap, Fate, compute_statistics
-from engine.service import format_time
+from engine.service import UNRESOLVED, format_time
 
 
 class AccessibleTable:
@@ -61,7 +61,8 @@ class AccessibleTable:
             return []
         statistics = compute_statistics(self._frame)
         shares = statistics.shares
-        rows = [(f"escape through channel {k}", percent(shares[k], 2)) for k in range(1, len(statistics.channel_counts) + 1)]
+        rows = [(end.action, percent(shares[fate], 2)) for fate, end in enumerate(statistics.outcomes, 1)]
+        rows += [(UNRESOLVED, percent(shares[Fate.FAILED], 2))] if statistics.failed else []
         rows += [("bounded", percent(shares[Fate.BOUNDED], 2)), ("direct escapes", percent(statistics.direct_share, 2))]
         rows += [("mean escape time", _time(statistics.mean_escape_time))]
         return [*rows, ("median escape time", _time(statistics.median_escape_time))]

@@ -1,4 +1,4 @@
-"""What only the browser has: its history, keys pressed anywhere on the page, theme, touch, the clipboard."""
+"""What only the browser has: its history and width, keys pressed anywhere on the page, theme, touch, the clipboard."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _CAPS = {"ArrowLeft": "←", "ArrowRight": "→", "ArrowUp": "↑", "ArrowDown":
 
 # Bokeh does not register classes whose name starts with an underscore in the browser.
 class BrowserListener(JSComponent):
-    """The browser side: it sends {key}, {link, entry, steps}, {dark}, {touch}, {enlarge} or {copied}."""
+    """The browser side: it sends {key}, {link, entry, steps}, {dark}, {touch}, {narrow}, {enlarge} or {copied}."""
 
     keys = param.List(default=list(KEYS))
     address = param.Dict(default={}, doc="link of the view, its entry in the history, steps known; number, see `command`")
@@ -75,6 +75,8 @@ class BrowserActions:
         Called with whether the theme is dark, when it changes or is not light at the beginning.
     touch
         Called if the page is used by touch.
+    narrow
+        Called if the page has the layout of a phone, at the beginning or after a change of its width.
     copied
         Called with the success of `copy`.
     enlarge
@@ -85,6 +87,7 @@ class BrowserActions:
     navigate: Callable[[str, int, int], None]
     dark: Callable[[bool], None]
     touch: Callable[[], None]
+    narrow: Callable[[], None]
     copied: Callable[[bool], None]
     enlarge: Callable[[str], None]
 
@@ -141,6 +144,8 @@ class BrowserEvents:
                 self._actions.dark(dark)
             case {"touch": True}:
                 self._actions.touch()
+            case {"narrow": True}:
+                self._actions.narrow()
             case {"copied": bool(success)}:
                 self._actions.copied(success)
             case {"enlarge": str(name)} if name in PICTURES:

@@ -17,12 +17,14 @@ from app.views.components.analysis_choice import ComparisonSwitch, LayerSwitches
 from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
-from engine import CASES, Plane, Slice
+from engine import CASES, Plane, Potential, Slice
 from engine.service import EnergyRange
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
 AXES = "Axes …"
+# Characters that the button has room for; longer titles of slices are shown in the section of the axes only.
+_LONGEST_TITLE = 12
 # Those of the paper; others are chosen by their axes.
 _PLANES = (Plane.X_Y, Plane.X_PX, Plane.X_H)
 _ON_AXIS = {0: "Energy is the horizontal axis here", 1: "Energy is the vertical axis here"}
@@ -165,7 +167,8 @@ class Controls:
 
     def _follow_plane(self) -> None:
         set_value(self.plane, self._plane())
-        self.axes.label = AXES if self.plane.value is not None else f"{self.state.plane.title} …"
+        title = f"{self.state.plane.title} …"
+        self.axes.label = title if self.plane.value is None and len(title) <= _LONGEST_TITLE else AXES
 
     def _plane(self) -> Slice | None:
         """The slice in view if it is one of those to choose from; None for others."""
@@ -191,10 +194,10 @@ class Controls:
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self.exact_energy.step = 10.0**-energies.decimals
+        formula, _, _ = reviewed.formula_shown.partition(";")
         self.facts.object = (
             f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
-            f"V = {escape_text(reviewed.formula_shown)}<br><span class='quiet'>"
-            f"{state.potential.channels} exit channels above h = {state.potential.escape_energy:.6g}</span></div>"
+            f"V = {escape_text(formula)}<br><span class='quiet'>{_outcomes(state.potential)}</span></div>"
         )
         self._follow_energy()
 
@@ -207,6 +210,16 @@ class Controls:
         self.exact_energy.disabled = on_h
         self.exact_energy.show(state.energy)
         self.play.disabled = on_h
+
+
+def _outcomes(potential: Potential) -> str:
+    """What orbits end at, and from which energy on."""
+    frame = f"rotates at Ω = {potential.rotation:.6g}; " if potential.rotation else ""
+    if not potential.centres and potential.escape_radius is None:
+        return f"{frame}{potential.channels} exit channels above h = {potential.escape_energy:.6g}"
+    labels = escape_text(", ".join(outcome.label for outcome in potential.outcomes))
+    opened = f"; channels open above h = {potential.escape_energy:.6g}" if potential.channels else ""
+    return f"{frame}{labels}{opened}"
 
 
 def _ticks(escape: float, energies: EnergyRange) -> str:

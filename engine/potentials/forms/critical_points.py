@@ -15,9 +15,11 @@ import numpy as np
 
 from engine.polynomials import Terms, degree, derivative, evaluate, largest_coefficients, substitute
 from engine.potentials.forms.common_factor import have_common_factor
+from engine.results.arrays import read_only
 
-# Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x.
-_ROTATION_ANGLES = (0.7390851332151607, 2.1)
+# Arbitrary angles: rotated by them, the polynomials have nonzero leading coefficients and roots with different x. And lengths, as
+# the eigenvalues of roots that are far away in units of one length are ill-conditioned.
+_ELIMINATIONS = ((0.7390851332151607, 1.0), (2.1, 1.0), (0.7390851332151607, 2.0**4), (2.1, 2.0**8))
 # All lengths below are in units of `characteristic_length`.
 _IMAGINARY_TOLERANCE = 1e-3
 _SIMPLE_ROOT_TOLERANCE = 1e-8
@@ -36,9 +38,13 @@ _GRID = np.linspace(-3.0, 3.0, 31)
 # Eigenvalues beyond this distance are infinite ones with rounding errors, and Newton's method is on its way to infinity.
 _LARGEST_ROOT = 1e5
 
+NO_POINTS = read_only(np.empty((0, 2)))
+"""(0, 2) an empty list of points."""
+
 _MOST_REFINEMENTS = 60
-# Largest rotation of a vector, in radians, between neighbouring sample points of a circle.
-_LARGEST_ROTATION = 0.5
+# Largest rotation of a vector, in radians, and largest change of the logarithm of its length between neighbouring sample points
+# of a circle. A vector that turns fast is short there: its length shows a whole turn between two points.
+_LARGEST_ROTATION, _LARGEST_GROWTH = 0.5, 1.0
 
 
 _ON_A_CURVE = "the two polynomials vanish along a common curve: their common roots are not isolated points"
@@ -77,7 +83,10 @@ def find_critical_points(first: Terms, second: Terms) -> np.ndarray:
         raise NotIsolatedError("one of the two polynomials is zero everywhere: their common roots are not isolated points")
     length = characteristic_length(first, second)
     p, q = (_normalized(terms, length) for terms in (first, second))
-    starts = [_elimination_starts(p, q, angle) for angle in _ROTATION_ANGLES]
+    starts = []
+    for angle, far in _ELIMINATIONS:
+        enlarged = [_normalized(terms, far * length) for terms in (first, second)]
+        starts.append(far * _elimination_starts(enlarged[0], enlarged[1], angle))
     x, y = np.meshgrid(_GRID, _GRID)
     starts.append(np.column_stack([x.ravel(), y.ravel()]))
     points = _unique_points(p, q, _newton_roots(p, q, np.concatenate(starts)))
@@ -105,14 +114,24 @@ def winding_number(vector: Callable[[np.ndarray, np.ndarray], tuple[Any, Any]], 
     By the Poincaré–Hopf theorem it is the sum of the indices of the vector's zeros inside the circle. For the gradient of a
     potential the index is +1 at a minimum or maximum and −1 at a saddle. If the indices of a list of critical points have
     another sum, the list is incomplete or includes a degenerate point.
+
+    Raises
+    ------
+    UndecidedError
+        If the vector is not defined somewhere on the circle.
     """
     angle = np.linspace(0.0, 2.0 * np.pi, 721)
     for _ in range(_MOST_REFINEMENTS):
         x, y = radius * np.cos(angle), radius * np.sin(angle)
         first, second = vector(x, y)
-        rotation = np.diff(np.arctan2(*np.broadcast_arrays(second, first, x)[:2]))
+        second, first, _ = np.broadcast_arrays(second, first, x)
+        if not np.isfinite([first, second]).all():
+            raise UndecidedError("The slope of V is not defined everywhere on a circle around critical points or around a pole.")
+        rotation = np.diff(np.arctan2(second, first))
         rotation = (rotation + np.pi) % (2.0 * np.pi) - np.pi
-        too_large = np.flatnonzero(np.abs(rotation) > _LARGEST_ROTATION)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            growth = np.abs(np.diff(np.log(np.hypot(first, second))))
+        too_large = np.flatnonzero((np.abs(rotation) > _LARGEST_ROTATION) | (growth > _LARGEST_GROWTH))
         if not too_large.size:
             break
         angle = np.insert(angle, too_large + 1, 0.5 * (angle[too_large] + angle[too_large + 1]))
@@ -181,9 +200,9 @@ def _newton_roots(p: Terms, q: Terms, points: np.ndarray) -> np.ndarray:
     with np.errstate(all="ignore"):
         for _ in range(_NEWTON_STEPS):
             residual, step = _newton_step(polynomials, points)
-            scale = 1.0 + np.hypot(*points.T)
+            scale, largest = 1.0 + np.hypot(*points.T), _sum_of_magnitudes(polynomials[:2], points)
             length, near = np.hypot(*step.T), scale < _LARGEST_ROOT
-            at_root = residual < _RESIDUAL_TOLERANCE * scale**highest
+            at_root = residual < _RESIDUAL_TOLERANCE * largest
             # On a curve of common roots the step can be infinite or NaN; such a point has converged.
             converged = near & at_root & ~(np.isfinite(length) & (length > _SIMPLE_ROOT_TOLERANCE * scale))
             roots.append(points[converged] - np.where(np.isfinite(step[converged]), step[converged], 0.0))
@@ -198,6 +217,13 @@ def _newton_step(polynomials: list[np.ndarray], points: np.ndarray) -> tuple[np.
     f, g, px, py, qx, qy = (((x_powers @ c) * y_powers).sum(axis=1) for c in polynomials)
     step = np.column_stack([f * qy - g * py, g * px - f * qx]) / (px * qy - py * qx)[:, None]
     return np.hypot(f, g), step
+
+
+def _sum_of_magnitudes(polynomials: list[np.ndarray], points: np.ndarray) -> np.ndarray:
+    """(n,) Σ |c| (1 + |x|)^i (1 + |y|)^j of dense polynomials: that much can cancel at each point."""
+    x_powers, y_powers = ((1.0 + np.abs(axis[:, None])) ** np.arange(len(polynomials[0])) for axis in points.T)
+    total: np.ndarray = sum(((x_powers @ np.abs(c)) * y_powers).sum(axis=1) for c in polynomials)
+    return total
 
 
 def _dense_coefficients(terms: Terms, highest: int) -> np.ndarray:

@@ -8,9 +8,11 @@ through the walls of the channel; above the energy of a maximum at which one of 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from engine.potentials.forms.critical_points import NO_POINTS
 from engine.potentials.forms.form import Velocity
 
 Downhill = Callable[[float, float], Velocity]
@@ -31,14 +33,16 @@ _RELATIVE_ERROR = 1e-9
 _FIRST_MOVE = 1e-6
 # Limit on the steps of all descents of a potential, some seconds. Most potentials need about 1 000.
 _MOST_STEPS = 50_000
+# Limit on the steps of one method along one line. Most lines need 200, those through long narrow valleys about 2 000.
+_MOST_STEPS_ALONG_LINE = 5_000
 
 
 class DescentError(ValueError):
     """A line of steepest descent whose end is not found."""
 
 
-def leads_out_of_well(downhill: Downhill, hessian: Hessian, points: np.ndarray) -> np.ndarray:
-    """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well at the origin.
+def leads_out_of_well(downhill: Downhill, hessian: Hessian, points: np.ndarray, poles: np.ndarray = NO_POINTS) -> np.ndarray:
+    """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well or pole at the origin.
 
     Parameters
     ----------
@@ -47,14 +51,17 @@ def leads_out_of_well(downhill: Downhill, hessian: Hessian, points: np.ndarray) 
     hessian
         (V_xx, V_xy, V_yy) as a function of x and y.
     points
-        All critical points, including the origin exactly; if the origin is not a minimum, no point leads out.
+        All critical points, including the origin exactly; if it is neither a minimum nor a pole, no point leads out.
+    poles
+        (m, 2) points at which V is not defined, where lines of steepest descent can end.
     """
+    count, points = len(points), np.concatenate([points, poles])
     origin = np.flatnonzero(np.hypot(*points.T) == 0.0)
     vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(points[:, 0], points[:, 1]))
     with np.errstate(over="ignore", invalid="ignore"):
         # An overflow gives NaN or infinity, which is not a saddle.
         determinant = vxx * vyy - vxy**2
-    flags = np.zeros(len(points), bool)
+    flags = np.zeros(count, bool)
     if not origin.size or determinant[origin[0]] <= 0.0 or vxx[origin[0]] <= 0.0 or len(points) < 2:
         return flags
     descent = _Descent(downhill, 1.0, hessian, points, determinant < 0.0)
@@ -98,7 +105,8 @@ class _Descent:
         self.length = float(distance[distance > 0.0].min())
         self.flow = downhill(self.length, sign)
         self.far = _FAR * float(distance.max())
-        hessians = np.moveaxis(np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)]), 0, -1)
+        entries = np.array([np.broadcast_to(e, len(points)) for e in hessian(*points.T)])
+        hessians = np.moveaxis(np.nan_to_num(entries), 0, -1)
         self.unstable_directions = [np.linalg.eigh([[a, b], [b, c]])[1][:, 0] for a, b, c in hessians]
         self.steps_left = _MOST_STEPS
 
@@ -119,20 +127,40 @@ class _Descent:
 
     def _descend(self, saddle: int, side: float) -> int:
         """Index of the critical point where one line of steepest descent ends, −1 for infinity."""
-        from scipy.integrate import LSODA
+        from scipy.integrate import LSODA, Radau
 
+        # LSODA may not notice that a long narrow valley needs an implicit method. Radau is one, but takes ten times as long, and
+        # needs a steady flow: after a very slow start its steps would become shorter than the rounding error of the time.
+        for method, flow in ((LSODA, self.flow), (Radau, self._steady_flow)):
+            end = self._follow(method, flow, saddle, side)
+            if end is not None:
+                return end
+        x, y = self.points[saddle]
+        raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")
+
+    def _steady_flow(self, time: float, place: np.ndarray) -> np.ndarray:
+        """The flow at speed 1."""
+        velocity = self.flow(time, place)
+        steady: np.ndarray = velocity / np.hypot(*velocity)
+        return steady
+
+    def _follow(self, method: Any, flow: Velocity, saddle: int, side: float) -> int | None:
+        """As `_descend`, along a flow and by one of SciPy's methods; None if it does not come to the end."""
         others = np.delete(np.arange(len(self.points)), saddle)
         distance = _START_DISTANCE * self._distances(self.points[saddle])[others].min()
         start = self.points[saddle] + side * distance * self.unstable_directions[saddle]
         # Without an end in time: a descent takes longer the flatter its valley is.
         tolerances = {"rtol": _RELATIVE_ERROR, "atol": _RELATIVE_ERROR * self.length}
         # LSODA's own first step can be too long for its corrector to converge.
-        first_step = _FIRST_MOVE * distance / np.hypot(*self.flow(0.0, start))
-        line = LSODA(self.flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
-        while self.steps_left and line.status == "running":
+        first_step = _FIRST_MOVE * distance / np.hypot(*flow(0.0, start))
+        line = method(flow, 0.0, start, np.inf, first_step=first_step, **tolerances)
+        last = max(self.steps_left - _MOST_STEPS_ALONG_LINE, 0)
+        while self.steps_left > last and line.status == "running":
             self.steps_left -= 1
             before = line.y
             line.step()
+            if line.status == "failed":
+                break
             distances = self._distances(line.y)[others]
             if distances.min() < _END_DISTANCE * self.length:
                 return int(others[np.argmin(distances)])
@@ -140,8 +168,7 @@ class _Descent:
             # At rest, it is at a critical point that is not in the list, beyond the region where they were searched.
             if np.hypot(*line.y) > self.far or moved < _AT_REST * self.length:
                 return -1
-        x, y = self.points[saddle]
-        raise DescentError(f"The end of a line of steepest descent from the saddle ({x:.6g}, {y:.6g}) is not found.")
+        return None
 
     def _distances(self, place: np.ndarray) -> np.ndarray:
         distances: np.ndarray = np.hypot(*(self.points - place).T)

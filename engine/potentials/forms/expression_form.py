@@ -9,31 +9,45 @@ from typing import Any
 
 import numpy as np
 
-from engine.expressions.calculus import derivative, substitute
+from engine.expressions.calculus import derivative, replace_parts, substitute
 from engine.expressions.graph import Graph, evaluate, make_graph
-from engine.expressions.nodes import Expression, Sum, X, Y, from_terms, linear_combination, number
+from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
 from engine.expressions.parity import EVEN, parity
+from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
+from engine.polynomials import Terms
+from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError, UndecidedError
 from engine.potentials.forms.form import Velocity
+from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.forms.stationary_points import find_stationary_points
 from engine.potentials.well_units import nearest_power_of_two
+from engine.results.arrays import read_only
 
-MOST_CONVOLUTIONS = 80
+MOST_CONVOLUTIONS = 120
 """Largest number of products and functions in the graph of gradient and Hessian: their cost and compile time grow with it."""
 
 _ORDERS = ((2, 0), (1, 1), (0, 2))
 # Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
 _MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
 _RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])
+# Values of an expression that count as 0, relative to its curvature.
+_ZERO = 1e-14
 # A rotation that is none by 2π/n: by 1 radian.
 _ANY_ROTATION = 1.0
 
 
 @dataclass(frozen=True)
 class ExpressionForm:
-    """V as an expression; a parameter of it has its value."""
+    """V as an expression; a parameter of it has its value.
+
+    What is divided by, or of which a root or a logarithm is taken, is written from its zero, as (x − 1)² + y² instead of
+    x² − 2x + y² + 1, which would lose digits near it.
+    """
 
     expression: Expression
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
 
     def __repr__(self) -> str:
         return f"ExpressionForm({self.text})"
@@ -109,16 +123,17 @@ class ExpressionForm:
 
     def find_critical_points(self) -> np.ndarray:
         """(n, 2) those of a region, see `engine.potentials.forms.stationary_points`."""
-        return find_stationary_points(self.value, self.gradient, self.hessian)
+        return find_stationary_points(self.value, self.gradient, self.hessian, self.singular_points)
 
     def are_complete(self, _points: np.ndarray, _index_sum: int) -> bool:
         """The sum of the indices is checked where they are found."""
         return True
 
     def downhill(self, length: float, sign: float) -> Velocity:
-        """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`."""
-        vxx, vxy, vyy = self.hessian(0.0, 0.0)
-        steep = length * max(abs(vxx), abs(vxy), abs(vyy))
+        """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`, or V on average around a centre."""
+        curvature = np.abs(self.hessian(0.0, 0.0)).max()
+        around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
+        steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
             slope = np.array(self.gradient(*place))
@@ -126,6 +141,21 @@ class ExpressionForm:
             return slower
 
         return velocity
+
+    @cached_property
+    def singular_points(self) -> np.ndarray:
+        """(n, 2) isolated zeros of what is divided by, or of which a root or a logarithm is taken."""
+        found = [_isolated_zeros(base) for base in singular_bases(self.expression)]
+        return read_only(np.concatenate([NO_POINTS, *found]))
+
+    def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
+        """Whether what is divided by, or of which a root or a logarithm is taken, has both signs."""
+        signs = (np.sign(self._evaluate(x, y, base)[0]) for base in singular_bases(self.expression))
+        return any(bool((each > 0.0).any() and (each < 0.0).any()) for each in signs)
+
+    def plus(self, terms: Terms) -> ExpressionForm:
+        """A sum."""
+        return ExpressionForm(linear_combination([(1.0, self.expression), (1.0, from_terms(terms))]))
 
     def scaled(self, length: float, energy: float) -> ExpressionForm:
         """V(length x, length y) / energy."""
@@ -168,11 +198,43 @@ class ExpressionForm:
         return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
-        """Size, and whether V is smooth at the origin."""
+        """Size."""
         used = make_graph((*self._slopes, *self._curvatures))[0].convolutions
         if used > MOST_CONVOLUTIONS:
             return f"The second derivatives of V have {used} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
-        values = [self.value(0.0, 0.0), *self.gradient(0.0, 0.0), *self.hessian(0.0, 0.0)]
-        if not np.isfinite(values).all():
-            return "V, its slope or its curvature is not defined at the origin, where the well is to be."
         return None
+
+
+def _from_zeros(expression: Expression) -> dict[Expression, Expression]:
+    """The polynomials with one isolated zero, away from the origin, among the singular bases, and what they are from there."""
+    found = {}
+    for base in singular_bases(expression):
+        terms, zeros = as_terms(base), _isolated_zeros(base)
+        if terms is not None and len(zeros) == 1 and zeros.any():
+            found[base] = _shifted(terms, *zeros[0].tolist())
+    return found
+
+
+def _shifted(terms: Terms, a: float, b: float) -> Expression:
+    """A polynomial as Σ c (x − a)^k (y − b)^m, without the rounding errors of zero coefficients."""
+    moved: dict[tuple[int, int], float] = {}
+    for (i, j), c in terms.items():
+        for k, m in np.ndindex(i + 1, j + 1):
+            moved[k, m] = moved.get((k, m), 0.0) + c * math.comb(i, k) * math.comb(j, m) * a ** (i - k) * b ** (j - m)
+    largest = max(abs(c) * math.hypot(a, b) ** (k + m) for (k, m), c in moved.items())
+    kept = {(k, m): c for (k, m), c in moved.items() if abs(c) * math.hypot(a, b) ** (k + m) > _ZERO * largest}
+    x, y = (linear_combination([(1.0, axis), (-place, number(1.0))]) for axis, place in ((X, a), (Y, b)))
+    return linear_combination((c, multiply(power(x, k), power(y, m))) for (k, m), c in kept.items())
+
+
+def _isolated_zeros(expression: Expression) -> np.ndarray:
+    """(n, 2) the stationary points of an expression at which it is 0, to rounding; none where these form a curve."""
+    terms = as_terms(expression)
+    form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
+    try:
+        points = form.find_critical_points()
+    except (NotIsolatedError, UndecidedError):
+        return NO_POINTS
+    size = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0) * (1.0 + (points**2).sum(axis=1))
+    zeros: np.ndarray = points[np.abs(form.value(*points.T)) <= _ZERO * size]
+    return zeros

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from engine.polynomials import Terms
 from engine.taylor.source.recurrence import Definition
 
 Velocity = Callable[[float, np.ndarray], np.ndarray]
@@ -60,6 +61,16 @@ class Form(Protocol):
 
     def downhill(self, length: float, sign: float) -> Velocity:
         """The flow along −sign ∇V, whose lines are those of steepest descent; it is slower where V is steep at large scales."""
+
+    @property
+    def singular_points(self) -> np.ndarray:
+        """(n, 2) isolated points at which V is not defined: poles, zeros of the argument of a logarithm or a root."""
+
+    def is_singular_on_curve(self, x: np.ndarray, y: np.ndarray) -> bool:
+        """Whether V is not defined along a curve between points of any shape, as 1/x is not."""
+
+    def plus(self, terms: Terms) -> Form:
+        """V and a polynomial {(i, j): c}."""
 
     def scaled(self, length: float, energy: float) -> Form:
         """V(length x, length y) / energy."""

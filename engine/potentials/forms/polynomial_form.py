@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, degree, derivative, evaluate, largest_coefficients, substitute
-from engine.potentials.forms.critical_points import characteristic_length, find_critical_points, winding_number
+from engine.potentials.forms.critical_points import NO_POINTS, characteristic_length, find_critical_points, winding_number
 from engine.potentials.forms.form import Velocity
 from engine.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
 
@@ -135,6 +135,20 @@ class PolynomialForm:
             return slower
 
         return velocity
+
+    @property
+    def singular_points(self) -> np.ndarray:
+        """None."""
+        return NO_POINTS
+
+    def is_singular_on_curve(self, _x: np.ndarray, _y: np.ndarray) -> bool:
+        """False."""
+        return False
+
+    def plus(self, terms: Terms) -> PolynomialForm:
+        """The terms added, those that cancel left out."""
+        added = self.coefficients | {powers: self.coefficients.get(powers, 0.0) + c for powers, c in terms.items()}
+        return checked_form(tuple((i, j, c) for (i, j), c in added.items() if c))
 
     def scaled(self, length: float, energy: float) -> PolynomialForm:
         """V(length x, length y) / energy."""

@@ -8,11 +8,12 @@ region (Poincaré–Hopf theorem); if it is not, a finer grid follows. The regio
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError, winding_number
+from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError, UndecidedError, winding_number
 
 Gradient = Callable[[Any, Any], tuple[Any, Any]]
 Value = Callable[[Any, Any], Any]
@@ -39,16 +40,21 @@ _ROUNDING = 1e-13
 # Largest ratio of the singular values of a Hessian that counts as singular.
 _SINGULAR_RATIO = 1e-6
 
+# Radius of the circles around poles, in units of the distance of the nearest critical point or of another pole.
+_POLE_CIRCLE = 1e-3
+
 _ON_A_CURVE = "the slope vanishes along a curve"
 
 
-def find_stationary_points(value: Value, gradient: Gradient, hessian: Hessian) -> np.ndarray:
+def find_stationary_points(value: Value, gradient: Gradient, hessian: Hessian, poles: np.ndarray = NO_POINTS) -> np.ndarray:
     """(n, 2) the points with ∇V = 0 in the region, each once; the origin, if it is one, is exactly (0, 0).
 
     Parameters
     ----------
     value, gradient, hessian
         V, (V_x, V_y) and (V_xx, V_xy, V_yy) as functions of arrays x and y.
+    poles
+        (m, 2) points at which V is not defined; each has an index, too.
 
     Raises
     ------
@@ -66,14 +72,20 @@ def find_stationary_points(value: Value, gradient: Gradient, hessian: Hessian) -
     problem = ""
     for factor in _FACTORS:
         try:
-            return _find_within(value, gradient, hessian, near, nearest, factor)
+            return _find_within(value, gradient, hessian, poles, near, nearest, factor)
         except UndecidedError as error:
             problem = problem or str(error)
     raise UndecidedError(problem)
 
 
 def _find_within(
-    value: Value, gradient: Gradient, hessian: Hessian, near: np.ndarray, nearest: float, factor: float
+    value: Value,
+    gradient: Gradient,
+    hessian: Hessian,
+    poles: np.ndarray,
+    near: np.ndarray,
+    nearest: float,
+    factor: float,
 ) -> np.ndarray:
     """The points within a multiple of the distance of the nearest one."""
     radius = factor * nearest
@@ -81,6 +93,7 @@ def _find_within(
     x, y = (radius * _rings(np.linspace(0.02, 1.0, 50))).T
     if not np.isfinite([value(x, y), *gradient(x, y)]).all():
         raise UndecidedError(f"V is not defined everywhere {region}.")
+    at_poles = _index_sum_of_poles(gradient, poles[np.hypot(*poles.T) < radius], nearest)
     for side in _SIDES:
         axis = np.linspace(-radius, radius, side)
         grid = np.stack(np.meshgrid(axis, axis), axis=-1).reshape(-1, 2)
@@ -90,7 +103,7 @@ def _find_within(
             if _are_degenerate(hessian, points):
                 raise NotIsolatedError(_ON_A_CURVE)
             raise UndecidedError(f"V has more than {MOST_POINTS} critical points {region}.")
-        if winding_number(gradient, radius) == _index_sum(hessian, points):
+        if winding_number(gradient, radius) == _index_sum(hessian, points) + at_poles:
             return points
     raise UndecidedError(
         f"Not all critical points {region} were found: the sum of their indices is wrong (Poincaré–Hopf theorem)."
@@ -115,9 +128,9 @@ def _newton(gradient: Gradient, hessian: Hessian, points: np.ndarray, radius: fl
             length = np.where(still, 0.0, np.hypot(*step.T))
             distance = np.hypot(*points.T)
             converged = length <= _CONVERGED * np.maximum(distance, _ZERO)
-            roots.append(points[converged & (distance <= radius)])
-            continues = ~converged & np.isfinite(length)
-            points = points[continues] - step[continues]
+            following = points - np.where(still[:, None], 0.0, step)
+            roots.append(following[converged & (distance <= radius)])
+            points = following[~converged & np.isfinite(length)]
     return np.concatenate(roots)
 
 
@@ -138,6 +151,21 @@ def _are_degenerate(hessian: Hessian, points: np.ndarray) -> bool:
     vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(*points.T))
     largest, smallest = np.linalg.svd(np.array([[vxx, vxy], [vxy, vyy]]).transpose(2, 0, 1), compute_uv=False).T
     return bool(np.mean(smallest <= _SINGULAR_RATIO * largest) > 0.5)
+
+
+def _index_sum_of_poles(gradient: Gradient, poles: np.ndarray, nearest: float) -> int:
+    """Turns of the gradient on small circles around poles."""
+    apart = np.hypot(*(poles[:, None] - poles).T)
+    radius = _POLE_CIRCLE * min(nearest, apart[apart > 0.0].min(initial=np.inf))
+    turns = 0
+    for pole_x, pole_y in poles.tolist():
+        turns += winding_number(partial(_gradient_from, gradient, pole_x, pole_y), radius)
+    return turns
+
+
+def _gradient_from(gradient: Gradient, x0: float, y0: float, x: np.ndarray, y: np.ndarray) -> tuple[Any, Any]:
+    """The gradient at a place relative to another one."""
+    return gradient(x0 + x, y0 + y)
 
 
 def _index_sum(hessian: Hessian, points: np.ndarray) -> int:

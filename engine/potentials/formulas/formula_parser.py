@@ -11,7 +11,8 @@ code. The grammar is:
     base     := number | letter | "x" | "y" | "r" | "(" sum ")" | function "(" sum ")" | "√" base      r = √(x² + y²)
     function := "exp" | "log" | "ln" | "sin" | "cos" | "sqrt"
 
-A letter, with or without one digit, is a parameter whose value is substituted: "a", "B", "k1", "α".
+A letter, with or without one digit, is a parameter whose value is substituted: "a", "B", "k1", "α". Clauses can follow, see
+`engine.potentials.formulas.outcome_clauses`.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from __future__ import annotations
 import reprlib
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 
 from engine.expressions.nodes import Expression
 from engine.expressions.text import monomial
@@ -47,6 +49,7 @@ from engine.potentials.formulas.formula_values import (
     raised,
 )
 from engine.potentials.formulas.formula_writer import by_degree, write_formula
+from engine.potentials.formulas.outcome_clauses import Part, split_clauses
 from engine.potentials.potential import Potential
 from engine.validation import checked_number, checks_types
 
@@ -74,7 +77,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         log() or ln(), sin(), cos(), sqrt() and round brackets. "2x²y" is a product; "−", "·" and "×" are operators too; "V ="
         in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
         Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py",
-        "vx" and "vy" are refused.
+        "vx" and "vy" are refused. After it there may be what orbits end at: "; centre the Moon (0, 0) 0.0045", a body with a
+        name, its place and its radius of collision, and "; escape 10", an escape radius.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters
@@ -106,26 +110,41 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     """
     if len(text) > LONGEST_TEXT:
         raise FormulaError(LONGEST_TEXT, f"the text has {len(text)} characters; at most {LONGEST_TEXT} characters are allowed")
-    expanded = _Parser(text, _exact_values(text, parameters or {})).parse()
+    values, clauses = _exact_values(text, parameters or {}), split_clauses(text)
+    expanded = _Parser(clauses.formula, values).parse()
     if isinstance(expanded, Expression):
         potential = Potential(name or "", expanded)
-        return potential if name else Potential(write_formula(potential), expanded)
-    _check_expanded(expanded)
-    terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
-    potential = Potential(name or "", terms)
-    return potential if name else Potential(write_formula(potential), terms)
+    else:
+        _check_expanded(expanded)
+        terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
+        potential = Potential(name or "", terms)
+    centres, escape_radius = clauses.evaluate(partial(_number_of, values=values))
+    return Potential(name or write_formula(potential), potential.form, centres=centres, escape_radius=escape_radius)
 
 
 def formula_letters(text: str) -> tuple[str, ...]:
     """The letters of a formula that are coefficients, in the order of the text; FormulaError if a character is not understood."""
     letters: dict[str, int] = {}
-    for token in tokenize(text):
-        if token.kind == "letter":
-            letters.setdefault(token.text, token.position)
+    clauses = split_clauses(text)
+    for part in (Part(clauses.formula, 0), *clauses.numbers):
+        for token in tokenize(part.text):
+            if token.kind == "letter":
+                letters.setdefault(token.text, part.position + token.position)
     if len(letters) > MOST_LETTERS:
         problem = f"the formula has {len(letters)} letters for coefficients; at most {MOST_LETTERS} are allowed"
         raise FormulaError(list(letters.values())[MOST_LETTERS], problem)
     return tuple(letters)
+
+
+def _number_of(part: Part, values: Mapping[str, Fraction]) -> float:
+    """The value of a number of a clause; FormulaError if it is none."""
+    try:
+        number = constant_of(_Parser(part.text, values).parse())
+    except FormulaError as error:
+        raise FormulaError(part.position + error.position, error.problem) from None
+    if number is None:
+        raise FormulaError(part.position, "a place or a radius must be a number, without x and y")
+    return float(number)
 
 
 def checked_letter_value(name: str, value: float) -> float:

@@ -43,7 +43,7 @@ class FormulaError(ValueError):
 
     def __init__(self, position: int, problem: str) -> None:
         super().__init__(f"formula, character {position + 1}: {problem}")
-        self.position = position
+        self.position, self.problem = position, problem
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import Any
 from engine.expressions.text import join_signed, monomial_term, write_expression
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.polynomial_form import PolynomialForm
+from engine.potentials.formulas.outcome_clauses import write_clauses
 from engine.potentials.potential import Potential
 from engine.validation import checked_count, checks_types
 
@@ -17,7 +18,7 @@ _MOST_DIGITS = 17
 
 @checks_types(potential=Potential)
 def write_formula(potential: Potential, digits: int | None = None) -> str:
-    """A potential as plain text, such as "x²/2 + y²/2 − x²y²".
+    """A potential as plain text, such as "x²/2 + y²/2 − x²y²", in a rotating frame the effective one.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ def write_formula(potential: Potential, digits: int | None = None) -> str:
     """
     if digits is not None:
         digits = checked_count("digits", digits, 1, _MOST_DIGITS)
-    return _write_form(potential.form, digits)
+    return _write_form(potential.form, digits) + write_clauses(potential.centres, potential.escape_radius)
 
 
 @functools.singledispatch

@@ -149,12 +149,12 @@ def sample_deviations(
     for begin in range(0, times.size - 1, _CHUNK):
         execution.raise_if_cancelled()
         end = min(begin + _CHUNK, times.size - 1)
-        matrices = _transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
+        matrices = transition_matrices(kernels, path[:, begin:end], np.diff(times[begin : end + 1]))
         _apply(matrices, w, sali[begin + 1 : end + 1], stretch[begin + 1 : end + 1])
     return sali, 0.5 * np.cumsum(np.log(stretch))
 
 
-def _transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
+def transition_matrices(kernels: ModuleType, path: np.ndarray, durations: np.ndarray) -> np.ndarray:
     """(4, 4, n): row, column and interval of the linearised flow over each interval."""
     n = durations.size
     state = [np.ascontiguousarray(row) for row in path]

@@ -1,19 +1,32 @@
-"""Events within one step, located in its dense output: exits through a channel and crossings of the section y = 0.
+"""Events within one step, located in its dense output: exits and crossings of the section y = 0.
 
-An exit curve is a row of numbers. In coordinates u outward and q across (90° counterclockwise from u), from the saddle along its
-unstable direction or from the chord of the orbit along its normal, the Lyapunov orbit is the graph u = f(s), s = (q − middle)/
-half_width ∈ [−1, 1], f a polynomial. Beyond its ends, which lie on the zero-velocity curve, it is continued by straight lines
-through the forbidden region, up to |s| = reach.
-A closed channel is a short straight line across its saddle, in the forbidden region but for the saddle itself.
+An exit is where an orbit ends: the curve or line across a channel, the edge of the disc around a centre, or the escape circle.
+It is a row of numbers, the first of which are the same for all shapes. A disc has its centre as origin and its radius as half
+width, the escape circle its radius as half width.
+
+In a well that does not rotate an exit is the path of a Lyapunov orbit. In coordinates u outward and q across (90°
+counterclockwise from u), from the saddle along its unstable direction or from the chord of the orbit along its normal, it is
+the graph u = f(s), s = (q − middle)/half_width ∈ [−1, 1], f a polynomial. Beyond its ends, which lie on the zero-velocity
+curve, it is continued by straight lines through the forbidden region, up to |s| = reach. A closed channel is a short straight
+line across its saddle, in the forbidden region but for the saddle itself. In a rotating frame an exit is a line u = c + a q²,
+parallel to the ridge of V at the saddle.
+
+An orbit that has crossed the path of a Lyapunov orbit does not return. All other exits can be passed and left again within a
+step, which is examined as a whole.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from engine.taylor.jit.decorator import subroutine
 
-# Columns of an exit curve.
-ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, OPEN = range(8)
+# Columns of an exit.
+ORIGIN_X, ORIGIN_Y, OUTWARD_X, OUTWARD_Y, BEARING_X, BEARING_Y, REACH, SHAPE = range(8)
 MIDDLE, HALF_WIDTH, SLOPE_LOW, SLOPE_HIGH, COEFFICIENTS = range(8, 13)
+
+# Values of the column SHAPE; orbits cannot return from a CURVE.
+CLOSED, CURVE, LINE, DISC, CIRCLE = range(5)
 
 # Fates of an orbit other than the number, 1 or more, of the channel through which it escaped.
 BOUNDED, NOT_COMPUTED, FAILED = 0, -3, -4
@@ -37,7 +50,10 @@ def position_across(x, y, curve):
 
 @subroutine
 def exit_distance(x, y, curve):
-    """Distance of (x, y) from an exit curve along the channel: positive outside, negative inside."""
+    """Distance of (x, y) from an exit, along the channel or the radius: positive beyond, negative inside."""
+    if curve[SHAPE] >= DISC:
+        radius = np.sqrt((x - curve[ORIGIN_X]) ** 2 + (y - curve[ORIGIN_Y]) ** 2)
+        return curve[HALF_WIDTH] - radius if curve[SHAPE] == DISC else radius - curve[HALF_WIDTH]
     u = curve[OUTWARD_X] * (x - curve[ORIGIN_X]) + curve[OUTWARD_Y] * (y - curve[ORIGIN_Y])
     s = position_across(x, y, curve)
     beyond = 0.0
@@ -57,17 +73,19 @@ def exit_distance(x, y, curve):
 
 @subroutine
 def crossed_exit(x0, y0, x1, y1, curves, gates):
-    """The channel whose exit an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none."""
+    """The number of the exit that an orbit crosses outward in a step from (x0, y0) to (x1, y1), 0 for none."""
     for k in range(curves.shape[0]):
-        if gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
-            continue
         curve = curves[k]
+        if curve[SHAPE] < DISC and gates[k, 0] * x1 + gates[k, 1] * y1 <= gates[k, 2]:
+            continue
         after = exit_distance(x1, y1, curve)
         if not after > 0.0:
             continue
         before = exit_distance(x0, y0, curve)
         if before > 0.0:
             continue
+        if curve[SHAPE] >= DISC:
+            return k + 1
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
         if abs(s0 + (s1 - s0) * before / (before - after)) <= curve[REACH]:
@@ -188,9 +206,65 @@ def append_crossings(x_jet, y_jet, i, direction, begin, duration, crossings, fou
 
 
 @subroutine
+def _exit_rate(x_jet, y_jet, i, tau, curve):
+    """What has the sign of the time derivative of the distance from a line, a disc or the escape circle."""
+    vx = series_slope(x_jet, i, tau)
+    vy = series_slope(y_jet, i, tau)
+    if curve[SHAPE] == LINE:
+        s = min(max(position_across(series_value(x_jet, i, tau), series_value(y_jet, i, tau), curve), -1.0), 1.0)
+        slope = (curve[COEFFICIENTS + 1] + 4.0 * s * curve[COEFFICIENTS + 2]) / curve[HALF_WIDTH]
+        along = curve[OUTWARD_X] * vx + curve[OUTWARD_Y] * vy
+        return along - slope * (curve[OUTWARD_X] * vy - curve[OUTWARD_Y] * vx)
+    rate = (series_value(x_jet, i, tau) - curve[ORIGIN_X]) * vx + (series_value(y_jet, i, tau) - curve[ORIGIN_Y]) * vy
+    return -rate if curve[SHAPE] == DISC else rate
+
+
+@subroutine
+def _find_excursion(x_jet, y_jet, i, duration, curve):
+    """When, within `duration` of the start of a step, an orbit is furthest beyond an exit to which it returns; −1 for never."""
+    low = 0.0
+    rate_low = _exit_rate(x_jet, y_jet, i, low, curve)
+    for part in range(1, _PARTS + 1):
+        high = duration * part / _PARTS
+        rate_high = _exit_rate(x_jet, y_jet, i, high, curve)
+        if rate_low > 0.0 and rate_high <= 0.0:
+            before, after = low, high
+            for _ in range(_ROOT_ITERATIONS):
+                middle = 0.5 * (before + after)
+                if middle <= before or middle >= after:
+                    break
+                if _exit_rate(x_jet, y_jet, i, middle, curve) > 0.0:
+                    before = middle
+                else:
+                    after = middle
+            if _is_beyond(series_value(x_jet, i, before), series_value(y_jet, i, before), curve):
+                return before
+        low, rate_low = high, rate_high
+    return -1.0
+
+
+@subroutine
+def _is_beyond(x, y, curve):
+    """Whether a point is beyond an exit, and within the reach of a line."""
+    return exit_distance(x, y, curve) > 0.0 and (curve[SHAPE] >= DISC or abs(position_across(x, y, curve)) <= curve[REACH])
+
+
+@subroutine
+def passed_exit(x_jet, y_jet, i, duration, curves):
+    """The number of the exit that an orbit passes and leaves again within `duration` of the start of a step, 0 for none."""
+    for k in range(curves.shape[0]):
+        if curves[k, SHAPE] >= LINE and _find_excursion(x_jet, y_jet, i, duration, curves[k]) >= 0.0:
+            return k + 1
+    return 0
+
+
+@subroutine
 def find_exit_time(x_jet, y_jet, i, duration, curve):
-    """Time from the start of a step that ends outside to the crossing of the exit curve, by the Illinois method."""
+    """Time from the start of a step to the crossing of an exit in it, by the Illinois method."""
     low, high = 0.0, duration
+    if curve[SHAPE] >= LINE:
+        excursion = _find_excursion(x_jet, y_jet, i, duration, curve)
+        high = excursion if excursion >= 0.0 else duration
     at_low = exit_distance(series_value(x_jet, i, low), series_value(y_jet, i, low), curve)
     at_high = exit_distance(series_value(x_jet, i, high), series_value(y_jet, i, high), curve)
     if at_low >= 0.0:

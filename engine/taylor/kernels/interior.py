@@ -14,11 +14,13 @@ import numpy as np
 
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_potential_slopes
-from engine.taylor.kernels.events import BEARING_X, BEARING_Y, OPEN, exit_distance, position_across
+from engine.taylor.kernels.events import BEARING_X, BEARING_Y, CLOSED, SHAPE, exit_distance, position_across
 
 # Lengths and energies are in units of the well. At the shortest step the path has reached a minimum.
 _LONGEST_STEP, _SHORTEST_STEP = 1.0 / 32.0, 1e-6
 _MOST_STEPS = 10_000
+# Far from the exits steps grow with the distance, by this factor.
+_FAR_SHARE = 0.25
 # The path descends at this angle to the gradient, so that it leaves symmetry lines, which can end at saddles.
 _COS, _SIN = np.cos(0.1), np.sin(0.1)
 # Smallest decrease of V in a step, relative to that along the gradient.
@@ -29,6 +31,8 @@ _ENERGY_MARGIN = 1e-12
 _NO_SLOPE = 1e-9
 # Parts of a line to the origin.
 _PIECES = 32
+# Points at the edge of a disc at the origin.
+_EDGE_POINTS = 64
 
 
 @subroutine
@@ -75,21 +79,27 @@ def _polynomial_is_below(polynomial, x, y, level):
 @subroutine
 def _expression_slopes(generated, x, y):
     """V, V_x and V_y."""
-    address, coefficients = generated
+    address, coefficients, _ = generated
     return call_potential_slopes(address, coefficients, x, y)
 
 
 @subroutine
 def _expression_is_below(generated, x, y, level):
-    """Whether V on the line from the origin to (x, y) is at most a level: all Bernstein coefficients of a cubic on each part."""
-    value, slope_x, slope_y = _expression_slopes(generated, 0.0, 0.0)
-    end = value + (slope_x * x + slope_y * y) / (3.0 * _PIECES)
+    """Whether V on the line from the well to (x, y) is at most a level: all Bernstein coefficients of a cubic on each part.
+
+    The line begins at the origin, or at the edge of the disc around a centre at the origin.
+    """
+    _, _, hole = generated
+    first = hole / max(hole, np.sqrt(x * x + y * y)) if hole > 0.0 else 0.0
+    part = (1.0 - first) / _PIECES
+    value, slope_x, slope_y = _expression_slopes(generated, first * x, first * y)
+    end = value + (slope_x * x + slope_y * y) * part / 3.0
     if not (value <= level and end <= level):
         return False
     for piece in range(1, _PIECES + 1):
-        t = piece / _PIECES
+        t = first + piece * part
         value, slope_x, slope_y = _expression_slopes(generated, t * x, t * y)
-        rise = (slope_x * x + slope_y * y) / (3.0 * _PIECES)
+        rise = (slope_x * x + slope_y * y) * part / 3.0
         if not (value <= level and value - rise <= level and (piece == _PIECES or value + rise <= level)):
             return False
     return True
@@ -101,7 +111,7 @@ def _crosses_exits(x0, y0, x1, y1, curves):
     odd = False
     for k in range(curves.shape[0]):
         curve = curves[k]
-        if curve[OPEN] == 0.0:
+        if curve[SHAPE] == CLOSED:
             continue
         s0 = position_across(x0, y0, curve)
         s1 = position_across(x1, y1, curve)
@@ -140,7 +150,7 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
             return odd ^ _crosses_exits(x, y, 0.0, 0.0, curves)
         direction_x = -(_COS * slope_x - _SIN * slope_y) / slope
         direction_y = -(_SIN * slope_x + _COS * slope_y) / slope
-        step = min(2.0 * step, _LONGEST_STEP)
+        step = min(2.0 * step, _LONGEST_STEP * max(1.0, _FAR_SHARE * (abs(x) + abs(y))))
         while step > _SHORTEST_STEP:
             below, _, _ = slopes(potential, x + step * direction_x, y + step * direction_y)
             if below < value - _DECREASE * step * slope:
@@ -155,10 +165,9 @@ def _is_outside(slopes, is_below, potential, x, y, energy, curves, bottom):
 
 
 @subroutine
-def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row):
+def _find_outside(slopes, is_below, potential, x, y, energy, curves, curve_row, bottom):
     """(n,) the channel whose saddle is nearest in direction for each point outside, 0 inside and in the forbidden region."""
     channels = np.zeros(x.shape[0], np.int8)
-    bottom, _, _ = slopes(potential, 0.0, 0.0)
     for i in range(x.shape[0]):
         row = curves[curve_row[i]]
         value, _, _ = slopes(potential, x[i], y[i])
@@ -182,11 +191,18 @@ def find_outside_polynomial(powers, coefficients, bernstein, x, y, energy, curve
     curves (rows, channels, columns); curve_row (n,).
     """
     polynomial = (powers, coefficients, bernstein, np.zeros((3, bernstein.shape[0])))
-    return _find_outside(_polynomial_slopes, _polynomial_is_below, polynomial, x, y, energy, curves, curve_row)
+    bottom, _, _ = _polynomial_slopes(polynomial, 0.0, 0.0)
+    return _find_outside(_polynomial_slopes, _polynomial_is_below, polynomial, x, y, energy, curves, curve_row, bottom)
 
 
 @kernel
-def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row):
-    """`_find_outside` for an expression."""
-    generated = (potential_slopes, coefficients)
-    return _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row)
+def find_outside(potential_slopes, coefficients, x, y, energy, curves, curve_row, hole):
+    """`_find_outside` for an expression; hole: radius of the disc around a centre at the origin, 0.0 for a well there."""
+    generated = (potential_slopes, coefficients, hole)
+    # A path that is below all of the edge of the disc does not lead to it any more.
+    bottom = np.inf
+    for k in range(_EDGE_POINTS):
+        angle = 2.0 * np.pi * k / _EDGE_POINTS
+        value, _, _ = _expression_slopes(generated, hole * np.cos(angle), hole * np.sin(angle))
+        bottom = min(bottom, value)
+    return _find_outside(_expression_slopes, _expression_is_below, generated, x, y, energy, curves, curve_row, bottom)

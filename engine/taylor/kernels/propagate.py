@@ -17,16 +17,18 @@ from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import (
     BOUNDED,
+    CLOSED,
     FAILED,
     NOT_COMPUTED,
-    OPEN,
+    SHAPE,
     count_upward_crossings,
     crossed_exit,
     find_exit_time,
+    passed_exit,
     series_slope,
     series_value,
 )
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, NEAR, OVERSHOOT
 from engine.taylor.source.series import ORDER
 
 VECTOR = 8
@@ -46,9 +48,10 @@ class Exits(NamedTuple):
     Attributes
     ----------
     gates
-        (channels, 3) g_x, g_y, g: beyond the line g_x x + g_y y = g an orbit may be outside; the same for all energies.
+        (exits, 3) g_x, g_y, g, the same for all energies: beyond the line g_x x + g_y y = g an orbit may be outside; of a disc or
+        the escape circle its centre and its radius.
     curves
-        (energies, channels, columns) exit curves, see `engine.taylor.kernels.events`.
+        (energies, exits, columns) exits, see `engine.taylor.kernels.events`.
     curve_row
         (n,) the row of `curves` for each orbit.
     """
@@ -72,7 +75,7 @@ class Orbits(NamedTuple):
     last_crossings
         (n,) those between `t` and t_max, for bounded orbits.
     fate
-        (n,) int8: the channel of an orbit that escaped, BOUNDED, NOT_COMPUTED or FAILED.
+        (n,) int8: the number of the exit at which an orbit ended, BOUNDED, NOT_COMPUTED or FAILED.
     pending
         (n,) uint8: set to 0 when an orbit has escaped, failed or reached the horizon.
     """
@@ -140,6 +143,10 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
                 continue
             j = lane_orbit[i]
             ends, channel, failed, has_events = _judge_step(flag[i], now, new, i, final, exits, j)
+            if flag[i] & NEAR != 0 and not ends:
+                channel = _passes_exit(jets, coefficients, now, i, new[5, i], exits.curves[exits.curve_row[j]])
+                ends = channel > 0
+                has_events = has_events or ends
             if ends:
                 _store_orbit(now, i, crossed, orbits, j)
                 orbits.pending[j] = 0
@@ -175,11 +182,23 @@ def _judge_step(flags, now, new, i, final, exits, orbit):
     failed = not (np.isfinite(new[0, i]) and np.isfinite(new[1, i]) and new[5, i] > 0.0)
     late = flags & OVERSHOOT != 0
     channel = 0
-    if not late and flags & GATE != 0:
+    if not late and flags & (GATE | NEAR) != 0:
         channel = crossed_exit(now[0, i], now[1, i], new[0, i], new[1, i], exits.curves[exits.curve_row[orbit]], exits.gates)
     ends = late or channel > 0 or failed
     has_events = channel > 0 or (late and final) or (not late and flags & HIDDEN != 0)
     return ends, channel, failed, has_events and not failed
+
+
+@subroutine
+def _passes_exit(jets, coefficients, now, i, h, curves):
+    """The number of the exit that the orbit of lane i passes and leaves again within the step of size h, 0 for none."""
+    start = np.zeros((4, 1))
+    for c in range(4):
+        start[c, 0] = now[c, i]
+    x_jet = np.zeros((ORDER + 1, 1))
+    y_jet = np.zeros((ORDER + 1, 1))
+    call_jets(jets, coefficients, 1, start[0], start[1], start[2], start[3], x_jet, y_jet)
+    return passed_exit(x_jet, y_jet, 0, h, curves)
 
 
 @subroutine
@@ -237,6 +256,8 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         if channel == 0:
             x_end, y_end = series_value(x_jet, i, h), series_value(y_jet, i, h)
             channel = crossed_exit(start[0, i], start[1, i], x_end, y_end, curves, exits.gates)
+            if channel == 0:
+                channel = passed_exit(x_jet, y_jet, i, h, curves)
         # The whole step decides, so that the escape time is the same to the bit for every horizon.
         tau = find_exit_time(x_jet, y_jet, i, h, curves[channel - 1]) if channel > 0 else h
         if channel == 0 or orbits.t[j] + tau > horizon:
@@ -251,4 +272,4 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[j, 2] = series_slope(x_jet, i, tau)
         orbits.state[j, 3] = series_slope(y_jet, i, tau)
         # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
-        orbits.fate[j] = BOUNDED if curves[channel - 1, OPEN] == 0.0 else channel
+        orbits.fate[j] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel

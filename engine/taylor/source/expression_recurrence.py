@@ -10,20 +10,33 @@ al. 2016, The Parameterization Method for Invariant Manifolds, chapter 2). Coeff
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 from engine.expressions.calculus import derivative
 from engine.expressions.graph import Graph, Node, make_graph
 from engine.expressions.nodes import Expression
 from engine.taylor.source.elementary import FUNCTIONS, power_of
-from engine.taylor.source.series import ORDER, Hessian, PointFunctions, Series, cauchy, sum_of_products, total
+from engine.taylor.source.series import (
+    ORDER,
+    Hessian,
+    PointFunctions,
+    Series,
+    Setting,
+    add_coriolis,
+    cauchy,
+    half_square,
+    sum_of_products,
+    total,
+)
 from engine.taylor.source.straight_line import StraightLine, Value
+
+_ROOT = 0.5
 
 _HESSIAN = ((0, 0), (0, 1), (1, 1))
 
-# Steps are 13 % shorter than those of polynomials, and the energy of orbits in logarithmic wells is held 20 times better: to
-# 1e-11 over 1e4 time units.
-_CAUTION = 10.0
+# Norms of the last coefficients above this would give steps too short to change t.
+_LARGEST_NORM = 1e180
 
 Entry = tuple[str, int]
 """(graph, place): an entry of the table with a number of one of the graphs of a structure."""
@@ -32,7 +45,7 @@ Entry = tuple[str, int]
 class ExpressionStructure(NamedTuple):
     """The graphs of V, of its gradient, of gradient and Hessian, and of V and its gradient."""
 
-    channels: int
+    setting: Setting
     value: Graph
     motion: Graph
     variations: Graph
@@ -45,20 +58,25 @@ class ExpressionStructure(NamedTuple):
         return True
 
     @property
-    def caution(self) -> float:
-        """Coefficients of functions with singularities fall more slowly than those of polynomials."""
-        return _CAUTION
+    def has_many_scales(self) -> bool:
+        """As near singularities."""
+        return True
+
+    @property
+    def largest_norm(self) -> float:
+        """A step of 1e-12, as near centres."""
+        return _LARGEST_NORM
 
     def orbit(self, program: StraightLine) -> tuple[Series, Series]:
         """The recurrence of the gradient."""
-        recurrence = _Recurrence(program, "motion", self.motion)
+        recurrence = _Recurrence(program, "motion", self.motion, self.setting.rotates)
         for k in range(ORDER - 1):
             recurrence.advance(k)
         return recurrence.x, recurrence.y
 
     def hessian(self, program: StraightLine) -> Hessian:
         """The recurrence of gradient and Hessian, of which the latter enters the variational equations."""
-        recurrence = _Recurrence(program, "variations", self.variations)
+        recurrence = _Recurrence(program, "variations", self.variations, self.setting.rotates)
 
         def entry(index: int) -> Callable[[int], Value]:
             def coefficient(k: int) -> Value:
@@ -84,10 +102,10 @@ class ExpressionStructure(NamedTuple):
         return [numbers[graph][place] for graph, place in entries]
 
 
-def structure_of_expression(expression: Expression, channels: int) -> ExpressionStructure:
+def structure_of_expression(expression: Expression, setting: Setting) -> ExpressionStructure:
     """The structure of a potential that is an expression."""
     zero = tuple(not _second(expression, axes).key[1] for axes in _HESSIAN)
-    return ExpressionStructure(channels, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
+    return ExpressionStructure(setting, zero=zero, **{name: graph for name, (graph, _) in _graphs(expression).items()})
 
 
 def _second(expression: Expression, axes: tuple[int, int]) -> Expression:
@@ -107,8 +125,8 @@ def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]
 class _Recurrence:
     """The series of all nodes of a graph along an orbit."""
 
-    def __init__(self, program: StraightLine, name: str, graph: Graph) -> None:
-        self.program, self.name, self.graph = program, name, graph
+    def __init__(self, program: StraightLine, name: str, graph: Graph, rotates: bool) -> None:
+        self.program, self.name, self.graph, self.rotates = program, name, graph, rotates
         self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
         self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
         # k u_k of the arguments of functions, and 1 / u_0 of those of powers and logarithms.
@@ -129,6 +147,8 @@ class _Recurrence:
                 self.series[index].append(self._first(node) if k == 0 else _RULES[node.kind](self, index, node, k))
         for axis, slope in zip((self.x, self.y), self.graph.results, strict=False):
             axis.append(self.series[slope][k] * (-1.0 / ((k + 1) * (k + 2))))
+        if self.rotates:
+            add_coriolis(self.program, self.x, self.y)
 
     def _first(self, node: Node) -> Value:
         return _value_of(self.program, self.name, node, {index: series[0] for index, series in enumerate(self.series) if series})
@@ -150,6 +170,10 @@ class _Recurrence:
         pairs = zip(node.operands, node.numbers, strict=False)
         return total(self.program, (self.program.entry((self.name, place)) * self.series[each][k] for each, place in pairs))
 
+    def shift(self, _index: int, node: Node, k: int) -> Value:
+        """(u + c)_k = u_k for k > 0."""
+        return self.series[node.operands[0]][k]
+
     def product(self, _index: int, node: Node, k: int) -> Value:
         """(u v)_k = Σ u_j v_(k − j)."""
         left, right = (self.series[operand] for operand in node.operands)
@@ -158,10 +182,25 @@ class _Recurrence:
 
     def power(self, index: int, node: Node, k: int) -> Value:
         """k u_0 (u^a)_k = Σ (a (k − j) − j) u_(k − j) w_j over j = 0 … k − 1, from u w' = a u' w."""
-        (argument,), a = node.operands, node.exponent
+        (argument, *higher), a = node.operands, node.exponent
+        if a == _ROOT:
+            return self._root(index, argument, k)
+        if higher or a == -1.0:
+            return self._quotient(index, higher, argument, k)
         u, w = self.series[argument], self.series[index]
         pairs = [((a * (k - j) - j) * u[k - j], w[j]) for j in range(k) if a * (k - j) != j]
         return total(self.program, iter([sum_of_products(pairs)] if pairs else [])) * (1.0 / k) * self.reciprocal(argument)
+
+    def _root(self, index: int, argument: int, k: int) -> Value:
+        """2 w_0 w_k = u_k − Σ w_j w_(k − j) over j = 1 … k − 1, from w² = u; a quarter of the work for other powers."""
+        half, lower = 0.5 * self.series[argument][k], list(islice(half_square(self.series[index], k), k // 2))
+        return (half - sum_of_products(lower) if lower else half) * self.reciprocal(index)
+
+    def _quotient(self, index: int, numerator: list[int], argument: int, k: int) -> Value:
+        """u_0 w_k = v_k − Σ u_(k − j) w_j over j = 0 … k − 1, from u w = v, which is 1 if it is not given; half the work."""
+        u, w = self.series[argument], self.series[index]
+        lower = sum_of_products((u[k - j], w[j]) for j in range(k))
+        return (self.series[numerator[0]][k] - lower if numerator else -1.0 * lower) * self.reciprocal(argument)
 
     def exponential(self, index: int, node: Node, k: int) -> Value:
         """k (exp u)_k = Σ j u_j w_(k − j) over j = 1 … k."""
@@ -189,6 +228,7 @@ class _Recurrence:
 
 _RULES: Mapping[str, Callable[[_Recurrence, int, Node, int], Value]] = {
     "sum": _Recurrence.add,
+    "shift": _Recurrence.shift,
     "product": _Recurrence.product,
     "power": _Recurrence.power,
     "exp": _Recurrence.exponential,
@@ -212,6 +252,8 @@ def _value_of(program: StraightLine, name: str, node: Node, values: Mapping[int,
             parts = (program.entry((name, place)) * values[each] for each, place in zip(node.operands, places, strict=False))
             constant = [program.entry((name, place)) for place in node.numbers[len(node.operands) :]]
             return total(program, iter([*constant, *parts]))
+        case "shift":
+            return values[node.operands[0]] + program.entry((name, node.numbers[0]))
         case "product":
             left, right = node.operands
             return values[left] * values[right]

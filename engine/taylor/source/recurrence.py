@@ -25,28 +25,28 @@ from __future__ import annotations
 import functools
 import hashlib
 import math
-import operator
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from engine.expressions.nodes import Expression
-from engine.polynomials import derivative
 from engine.results.arrays import read_only
-from engine.taylor.source.cauchy_products import (
-    Monomial,
-    Polynomial,
-    Product,
-    X,
-    Y,
-    find_difference,
-    find_scales,
-    plan_products,
-)
 from engine.taylor.source.expression_recurrence import structure_of_expression
-from engine.taylor.source.series import ORDER, Hessian, PointFunctions, Series, Structure, cauchy, half_square, total
+from engine.taylor.source.polynomial_recurrence import Terms, structure_of_polynomial
+from engine.taylor.source.series import (
+    LONGEST_STEP,
+    ORDER,
+    REACH,
+    ROTATION,
+    Series,
+    Setting,
+    Structure,
+    add_coriolis,
+    cauchy,
+    total,
+)
 from engine.taylor.source.straight_line import TABLE, StraightLine, Value, where
 
 TOLERANCE = 3e-15
@@ -54,39 +54,28 @@ TOLERANCE = 3e-15
 
 # Weight of the third coefficient from the end in the step size, found together with ORDER and TOLERANCE by `benchmarks/steps.py`.
 _EARLIER_WEIGHT = 0.3
+# Steps for which it was found; and by what the norm is multiplied where frequencies differ, as coefficients of functions with
+# singularities fall more slowly than those of polynomials: the largest power of 10 with which energies are held to 1e-11.
+_USUAL_STEP, _CAUTION = 0.35, 10.0
+# Added to the speed that limits a step.
+_LEAST_SPEED = 1.0 / 16.0
+_ORDERS_OF_NORM = 3
 
-LONGEST_STEP = 1.0
-"""Upper limit of a step, for motion near rest or nearly linear in time; well within the convergence of the series."""
-
-REACH = 3.0
-"""Radius of a disc that contains all steps of orbits inside the exits of a well of size 1."""
-
-# Norms of the last coefficients above this would give steps too short to change t; an orbit with these, or with NaN, has failed.
-_LARGEST_NORM = 1e90
+# Of σ − σ^k, 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
+_LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
 
 LANES = 64
 """Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
 
-HIDDEN, GATE, OVERSHOOT = 1, 2, 4
-"""Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon."""
+HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
+"""Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon; it may pass an
+exit although its end is not beyond."""
 
 # Cached structures, 3 MB each with eight terms of degree 8.
 _STRUCTURES = 32
 
-Terms = tuple[tuple[int, int, float], ...]
-
 Definition = Terms | Expression
 """What V is: ((i, j, c), …) of V = Σ c x^i y^j in any order, or an expression."""
-
-Entry = tuple[Monomial, float, float]
-"""(term, multiple, factor): an entry of the table with the value factor · multiple · (the coefficient of a term of V)."""
-
-# A derivative of V: for each of its monomials the term of V that it comes from, and the factor from differentiating it.
-_Derivative = Mapping[Monomial, tuple[Monomial, float]]
-
-# Derivatives of V with respect to x (0) and y (1): those in the equations of motion, and in the variational equations too.
-_GRADIENT, _HESSIAN = ((0,), (1,)), ((0, 0), (0, 1), (1, 1))
-_GRADIENT_AND_HESSIAN = (*_GRADIENT, *_HESSIAN)
 
 
 class GeneratedFunction(NamedTuple):
@@ -137,187 +126,81 @@ class GeneratedCode:
     def __hash__(self) -> int:
         return hash(self.digest)
 
-    def tabulate(self, definition: Definition) -> np.ndarray:
+    def tabulate(self, definition: Definition, rotation: float = 0.0) -> np.ndarray:
         """(m,) the table of a potential, which every function takes as its first argument; read-only."""
-        return read_only(np.array(self.structure.tabulate(definition, self.entries), dtype=float))
+        own = [entry for entry in self.entries if entry != ROTATION]
+        values = {**dict(zip(own, self.structure.tabulate(definition, own), strict=True)), ROTATION: 2.0 * rotation}
+        return read_only(np.array([values[entry] for entry in self.entries], dtype=float))
 
 
-_Difference = tuple[Product, Product] | None
-
-
-class _PolynomialStructure(NamedTuple):
-    """What generated code depends on; the differences are those of `_find_difference` without and with the Hessian."""
-
-    monomials: tuple[Monomial, ...]
-    channels: int
-    can_hide: bool
-    difference: _Difference
-    tangent_difference: _Difference
-
-    @property
-    def caution(self) -> float:
-        """`TOLERANCE` is tuned to polynomials."""
-        return 1.0
-
-    def orbit(self, program: StraightLine) -> tuple[Series, Series]:
-        """The recurrence with the products for the equations of motion only."""
-        series = _recurrence(program, self.monomials, _plan(self.monomials, _GRADIENT), self.difference)
-        return series[X], series[Y]
-
-    def hessian(self, program: StraightLine) -> Hessian:
-        """Each entry from the products for the variational equations, too."""
-        products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
-        scales = find_scales(products)
-        series = _recurrence(program, self.monomials, products, self.tangent_difference)
-
-        def entry(axes: tuple[int, int]) -> Callable[[int], Value]:
-            derived = _formed_derivative(self.monomials, axes, self.tangent_difference)
-            return lambda k: _linear_combination(program, derived, series, scales, k, -1.0)
-
-        return {axes: (entry(axes), bool(_derivative(self.monomials, axes))) for axes in _HESSIAN}
-
-    def point_functions(self) -> PointFunctions:
-        """V alone."""
-        return {"potential_value": lambda program: {"value": self._value(program)}}
-
-    def _value(self, program: StraightLine) -> Value:
-        x, y = program.input("x"), program.input("y")
-        parts = (functools.reduce(operator.mul, [x] * i + [y] * j, program.entry(((i, j), 1.0, 1.0))) for i, j in self.monomials)
-        return total(program, parts)
-
-    def tabulate(self, terms: Any, entries: Sequence[Entry]) -> list[float]:
-        """Multiples of the coefficients."""
-        polynomial = _sorted(terms)
-        return [factor * (polynomial[term] * multiple) for term, multiple, factor in entries]
-
-
-def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
-    """The derivative of V with respect to each of `axes` in turn."""
-    factors: Polynomial = dict.fromkeys(monomials, 1)
-    for axis in axes:
-        factors = derivative(factors, axis)
-    return {(i, j): ((i + axes.count(0), j + axes.count(1)), factor) for (i, j), factor in factors.items()}
-
-
-@functools.lru_cache(maxsize=2 * _STRUCTURES)
-def _plan(monomials: tuple[Monomial, ...], derivatives: tuple[tuple[int, ...], ...]) -> tuple[Product, ...]:
-    """The products from which the series of some derivatives of V are formed."""
-    return tuple(plan_products(frozenset(m for axes in derivatives for m in _derivative(monomials, axes))))
-
-
-def _find_difference(polynomial: Polynomial, derivatives: tuple[tuple[int, ...], ...]) -> _Difference:
-    """Two squares of which only the difference enters some derivatives of V."""
-    derived = [_derivative(polynomial, axes) for axes in derivatives]
-    values = [{m: factor * polynomial[term] for m, (term, factor) in each.items()} for each in derived]
-    return find_difference(_plan(tuple(polynomial), derivatives), values)
-
-
-def _formed_derivative(monomials: Iterable[Monomial], axes: Sequence[int], difference: _Difference) -> _Derivative:
-    """A derivative of V as a sum over the series that are formed: that of a difference stands for both squares."""
-    contained = difference[1].monomial if difference is not None else None
-    return {m: origin for m, origin in _derivative(monomials, axes).items() if m != contained}
-
-
-def _linear_combination(
-    program: StraightLine,
-    derived: _Derivative,
-    series: Mapping[Monomial, Series],
-    scales: Mapping[Monomial, float],
-    k: int,
-    factor: float,
-) -> Value:
-    """factor · (coefficient k of the series of a derivative of V).
-
-    Low degrees last: a sum of two products contracts into the product that comes first, and the linear term is known earliest.
-    """
-
-    def part(m: Monomial) -> Value:
-        term, multiple = derived[m]
-        entry = program.entry((term, multiple / scales[m], factor))
-        return entry * series[m][k] if sum(m) > 0 else entry
-
-    return total(program, (part(m) for m in reversed(list(derived)) if sum(m) > 0 or k == 0))
-
-
-def _recurrence(
-    program: StraightLine, monomials: tuple[Monomial, ...], products: Sequence[Product], difference: _Difference
-) -> dict[Monomial, list[Value]]:
-    """The series of x and y to ORDER and of `products`, where a difference of two squares is stored as the first of them."""
-    series: dict[Monomial, list[Value]] = {
-        X: [program.input("x0"), program.input("x1")],
-        Y: [program.input("y0"), program.input("y1")],
-        **{p.monomial: [] for p in products},
-    }
-    forces = {axis: _formed_derivative(monomials, axes, difference) for axis, axes in zip((X, Y), _GRADIENT, strict=True)}
-    scales = find_scales(products)
-    if difference is not None:
-        one, other = difference
-        products = [p for p in products if p not in difference]
-    for k in range(ORDER - 1):
-        for p in products:
-            series[p.monomial].append(cauchy(series[p.left], series[p.right], k))
-        if difference is not None:
-            subtracted = (left * right for left, right in half_square(series[other.left], k))
-            square = cauchy(series[one.left], series[one.left], k)
-            series[one.monomial].append(functools.reduce(operator.sub, subtracted, square))
-        for axis, force in forces.items():
-            series[axis].append(_linear_combination(program, force, series, scales, k, -1.0 / ((k + 1) * (k + 2))))
-    return series
-
-
-def _step_size(program: StraightLine, x: Series, y: Series, caution: float) -> Value:
+def step_size(program: StraightLine, x: Series, y: Series, structure: Structure) -> Value:
     """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
 
     The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
+    This suits a well of one frequency. Where frequencies differ from place to place, a first step h sets units of time and
+    length in which the second is found: h is 0.35, and the orbit moves by 1 or so in a unit of time. So steps and their errors
+    shrink near bodies. NaN marks an orbit that has broken down. For series of order 35 it is the 32nd power.
+    """
+    last, before, earlier = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
+    shift = (len(x) - _ORDERS_OF_NORM - 1).bit_length() - 1
+    norm = last + before + _EARLIER_WEIGHT * earlier
+    h = _root_of_tolerance(program, norm, shift)
+    longest: Value | float = LONGEST_STEP
+    if structure.has_many_scales:
+        unit = h * (1.0 / _USUAL_STEP)
+        scaled = _EARLIER_WEIGHT * earlier + unit * (before + unit * last)
+        speed, force = abs(x[1]) + abs(y[1]), abs(x[2]) + abs(y[2])
+        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled, speed + unit * force), shift)
+        longest = 1.0 / (speed + program.apply("sqrt", force) + _LEAST_SPEED)
+    h = where(h < longest, h, longest)
+    return where(norm < structure.largest_norm, h, math.nan)
+
+
+def _root_of_tolerance(program: StraightLine, norm: Value, shift: int) -> Value:
+    """(tolerance / norm)^(1/16) for a shift of 4, up to 6 % too large, the same on every machine; a shift of 5 is the 32nd root.
+
     The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa, and a shift by four
-    divides that by 16: h is up to 6 % too long, the same on every machine. NaN marks an orbit that has broken down. The norm is
-    multiplied by `caution`.
+    divides that by 16.
     """
     one = 1023 << 52
-    last, before, earlier = (abs(x[k]) + abs(y[k]) for k in (ORDER, ORDER - 1, ORDER - 2))
-    norm = last + before + _EARLIER_WEIGHT * earlier
-    if caution != 1.0:
-        norm = caution * norm
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
-    h = program.apply("double_of", (one + one // 16) - (bits >> 4))
-    h = where(h < LONGEST_STEP, h, LONGEST_STEP)
-    return where(norm < _LARGEST_NORM, h, math.nan)
+    return program.apply("double_of", (one + (one >> shift)) - (bits >> shift))
 
 
-def _horner(series: Series, h: Value) -> tuple[Value, Value]:
+def horner(series: Series, h: Value) -> tuple[Value, Value]:
     """The value and the time derivative of a series at h."""
-    slope = series[ORDER]
-    value = slope * h + series[ORDER - 1]
-    for k in reversed(range(ORDER - 1)):
+    slope = series[-1]
+    value = slope * h + series[-2]
+    for coefficient in reversed(series[:-2]):
         slope = slope * h + value
-        value = value * h + series[k]
+        value = value * h + coefficient
     return value, slope
 
 
-def crossings_can_hide(terms: Polynomial, reach: float = REACH) -> bool:
-    """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show.
+def _bend(series: Series, h: Value) -> Value:
+    """½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
+    twice = h + h
+    bound = abs(series[ORDER])
+    for k in reversed(range(2, ORDER)):
+        bound = bound * twice + abs(series[k])
+    return bound * twice * h
 
-    Where V is even in y, ÿ = −g(x, y) y. With g below (π/h)² two zeros of y are further than h apart, by Sturm's comparison
-    with the oscillator of that frequency. Terms of g that are nowhere positive cannot raise it.
-    """
-    force = derivative(terms, 1)
-    if any(j % 2 == 0 for _, j in force):
-        return True
-    bound = sum(abs(c) * reach ** (i + j - 1) for (i, j), c in force.items() if c > 0 or i % 2 == 1)
-    return bound >= (math.pi / LONGEST_STEP) ** 2
+
+def _sag(series: Series, h: Value) -> Value:
+    """A bound of the distance of a coordinate from its chord over a step, Σ_{k≥2} max(σ − σ^k) |x_k| h^k with 0 ≤ σ ≤ 1."""
+    bound = abs(series[ORDER])
+    for k in reversed(range(2, ORDER)):
+        bound = bound * h + (_LARGEST_SAGS.get(k, 1.0) * abs(series[k]))
+    return bound * h * h
 
 
 def _hidden_crossings(y: Series, end: Value, h: Value) -> Value:
     """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
 
-    bound = ½ Σ_{k≥2} |y_k| (2h)^k is at least h · max|ẏ − ẏ(0)|, and at least twice the distance of y from its chord.
-    So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both ends lie on one side, further off than bound/2.
+    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both
+    ends lie on one side, further off than bound/2.
     """
-    twice = h + h
-    bound = abs(y[ORDER])
-    for k in reversed(range(2, ORDER)):
-        bound = bound * twice + abs(y[k])
-    bound = bound * twice * h
+    bound = _bend(y, h)
     near, far = abs(y[0]), abs(end)
     near = where(near < far, near, far)
     return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (near > 0.5 * bound), 0, HIDDEN))
@@ -365,14 +248,11 @@ def _start_in(lanes: str) -> dict[str, str]:
 def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_step", table)
     x, y = structure.orbit(program)
-    h = _step_size(program, x, y, structure.caution)
-    x_end, px_end = _horner(x, h)
-    y_end, py_end = _horner(y, h)
+    h = step_size(program, x, y, structure)
+    x_end, px_end = horner(x, h)
+    y_end, py_end = horner(y, h)
     hidden = _hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
-    gate, columns = program.constant(0), {"x": 0, "y": 1, "": 2}
-    for k in range(structure.channels):
-        g_x, g_y, g = (program.input(f"g{k}{name}") for name in columns)
-        gate = where(g_x * x_end + g_y * y_end > g, GATE, gate)
+    gates, gate = _gates(structure.setting, program, (x, y), (x_end, y_end), h)
     t_end = program.input("t0") + h
     flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
@@ -381,16 +261,49 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
         **{f"new[{row}, i] =": value for row, value in enumerate((x_end, y_end, px_end, py_end, t_end, h))},
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
-    gates = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(structure.channels) for name, column in columns.items()}
     return _lane_loop(program, arguments, {**_start_in("now"), "t0": "now[4, i]"}, writes, gates, rows=("now", "new"))
+
+
+def _gates(
+    setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
+) -> tuple[dict[str, str], Value]:
+    """The inputs of the gates with their sources, and GATE, NEAR or 0.
+
+    A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a centre its place and the radius of its disc,
+    for the escape circle 0, 0 and its radius.
+    """
+    count = setting.channels + setting.discs + setting.ring
+    columns = {"x": 0, "y": 1, "": 2}
+    sources = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(count) for name, column in columns.items()}
+    flag = program.constant(0)
+    rows = [[program.input(f"g{k}{name}") for name in columns] for k in range(count)]
+    lines, circles = rows[: setting.channels], rows[setting.channels :]
+    if not setting.needs_whole_steps:
+        for g_x, g_y, g in lines:
+            flag = where(g_x * end[0] + g_y * end[1] > g, GATE, flag)
+        return sources, flag
+    start = series[0][0], series[1][0]
+    # No point of the step is further than this from its chord.
+    bend = _sag(series[0], h) + _sag(series[1], h)
+    half_chord = 0.5 * (abs(end[0] - start[0]) + abs(end[1] - start[1]))
+    for g_x, g_y, g in lines:
+        for x, y in (start, end):
+            flag = where(g_x * x + g_y * y + bend > g, NEAR, flag)
+    for k, (c_x, c_y, radius) in enumerate(circles):
+        squares = [(x - c_x) * (x - c_x) + (y - c_y) * (y - c_y) for x, y in (start, end)]
+        is_disc = k < setting.discs
+        edge = radius + (bend + half_chord) if is_disc else where(radius > bend, radius - bend, 0.0)
+        for square in squares:
+            flag = where(square < edge * edge if is_disc else square > edge * edge, NEAR, flag)
+    return sources, flag
 
 
 def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_fixed_step", table)
     x, y = structure.orbit(program)
     h = program.input("h")
-    x_end, px_end = _horner(x, h)
-    y_end, py_end = _horner(y, h)
+    x_end, px_end = horner(x, h)
+    y_end, py_end = horner(y, h)
     # The sums are left to the loop: within the program they make it up to a sixth slower.
     writes: dict[str, Value | str] = {
         "sums[0, i] +=": "weight*(x0*x0)",
@@ -419,8 +332,10 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
         for w, row in ((u, ((0, 0), (0, 1))), (v, ((0, 1), (1, 1)))):
             parts = (cauchy(second[axes], other, k) for axes, other in zip(row, (u, v), strict=True) if hessian[axes][1])
             w.append(total(program, parts) * (1.0 / ((k + 1) * (k + 2))))
+        if structure.setting.rotates:
+            add_coriolis(program, u, v)
     h = program.input("h")
-    (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
+    (u_end, pu_end), (v_end, pv_end) = horner(u, h), horner(v, h)
     reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
     writes = {"wx[i] =": u_end, "wy[i] =": v_end, "wpx[i] =": pu_end, "wpy[i] =": pv_end}
     return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)
@@ -441,7 +356,15 @@ def _point_function(name: str, append: Callable[[StraightLine], Mapping[str, Val
     return GeneratedFunction(name, program, "\n".join(lines) + "\n")
 
 
-def generate_code(definition: Definition, channels: int, reach: float = REACH) -> GeneratedCode:
+def generate_code(
+    definition: Definition,
+    channels: int,
+    reach: float = REACH,
+    *,
+    discs: int = 0,
+    ring: bool = False,
+    rotates: bool = False,
+) -> GeneratedCode:
     """The generated functions for a potential, the same object for all potentials of the same structure.
 
     Parameters
@@ -449,33 +372,32 @@ def generate_code(definition: Definition, channels: int, reach: float = REACH) -
     definition
         ((i, j, c), …) of V = Σ c x^i y^j, in any order, or an expression.
     channels
-        How many gates ``step`` tests, 0 or more.
+        How many lines ``step`` tests, 0 or more.
     reach
         Radius about the origin, above 0, that contains all orbits.
+    discs
+        How many discs around centres ``step`` tests, 0 or more.
+    ring
+        Whether it tests a circle around the origin.
+    rotates
+        Whether the frame rotates.
     """
-    return _generate(_find_structure(definition, channels, reach))
+    return _generate(_find_structure(definition, Setting(channels, discs, ring, rotates), reach))
 
 
 @functools.singledispatch
-def _find_structure(definition: Any, channels: int, reach: float) -> Structure:
+def _find_structure(definition: Any, setting: Setting, reach: float) -> Structure:
     raise TypeError(f"definition={definition!r}: must be terms or an expression")
 
 
 @_find_structure.register(tuple)
-def _of_polynomial(terms: Terms, channels: int, reach: float) -> Structure:
-    polynomial = _sorted(terms)
-    differences = (_find_difference(polynomial, derivatives) for derivatives in (_GRADIENT, _GRADIENT_AND_HESSIAN))
-    return _PolynomialStructure(tuple(polynomial), channels, crossings_can_hide(polynomial, reach), *differences)
+def _of_polynomial(terms: Terms, setting: Setting, reach: float) -> Structure:
+    return structure_of_polynomial(terms, setting, reach)
 
 
 @_find_structure.register(Expression)
-def _of_expression(expression: Expression, channels: int, _reach: float) -> Structure:
-    return structure_of_expression(expression, channels)
-
-
-def _sorted(terms: Terms) -> dict[Monomial, float]:
-    """The terms by degree, so that the order in which they are given does not matter."""
-    return {(i, j): c for i, j, c in sorted(terms, key=lambda term: (term[0] + term[1], -term[0]))}
+def _of_expression(expression: Expression, setting: Setting, _reach: float) -> Structure:
+    return structure_of_expression(expression, setting)
 
 
 @functools.lru_cache(maxsize=_STRUCTURES)

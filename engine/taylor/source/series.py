@@ -5,13 +5,21 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from engine.taylor.source.straight_line import StraightLine, Value
 
 ORDER = 19
 """Order of the series; with `TOLERANCE` the fastest tried that keeps the energy error well below 1e-11 over 1e5 time units."""
 
+LONGEST_STEP = 1.0
+"""Upper limit of a step, for motion near rest or nearly linear in time; well within the convergence of the series."""
+
+REACH = 3.0
+"""Radius of a disc that contains all steps of orbits inside the exits of a well of size 1."""
+
+ROTATION = "rotation"
+"""The entry of the table with 2Ω."""
 
 Series = Sequence[Value]
 
@@ -24,20 +32,50 @@ PointFunctions = Mapping[str, Callable[[StraightLine], Mapping[str, Value]]]
 """{name of a function: what appends it to a program with the inputs x and y, and returns its results by their names}."""
 
 
+class Setting(NamedTuple):
+    """What the generated code depends on besides V.
+
+    Attributes
+    ----------
+    channels
+        How many exits over saddles there are.
+    discs
+        How many centres there are, at whose discs orbits end.
+    ring
+        Whether orbits end at a circle around the origin.
+    rotates
+        Whether the frame rotates.
+    """
+
+    channels: int = 0
+    discs: int = 0
+    ring: bool = False
+    rotates: bool = False
+
+    @property
+    def needs_whole_steps(self) -> bool:
+        """Whether an orbit can pass an exit and return within a step; out of a well that does not rotate none returns."""
+        return self.discs > 0 or self.ring or self.rotates
+
+
 class Structure(Hashable, Protocol):
     """What the generated code of a potential depends on; hashable. For polynomials and for expressions there is one each."""
 
     @property
-    def channels(self) -> int:
-        """How many gates ``step`` tests."""
+    def setting(self) -> Setting:
+        """What it depends on besides V."""
 
     @property
     def can_hide(self) -> bool:
         """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show."""
 
     @property
-    def caution(self) -> float:
-        """By what the last coefficients are multiplied for the choice of the step size; at least 1."""
+    def has_many_scales(self) -> bool:
+        """Whether frequencies may differ by much from place to place."""
+
+    @property
+    def largest_norm(self) -> float:
+        """Norm of the last coefficients above which steps would be too short to change t; such an orbit fails, as with NaN."""
 
     def orbit(self, program: StraightLine) -> tuple[Series, Series]:
         """The series of x and y to `ORDER` from the inputs x0, x1, y0 and y1."""
@@ -56,6 +94,13 @@ def total(program: StraightLine, parts: Iterator[Value]) -> Value:
     """The sum from left to right, each part computed just before it is added; 0.0 for no parts."""
     first = next(parts, None)
     return program.constant(0.0) if first is None else functools.reduce(operator.add, parts, first)
+
+
+def add_coriolis(program: StraightLine, x: list[Value], y: list[Value]) -> None:
+    """Add 2Ωẏ and −2Ωẋ, integrated twice, to the last coefficients of the series of x and y, which do not contain them yet."""
+    k = len(x) - 1
+    twice = program.entry(ROTATION) * (1.0 / k)
+    x[k], y[k] = x[k] + twice * y[k - 1], y[k] - twice * x[k - 1]
 
 
 def sum_of_products(pairs: Iterable[tuple[Value, Value]]) -> Value:

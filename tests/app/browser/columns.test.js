@@ -19,6 +19,8 @@ const coding = {
     [0, 4],
   ]),
   first: 5,
+  ends: [0, 1, 2, 3],
+  words: [],
   leastCrossings: [0, 1, 2, 3, 11],
   undecided: 0,
   withoutOrbit: [2, 3],
@@ -35,6 +37,13 @@ test("outcomes, channels and classes of crossings have the codes of the server",
   assert.deepEqual([...new Uint8Array(columns.crossing_class[0].buffer)], [0, 5, 9])
   assert.deepEqual(columns.fate[0].shape, [1, 3])
   assert.deepEqual([columns.x, columns.y, columns.dw, columns.dh], [[-1], [-2], [2], [4]])
+})
+
+test("a collision has the code of its end and its words", () => {
+  const words = ["", "", "", "", "", "", "", "", "collides with a disc"]
+  const columns = pixelColumns({...coding, ends: [0, 1, 2, 8], words}, view, pixels, like, null)
+  assert.deepEqual([...new Uint8Array(columns.fate[0].buffer)], [0, 5, 13])
+  assert.deepEqual(columns.ends, [words])
 })
 
 test("pixels are compared with those of the other view at the same place", () => {

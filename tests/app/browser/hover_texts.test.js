@@ -2,9 +2,9 @@
 import assert from "node:assert/strict"
 import {test} from "node:test"
 
-import {coordinate, count, number, percent, pixelDetails} from "../../../app/browser/hover_texts.js"
+import {coordinate, count, fateName, number, percent, pixelDetails} from "../../../app/browser/hover_texts.js"
 
-const CODES = {bounded: 4, first: 5, firstCertificate: 10, ends: 9}
+const CODES = {bounded: 4, first: 5, firstCertificate: 10, ends: 9, channels: 8}
 const WORDS = {
   certificates: ["integrated", "enclosed"],
   characters: ["regular", "chaotic"],
@@ -58,6 +58,17 @@ test("a pixel that is compared has its end in the other view", () => {
   const layers = {difference: [Uint8Array.of(6, 5)]}
   assert.deepEqual(details(0, layers), ["enclosed", "other view: channel 1"])
   assert.deepEqual(details(0, layers, {trust: []}, {...other, x: [-2]}), ["enclosed"])
+})
+
+test("an end has the words of its map, also in the other view and backward in time", () => {
+  const ends = [["", "escapes through channel 2", "", "", "", "", "", "", "collides with a disc"]]
+  const names = WORDS.fates.slice(0, 5)
+  assert.equal(fateName(6, names, {ends}), "escapes through channel 2")
+  assert.equal(fateName(13, names, {ends}), "collides with a disc")
+  assert.equal(fateName(7, names, {ends}), "undecided")
+  const codes = {...CODES, ends: 14}
+  const columns = {maps: {...maps, ends, passage: [Uint8Array.of(0, 5 + 14 * 9 + 1)]}, doubts: {trust: []}, compared: other}
+  assert.ok(pixelDetails(1, columns, codes, WORDS).includes("backward in time it collides with a disc"))
 })
 
 test("an outcome that is no orbit has no details", () => {

@@ -10,8 +10,8 @@ const {lanes, order} = system.layout
 /** @param {Float64Array} rows @param {number} first @param {number} count */
 const read = (rows, first, count) =>
   Array.from({length: count}, (_, r) => Array.from(rows.subarray((first + r) * lanes, (first + r) * lanes + states.length)))
-const outward = (/** @type {number[]} */ [x, y, gate]) => ({outward: /** @type {[number, number]} */ ([x, y]), gate})
-integrator.prepare(system.layout.tolerance, horizon, gates.map(outward))
+const withGate = (/** @type {[number, number, number]} */ gate) => ({gate})
+integrator.prepare(system.layout.tolerance, horizon, gates.map(withGate))
 states.forEach((/** @type {number[]} */ state, /** @type {number} */ i) => {
   state.forEach((value, row) => {
     integrator.now.rows[(X + row) * lanes + i] = value

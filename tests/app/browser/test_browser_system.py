@@ -7,8 +7,10 @@ import threading
 import numpy as np
 
 from app.browser.browser_system import make_browser_system, system_key
-from engine import CASES, Plane, System, default_window
+from engine import CASES, Plane, Potential, System, default_window
 from engine.execution import Execution
+from engine.potentials.outcomes import Centre
+from engine.service import make_portable_system
 
 
 def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None:
@@ -23,3 +25,34 @@ def test_windows_between_tabulated_energies_are_nearly_default_windows() -> None
 def test_each_potential_has_its_key() -> None:
     systems = (System("I"), System("II"), System("I", parameters={"epsilon": 1.1}), System("typed", "x²+y²-x²y²"))
     assert len({system_key(system.potential) for system in systems}) == len(systems)
+
+
+def test_frames_centres_and_escape_radii_have_their_keys_and_names_of_potentials_none() -> None:
+    well = CASES["I"]
+    potentials = [
+        well,
+        # The same function in frames that rotate at different rates, and in opposite directions.
+        *(Potential("", well.terms, rotation=rotation) for rotation in (0.3, -0.3, 0.4)),
+        *(well.with_outcomes(centres, radius) for centres in ((), (Centre(0.1, 0.0, 0.01),)) for radius in (2.0, 3.0)),
+        well.with_outcomes([Centre(0.1, 0.0, 0.02)], 2.0),
+    ]
+    assert len(set(map(system_key, potentials))) == len(potentials)
+    assert system_key(Potential("another", well.terms)) == system_key(well)
+
+
+def test_windows_of_a_system_with_an_escape_radius_are_tabulated_up_to_the_highest_energy() -> None:
+    potential = CASES["I"].with_outcomes((), 3.0)
+    table = make_browser_system(potential, -0.5, 0.3, execution=Execution()).windows[Plane.X_PX.key]
+    energies, windows = table["energies"], table["windows"]
+    assert len(energies) == len(windows) > 5
+    assert energies[-1] == 0.3
+    window = default_window(potential, Plane.X_PX, 0.3)
+    assert windows[-1] == [window.x_low, window.x_high, window.ordinate_low, window.ordinate_high]
+
+
+def test_an_outcome_of_a_rotating_system_has_its_exit_and_no_mirror_image() -> None:
+    potential = CASES["III"].in_rotating_frame(0.1).with_outcomes([Centre(0.0, 0.0, 0.01)], 3.0)
+    data = make_portable_system(potential, 0.3).to_dict()
+    assert [each["shape"] for each in data["exits"]] == ["disc", "circle"]
+    assert data["mirror"] is None
+    assert CASES["III"].mirror_in_x

@@ -267,7 +267,7 @@ def test_a_click_on_a_curve_opens_the_nearest_energy(begin: Callable[..., Sessio
 def test_a_click_on_a_curve_against_a_parameter_opens_its_system(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
-    assert list(curves.against.options) == ["h", "ω1", "ω2", "ε"]
+    assert list(curves.against.options) == ["h", "ω1", "ω2", "ε", "Ω"]
     curves.against.value = "epsilon"
     curves.button.clicks += 1
     session.wait_for(lambda: len(curves.points.data["value"]) >= 2)

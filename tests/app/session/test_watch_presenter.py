@@ -10,6 +10,7 @@ import pytest
 
 from app.browser.ensemble_player import EnsemblePlayer
 from app.session.watch_presenter import WatchPresenter
+from app.state.system_review import review_catalogue_entry
 from app.state.view_state import Analysis, ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts
 from engine import CASES, Plane, compute_flux
@@ -42,6 +43,20 @@ def session(jobs: Jobs) -> Iterator[Session]:
     made = Session(jobs, starts=((0.1, 0.2), (0.3, 0.1)), chosen=1)
     yield made
     made.presenter.close()
+
+
+@pytest.mark.parametrize(
+    ("case", "missing"), [("III", set[str]()), ("Earth-Moon", {"tubes"}), ("Copenhagen", {"exits", "tubes"})]
+)
+def test_starts_are_offered_where_a_system_has_them(session: Session, case: str, missing: set[str]) -> None:
+    session.state.show_system(review_catalogue_entry(case))
+    assert set(StartsFrom) - set(session.player.places) == missing
+
+
+def test_starts_that_a_system_does_not_have_are_replaced(session: Session) -> None:
+    session.state.watched = WatchedStarts(StartsFrom.TUBES)
+    session.state.show_system(review_catalogue_entry("Earth-Moon"))
+    assert session.player.where == StartsFrom.WELL
 
 
 def test_the_player_has_the_choices_of_the_state(session: Session) -> None:

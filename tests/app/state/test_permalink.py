@@ -170,6 +170,12 @@ def test_a_case_without_an_energy_has_its_initial_energy() -> None:
     assert open_link({"case": "III"})[0].energy == 0.35
 
 
+def test_a_system_whose_bounded_orbits_are_all_integrated_has_a_short_time_unless_the_link_has_one() -> None:
+    assert open_link({"case": "Copenhagen"})[0].t_max == 1e3
+    assert open_link({"case": "Copenhagen", "t_max": "1e4"})[0].t_max == 1e4
+    assert open_link({"case": "III"})[0].t_max == 1e5
+
+
 def test_a_link_is_read_without_a_review() -> None:
     values, problems = read_link({"V": "no formula", "h": "-5", "t_max": "1e3"})
     assert (values, problems) == ({"formula": "no formula", "energy": -5.0, "t_max": 1e3}, [])

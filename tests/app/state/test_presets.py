@@ -129,6 +129,12 @@ def test_starts_are_in_the_window_and_allowed(preset: Preset) -> None:
         ("tangential", [1, 2, 3]),
         ("launch", [1, 2, 3, 4, 0]),
         ("strength", [0, 1, 2, 2]),
+        ("two-stars", [1, 2, 3, 0]),
+        ("moon", [2, 3, 0]),
+        ("planet", [1, 2, 3, 0]),
+        ("cluster", [1, 2, 0]),
+        ("bar", [1, 2, 0]),
+        ("spindle", [1, 1, 0]),
     ],
 )
 def test_fates_agree_with_the_caption(key: str, expected: list[int]) -> None:

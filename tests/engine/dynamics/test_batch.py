@@ -11,7 +11,7 @@ import pytest
 from engine import CASES, Fate, Plane, start_states
 from engine.dynamics.batch import OrbitBatch, OrbitPool, Tile, propagate_batch
 from engine.execution import Execution, create_thread_pool, default_executor
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 
 POTENTIAL, ENERGY = CASES["III"], 0.4
 

@@ -1,9 +1,12 @@
 from __future__ import annotations
 
+import math
+
 import pytest
 
-from engine import CHAOS_THRESHOLD, Fate, Regularity
-from engine.service import describe_fate, judge_regularity
+from engine import CHAOS_THRESHOLD, Fate
+from engine.service import describe_fate, is_chaotic, name_fate
+from tests.disc import DISC, LABELS
 
 
 def test_fates_are_not_channel_numbers() -> None:
@@ -28,10 +31,20 @@ def test_an_unknown_code_is_an_error() -> None:
         describe_fate(-9)
 
 
-@pytest.mark.parametrize(("sali", "expected"), [(1.4, "regular"), (1.01e-7, "regular"), (1e-7, "chaotic"), (1e-16, "chaotic")])
-def test_sali_at_or_below_the_threshold_is_chaotic(sali: float, expected: str) -> None:
-    assert judge_regularity(sali) is Regularity[expected.upper()]
+@pytest.mark.parametrize(("sali", "chaotic"), [(1.4, False), (1.01e-7, False), (1e-7, True), (1e-16, True), (math.nan, True)])
+def test_sali_at_or_below_the_threshold_is_chaotic(sali: float, chaotic: bool) -> None:
+    assert bool(is_chaotic(sali)) is chaotic
 
 
 def test_chaos_threshold_matches_the_paper() -> None:
     assert CHAOS_THRESHOLD == 1e-7
+
+
+def test_a_fate_has_the_name_and_the_sentence_of_its_outcome() -> None:
+    assert [name_fate(fate, DISC.outcomes) for fate in (1, 2, 3)] == LABELS
+    assert describe_fate(3, DISC.outcomes) == "Collided with a disc."
+
+
+def test_orbits_near_a_singularity_are_unresolved() -> None:
+    assert name_fate(Fate.FAILED) == "unresolved"
+    assert describe_fate(Fate.FAILED).startswith("Unresolved: ")

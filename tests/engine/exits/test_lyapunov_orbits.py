@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
-from engine.exits.lyapunov_orbits import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.potentials.catalogue import POTENTIALS
 from engine.taylor.kernels.events import REACH, exit_distance
 from tests.peers.dop853 import equations
@@ -163,22 +163,6 @@ def test_orbits_scale_with_the_well(epsilon: float) -> None:
         np.testing.assert_allclose(epsilon * orbit.x, usual.x, atol=1e-13)
         np.testing.assert_allclose(epsilon * orbit.y, usual.y, atol=1e-13)
         assert orbit.period == pytest.approx(usual.period, rel=1e-12)
-
-
-def test_energies_above_a_maximum_between_two_exits_are_refused() -> None:
-    # ½r² + xy² + x³/3 has a maximum with energy 1/6 between its two exits.
-    separable = POTENTIALS["Separable"]
-    assert len(find_lyapunov_orbits(separable, 0.99 / 6)) == 2
-    with pytest.raises(ValueError, match=r"channels 1 and 2 are one above the maximum between them, V = 0\.166667 .*Separable"):
-        find_lyapunov_orbits(separable, 1.01 / 6)
-
-
-def test_one_orbit_across_two_merged_channels_is_refused() -> None:
-    # The search finds it from both saddles.
-    terms = ((2, 0, 0.8486), (0, 2, 1.1197), (1, 1, -1.4701), (4, 2, 0.6596), (0, 6, 0.5966), (2, 4, -0.2602))
-    merged = Potential("merged", (*terms, (3, 1, -0.7223), (0, 7, -0.141)))
-    with pytest.raises(ValueError, match="channels 1 and 2 are one"):
-        find_lyapunov_orbits(merged, 2.0 * merged.escape_energy)
 
 
 def test_a_maximum_that_is_not_between_exits_limits_no_energy() -> None:

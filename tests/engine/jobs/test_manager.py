@@ -236,7 +236,7 @@ def test_a_map_without_exits_fails_with_the_reason() -> None:
 def test_making_a_job_computes_nothing() -> None:
     potential = Potential("new", ((2, 0, 0.5), (0, 2, 0.5), (1, 2, -1.3579)))
     assert regularity_job(MapSpec(potential, Plane.X_PX, 0.1)).orbits_held == 224 * 224
-    assert set(vars(potential)) == {"name", "form", "lineage"}
+    assert set(vars(potential)) == {"name", "form", "lineage", "rotation", "centres", "escape_radius"}
 
 
 def test_jobs_of_jobs_are_computed_once() -> None:

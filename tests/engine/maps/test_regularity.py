@@ -22,7 +22,7 @@ from engine import (
     start_states,
 )
 from engine.execution import Execution
-from engine.service import judge_regularity
+from engine.service import is_chaotic
 
 
 def map_and_regularity(name: str, energy: float, side: int = 9, t_max: float = 1e4) -> tuple[EscapeMap, RegularityMap]:
@@ -43,8 +43,7 @@ def test_characters_agree_with_the_sali_of_single_orbits(name: str, energy: floa
     whole, regularity = map_and_regularity(name, energy, side, t_max)
     rows, columns = np.nonzero(whole.fate == Fate.BOUNDED)
     states = start_states(CASES[name], Plane.X_PX, energy, whole.x[columns], whole.ordinate[rows])
-    sali = [float(integrate_orbit(CASES[name], state, t_max).sali[-1]) for state in states]
-    chaotic = np.array([judge_regularity(value) is Regularity.CHAOTIC for value in sali])
+    chaotic = is_chaotic(np.array([integrate_orbit(CASES[name], state, t_max).sali[-1] for state in states]))
     found = regularity.character[rows, columns] == Regularity.CHAOTIC
     # The SALI of an orbit may reach the threshold just before or just after t_max.
     assert np.mean(found != chaotic) <= 0.04
@@ -72,9 +71,8 @@ def test_sali_is_the_smallest_of_the_orbit_and_decides_the_character() -> None:
 def test_exactly_the_bounded_pixels_are_judged() -> None:
     whole, regularity = map_and_regularity("III", 0.28)
     assert regularity.complete
-    np.testing.assert_array_equal(
-        np.isin(regularity.character, (Regularity.REGULAR, Regularity.CHAOTIC)), whole.fate == Fate.BOUNDED
-    )
+    np.testing.assert_array_equal(regularity.character != Regularity.NOT_APPLICABLE, whole.fate == Fate.BOUNDED)
+    assert Regularity.NOT_JUDGED not in regularity.character
 
 
 def test_all_orbits_are_regular_at_low_energy() -> None:
@@ -88,10 +86,22 @@ def test_chaotic_share_is_nan_without_bounded_orbits() -> None:
     assert np.isnan(regularity.chaotic_share)
 
 
-def test_short_maps_are_judged_by_sali_at_t_max() -> None:
+def test_short_maps_show_no_regular_orbits() -> None:
     _, regularity = map_and_regularity("II", 0.16, t_max=400.0)
-    assert regularity.is_too_short
-    assert set(np.unique(regularity.character)) == {Regularity.NOT_APPLICABLE, Regularity.REGULAR, Regularity.CHAOTIC}
+    assert set(np.unique(regularity.character)) == {
+        Regularity.NOT_APPLICABLE,
+        Regularity.CHAOTIC,
+        Regularity.NO_SIGN_OF_CHAOS,
+    }
+
+
+@pytest.mark.slow
+def test_orbits_called_regular_show_no_chaos_ten_times_as_long() -> None:
+    _, shorter = map_and_regularity("III", 0.26, 24, 1e4)
+    _, longer = map_and_regularity("III", 0.26, 24, 1e5)
+    regular = shorter.character == Regularity.REGULAR
+    assert np.count_nonzero(regular) > 100
+    assert np.mean(longer.character[regular] == Regularity.CHAOTIC) <= 0.01
 
 
 def test_later_frames_keep_the_judged_pixels() -> None:

@@ -10,7 +10,7 @@ import pytest
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, Window, compute_map, default_window
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.execution import Execution, SerialExecutor
-from engine.exits.lyapunov_orbits import exit_curves
+from engine.exits.exit_rows import exit_curves
 from engine.maps.spec import FINEST_PIXEL
 from engine.maps.trust import (
     APART,

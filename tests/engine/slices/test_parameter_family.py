@@ -35,7 +35,16 @@ def test_exits_keep_their_numbers_and_a_new_one_gets_the_next(value: float, expe
     member = family.member(value)
     # Counterclockwise: above, at the left, below.
     assert tuple(member.numbers[1:].tolist()) == expected
-    assert family.channels == 3
+    assert len(family.outcomes) == 3
+
+
+@pytest.mark.parametrize(("value", "expected"), [(0.05, (1, 2, 3)), (-0.05, (1, 4, 2, 3)), (-0.43, (1, 4, 2, 3))])
+def test_a_collision_keeps_its_number_where_an_exit_appears(value: float, expected: tuple[int, ...]) -> None:
+    system = System("typed", f"{THIRD_EXIT.system.formula}; centre a disc (0.2, 0.3) 0.05", {"b": 0.1})
+    family = ParameterFamily(ParameterAxis("b", -0.6, 0.2, system))
+    assert tuple(family.member(value).numbers[1:].tolist()) == expected
+    labels = [outcome.label for outcome in family.outcomes]
+    assert labels == ["channel 1", "channel 2", "collision with a disc", "channel 3"]
 
 
 def test_potentials_beyond_the_range_are_found() -> None:
@@ -73,4 +82,4 @@ def test_a_value_asked_for_twice_has_the_same_numbers() -> None:
     values = np.linspace(-0.01, 0.01, 21)
     first = [family.member(value).numbers.tolist() for value in values]
     assert [family.member(value).numbers.tolist() for value in values] == first
-    assert family.channels == 3
+    assert len(family.outcomes) == 3

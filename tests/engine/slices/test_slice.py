@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy import ndimage
 
@@ -23,10 +23,13 @@ from engine import (
     Window,
     compute_map,
     default_window,
+    start_states,
     trace_zero_velocity_curve,
 )
+from engine.exits.interior import find_outside_channels
 from engine.potentials.well_units import WellUnits
 from engine.slices.planes import checked_slice
+from tests.fuzz.test_random_wells import random_well
 from tests.peers.exit_lines import exit_lines
 
 PLANES_OF_ONE_ENERGY = [Plane.X_Y, Plane.X_PX]
@@ -85,6 +88,23 @@ def test_default_window_encloses_the_interior_closely(name: str, energy: float, 
 def test_default_window_is_a_square(name: str, plane: Plane, energy: float) -> None:
     w = default_window(CASES[name], plane, energy)
     assert w.x_high - w.x_low == pytest.approx(w.ordinate_high - w.ordinate_low, rel=1e-12)
+
+
+@pytest.mark.parametrize("plane", [*PLANES_OF_ONE_ENERGY, Plane.Y_PY, Slice(Direction("u", x=1.0, py=0.5), Coordinate.Y)])
+def test_default_window_shows_an_interior_far_smaller_than_the_distance_of_an_exit(plane: Slice) -> None:
+    # One exit saddle is 260 times as far from the origin as the nearest one.
+    potential = random_well(150, 10)
+    energy = 1.2 * potential.escape_energy
+    window = default_window(potential, plane, energy)
+    x, ordinate = window.pixel_centres(60, 60)
+    states = start_states(potential, plane, energy, *(axis.ravel() for axis in np.meshgrid(x, ordinate)))
+    exists = np.flatnonzero(np.isfinite(states).all(axis=1))
+    inside = exists[find_outside_channels(potential, energy, *states[exists, :2].T) == 0]
+    rows, columns = np.divmod(inside, 60)
+    # It fills the window along one axis and does not touch its edges.
+    assert max(np.ptp(rows), np.ptp(columns)) > 50
+    assert min(*rows, *columns) > 0
+    assert max(*rows, *columns) < 59
 
 
 def test_default_window_of_x_h_spans_the_energies() -> None:
@@ -223,7 +243,9 @@ def test_the_velocity_has_the_angle_of_the_slice(plane: Slice) -> None:
     states, _, x, ordinate = states_and_energies(plane, CASES["I"])
     given = dict(plane.fixed) | dict(zip(plane.axes, (x, ordinate), strict=True))
     start_x, start_y, px, py = states.T
-    expected = given[Coordinate.THETA] if Coordinate.THETA in given else given[Coordinate.BETA] + np.arctan2(start_y, start_x)
+    # At the origin β is the angle from the +y axis.
+    outward = np.where((start_x == 0.0) & (start_y == 0.0), 0.5 * np.pi, np.arctan2(start_y, start_x))
+    expected = given[Coordinate.THETA] if Coordinate.THETA in given else given[Coordinate.BETA] + outward
     exists = np.hypot(px, py) > 1e-6
     turned = (np.arctan2(py, px) - expected)[exists]
     np.testing.assert_allclose(np.sin(turned), 0.0, atol=1e-9)
@@ -251,9 +273,13 @@ def test_a_start_of_any_slice_is_forbidden_exactly_where_energy_is_missing(plane
     np.testing.assert_array_equal(np.isnan(states).any(axis=1)[clear], missing[clear] > 0.0)
 
 
+# With pixels at 0, and without.
+@pytest.mark.parametrize("shape", [(6, 4), (5, 3)])
+@example(Slice(Coordinate.X, Coordinate.BETA))
+@example(Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, 0.0),)))
 @given(slices())
-def test_mirror_images_of_any_slice_are_reflected_states(plane: Slice) -> None:
-    x, ordinate = Window(-0.6, 0.6, -0.3, 0.3).pixel_centres(6, 4)
+def test_mirror_images_of_any_slice_are_reflected_states(shape: tuple[int, int], plane: Slice) -> None:
+    x, ordinate = Window(-0.6, 0.6, -0.3, 0.3).pixel_centres(*shape)
     images = plane.find_mirror_images(CASES["III"], x, ordinate)
     states = plane.states(CASES["III"], 0.4, *(axis.ravel() for axis in np.meshgrid(x, ordinate)))
     reflected = states * [-1.0, 1.0, -1.0, 1.0]

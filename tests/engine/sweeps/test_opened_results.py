@@ -147,7 +147,7 @@ def test_result_comes_back(name: str, how: str, tmp_path: Path) -> None:
 def made_up(one: CurvePointSpec) -> CurvePoint:
     """A point whose numbers all differ, and differ between values."""
     numbers = {each.name: one.value + place for place, each in enumerate(fields(CurvePoint)) if each.name != "shares"}
-    shares = tuple(one.value * place for place in range(one.channels + 1))
+    shares = tuple(one.value * place for place in range(one.outcomes + 1))
     return CurvePoint(**numbers | {"value": one.value, "shares": shares, "islands": 3})  # type: ignore[arg-type]
 
 

@@ -21,6 +21,7 @@ from engine import (
     judge_orbit,
     start_states,
 )
+from tests.disc import DISC
 
 # An island and the chaotic sea of Hénon & Heiles below the escape energy.
 ISLAND, SEA = [0.5, 0.0, 0.0, 0.2334], [-0.25, 0.0, 0.0, 0.42081]
@@ -171,3 +172,13 @@ def test_an_outside_start_is_neither_bounded_nor_judged() -> None:
     verdict = judge_orbit(orbit)
     assert (verdict.fate, verdict.character, verdict.summarize()) == (Fate.OUTSIDE, None, "outside")
     assert verdict.describe().startswith("Outside")
+
+
+def test_a_collision_is_named_in_the_sentence_and_in_the_list() -> None:
+    orbit = integrate_orbit(DISC, (0.2, 0.0, 0.0, 0.5), 100.0)
+    assert orbit.fate == 3
+    verdict = judge_orbit(orbit)
+    assert verdict.describe().startswith("Collided with a disc at t = ")
+    assert verdict.summarize().startswith("collision with a disc at t = ")
+    assert "The orbit collides at t = " in evaluate_indicators(orbit)[0].sentence
+    assert "fate collision with a disc" in repr(orbit)

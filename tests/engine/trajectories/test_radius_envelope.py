@@ -51,7 +51,7 @@ def test_intervals_shorter_than_the_sample_interval_have_values() -> None:
 
 
 def test_an_outside_start_raises() -> None:
-    with pytest.raises(ValueError, match="beyond a Lyapunov orbit"):
+    with pytest.raises(ValueError, match="beyond an exit, in a body"):
         compute_radius_envelope(CASES["II"], [2.0, 0.0, 0.5, 0.0], 10.0)
 
 

@@ -7,6 +7,7 @@ import pytest
 from app.views.analysis.statistics import StatisticsView
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, MapSpec, Plane, Window, compute_map, compute_statistics
+from tests.disc import disc_map
 
 COPIED: list[str] = []
 BOX = Window(-0.1, 0.1, 0.2, 0.4)
@@ -56,3 +57,9 @@ def test_the_table_is_copied_with_shares_at_full_precision(view: StatisticsView,
     statistics = compute_statistics(frame, box)
     assert rows[0] == ["fate", "share", "95 % low", "95 % high"]
     assert [float(value) for value in rows[1][1:]] == [statistics.shares[1], *statistics.share_intervals[1]]
+
+
+def test_a_collision_has_its_row(view: StatisticsView) -> None:
+    view.activate(True)
+    view.show(frame := disc_map())
+    assert f"collision with a disc</span></td><td>{percent(frame.fractions()[3], 2)}" in view.table.object

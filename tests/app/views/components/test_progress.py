@@ -6,10 +6,13 @@ import re
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 
+from app.views.components.numbers import percent
 from app.views.components.progress import CONTINUE, STOP, TEST, ProgressView
-from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
+from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Potential, compute_map
+from tests.disc import disc_map
 
 
 @pytest.fixture(scope="module")
@@ -28,6 +31,15 @@ def test_a_complete_map_gives_its_shares(escape_map: EscapeMap) -> None:
     text = re.sub(r"<[^>]*>", "", view.text.object)
     assert text.startswith("Done, t = 1 000. Interior starts: channels 1 to 2: ")
     assert (view.bar.styles["opacity"], view.button.styles["visibility"]) == ("0", "hidden")
+
+
+def test_exits_of_several_channels_are_named() -> None:
+    # Above V = 0.45 channels 1 and 2 are one, and so are 3 and 4.
+    potential = Potential("", ((2, 0, 0.8902), (0, 2, 0.3619), (2, 4, -0.94), (0, 6, -0.0346)))
+    view, _ = make_view()
+    view.show(compute_map(MapSpec(potential, Plane.X_PX, 0.54, (5, 5), t_max=20.0)))
+    text = re.sub(r"<[^>]*>", "", view.text.object)
+    assert re.search(r"Interior starts: channel 1\+2 [^,]+, channel 3\+4 ", text)
 
 
 def test_a_map_in_progress_gives_time_and_undecided_share(escape_map: EscapeMap) -> None:
@@ -71,3 +83,19 @@ def test_other_maps_do_not_mention_rounding(escape_map: EscapeMap, share: float 
     view.show(replace(escape_map, rounded_share=share))
     assert "rounding" not in view.text.object
     assert view.button.styles["visibility"] == "hidden"
+
+
+def test_other_outcomes_have_their_labels() -> None:
+    view, _ = make_view()
+    frame = disc_map()
+    view.show(frame)
+    shares = frame.fractions()
+    text = re.sub(r"<[^>]*>", "", view.text.object).replace("\N{NO-BREAK SPACE}", " ")
+    assert f", collision with a disc {percent(shares[3])}, bounded" in text
+    assert "unresolved" not in text
+
+
+def test_unresolved_orbits_are_shown(escape_map: EscapeMap) -> None:
+    view, _ = make_view()
+    view.show(replace(escape_map, fate=np.where(escape_map.fate == 1, Fate.FAILED, escape_map.fate)))
+    assert "unresolved" in view.text.object

@@ -8,9 +8,11 @@ from typing import Any
 import pytest
 
 from app.views.maps.map_legend import Described, map_legend
-from engine import CASES, Fate, MapSpec, Plane
+from engine import CASES, Fate, MapSpec, Plane, parse_formula
+from engine.potentials.outcomes import Centre
 from plots.palette import COLOUR_BLIND_SAFE, PAPER, Entry, Palette
 from plots.time_scale import TimeScale
+from tests.disc import DISC
 
 PATCH = re.compile(r"--colour:(#[0-9a-f]+)'>([^<]*)")
 ALL = frozenset(int(fate) for fate in (Fate.BOUNDED, Fate.FORBIDDEN, Fate.OUTSIDE, Fate.NOT_COMPUTED, 1, 2))
@@ -70,3 +72,15 @@ def test_layers_have_legends_of_their_own() -> None:
 
 def test_what_is_drawn_over_a_map_is_named() -> None:
     assert ("doubtful pixels", "#123456") in entries(map_legend("crossings", described(), [Entry("doubtful pixels", "#123456")]))
+
+
+def test_a_collision_has_its_label_and_colour() -> None:
+    of_disc = Described(MapSpec(DISC, Plane.X_PX, 0.19), PAPER, TimeScale(2.5, 100.0), False, "", ALL)
+    assert ("collision with a disc", PAPER.collisions[0]) in entries(map_legend("basins", of_disc, []))
+    assert "<th scope=col>collision with a disc</th>" in map_legend("origins", of_disc, [])
+
+
+def test_the_name_of_a_centre_is_text() -> None:
+    named = parse_formula("½(x² + y²) − xy²").with_outcomes([Centre(0.2, 0.3, 0.05, "<b>'")])
+    of_disc = Described(MapSpec(named, Plane.X_PX, 0.19), PAPER, TimeScale(2.5, 100.0), False, "", ALL)
+    assert not any("<b>" in map_legend(picture, of_disc, []) for picture in ("basins", "origins"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from bokeh.document import Document
 
 from app.views.maps.map_ranges import MapRanges
 from engine import CASES, MapSpec, Plane, Window
@@ -45,6 +46,22 @@ def test_the_smallest_window_can_be_computed_and_one_a_tenth_of_it_cannot(corner
     assert MapSpec(HOME.potential, HOME.plane, HOME.energy, window=smallest).find_window() == smallest
     with pytest.raises(ValueError, match="double precision ends here"):
         MapSpec(HOME.potential, HOME.plane, HOME.energy, window=window(0.1)).find_window()
+
+
+def test_a_chosen_window_drops_a_move_that_is_not_reported() -> None:
+    zooms: list[Window | None] = []
+    ranges = MapRanges(zooms.append, lambda: None)
+    document = Document()
+    document.add_root(ranges.x)
+    home = HOME.find_window()
+    ranges.follow(home)
+    ranges.x.start = 0.5 * home.x_low
+    assert len(document.session_callbacks) == 1
+    ranges.go_to(home)
+    assert not document.session_callbacks
+    ranges.end_gesture()
+    assert zooms == []
+    assert ranges.x.start == home.x_low
 
 
 def test_the_magnification_is_that_of_the_width() -> None:

@@ -92,10 +92,10 @@ def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_comes() -> None:
     assert named(maps.grid, "picked") == ["origins"]
 
 
-def test_the_picker_of_a_touch_device_offers_the_pictures_and_reports_the_choice() -> None:
+def test_the_picker_of_a_narrow_page_offers_the_pictures_and_reports_the_choice() -> None:
     chosen: list[str] = []
     pictures = grid("origins", chosen=chosen)
-    pictures.begin_touch()
+    pictures.offer_choice()
     assert pictures.layout().objects[0] is pictures.picker
     assert list(pictures.picker.options.values()) == [*ALWAYS, "origins"]
     assert pictures.picker.value == "origins"
@@ -106,7 +106,7 @@ def test_the_picker_of_a_touch_device_offers_the_pictures_and_reports_the_choice
 def test_the_picker_follows_the_picture_that_is_enlarged() -> None:
     chosen: list[str] = []
     pictures = grid(chosen=chosen)
-    pictures.begin_touch()
+    pictures.offer_choice()
     pictures.enlarge("well")
     assert pictures.picker.value == "well"
     assert chosen == []

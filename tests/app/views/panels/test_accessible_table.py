@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.state.view_state import ViewState
 from app.views.panels.accessible_table import AccessibleTable
 from engine import CASES, MapSpec, Plane, compute_map
+from tests.disc import disc_map
 
 
 def test_the_table_is_written_while_it_is_open() -> None:
@@ -29,3 +30,10 @@ def test_a_map_without_escapes_has_no_times() -> None:
     table.show_map(compute_map(MapSpec(CASES["I"], Plane.X_PX, 0.1, (15, 15), t_max=100.0)))
     assert "nothing escaped" in table.text.object
     assert "nan" not in table.text.object
+
+
+def test_collisions_have_a_row() -> None:
+    table = AccessibleTable(ViewState(case="I", energy=0.19))
+    table.fold.button.clicks += 1
+    table.show_map(disc_map())
+    assert "<th scope=row>collide with a disc</th>" in table.text.object

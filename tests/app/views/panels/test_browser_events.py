@@ -29,6 +29,7 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
         {"link": "?case=II", "entry": 3, "steps": 1},
         {"dark": True},
         {"touch": True},
+        {"narrow": True},
         {"copied": False},
     ]
     for message in messages:
@@ -38,6 +39,7 @@ def test_each_message_calls_its_action(events: BrowserEvents, calls: list[tuple[
         ("navigate", "?case=II", 3, 1),
         ("dark", True),
         ("touch",),
+        ("narrow",),
         ("copied", False),
     ]
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import POTENTIALS, channel_family, parse_formula
+from engine import channel_family, parse_formula
 from engine.potentials.forms.common_factor import have_common_factor
+from tests.contracts.potentials import WELLS
 
 HENON_HEILES = "(x²/2 + y²/2 + x²y − y³/3)"
 
@@ -34,10 +35,10 @@ def test_a_common_factor_is_one_in_any_unit_of_length() -> None:
     assert have_common_factor(*parse_formula("1000r² + 0.001r⁶ − 0.000001r^12").form.slopes)
 
 
-@pytest.mark.parametrize("name", POTENTIALS)
+@pytest.mark.parametrize("name", WELLS)
 @pytest.mark.parametrize("parameters", [(1.0, 1.0, 1.0), (10.0, 0.1, 100.0), (0.1, 0.1, 0.01)])
 def test_the_catalogue_has_none(name: str, parameters: tuple[float, float, float]) -> None:
-    assert not have_common_factor(*POTENTIALS[name].with_parameters(*parameters).form.slopes)
+    assert not have_common_factor(*WELLS[name].with_parameters(*parameters).form.slopes)
 
 
 @pytest.mark.parametrize("n", range(3, 13))

@@ -13,6 +13,7 @@ from engine.potentials.catalogue import channel_family
 from engine.potentials.forms import critical_points
 from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError, find_critical_points, winding_number
 from engine.potentials.potential import Potential
+from tests.fuzz.test_random_wells import random_well
 
 X, Y = sympy.symbols("x y")
 lines = st.tuples(*[st.integers(-5, 5)] * 3).filter(lambda line: line[0] or line[1])
@@ -95,6 +96,11 @@ def test_winding_number_of_the_family(n: int) -> None:
     assert winding_number(potential.gradient, 5.0) == 1 - n == 1 - potential.channels
 
 
+def test_a_turn_within_a_narrow_angle_is_counted() -> None:
+    # Far out on the x axis the gradient turns once within 0.001 radians.
+    assert winding_number(random_well(34, 10).gradient, 533.0) == -3
+
+
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 def test_points_scale_with_the_polynomials(size: float) -> None:
     terms = random_terms(1, 5)
@@ -116,6 +122,20 @@ def test_degenerate_root_is_found_once() -> None:
     # A monkey saddle: the gradient vanishes to second order.
     points = find_critical_points(terms_of(3 * X**2 - 3 * Y**2), terms_of(-6 * X * Y))
     np.testing.assert_allclose(points, [[0.0, 0.0]], atol=1e-5)
+
+
+@pytest.mark.parametrize(("seed", "distance"), [(702, 858.47), (495, 1931.91), (681, 7506.90)])
+@pytest.mark.parametrize("unit", [1.0, 0.7, 0.018])
+def test_a_root_far_from_the_others_is_found_in_any_units(seed: int, distance: float, unit: float) -> None:
+    terms = tuple((i, j, c / unit ** (i + j)) for i, j, c in random_well(seed, 10).terms)
+    points = Potential("", terms).critical_points
+    assert np.hypot(*points.T).max() == pytest.approx(unit * distance, rel=1e-5)
+
+
+def test_far_places_where_the_terms_do_not_cancel_are_no_roots() -> None:
+    # Newton's method stops at such places on its way, where the force is small compared with powers of the distance only.
+    points = random_well(156, 10).critical_points
+    np.testing.assert_allclose(sorted_rows(points), [[0.0, 0.0], [-0.5784283, 0.8770026]], atol=1e-7)
 
 
 def test_common_factor_without_real_roots() -> None:

@@ -65,3 +65,9 @@ def test_descents_from_a_saddle_far_beyond_the_others_end() -> None:
     potential = random_well(810)
     assert np.hypot(*potential.critical_points.T).max() > 560.0
     assert potential.channels == 4
+
+
+def test_descents_that_need_an_implicit_method_from_the_start_end() -> None:
+    potential = random_well(100, 10)
+    farthest = potential.saddles[np.argmax(potential.saddles[:, 0])]
+    np.testing.assert_allclose(farthest, [717.83953, -0.02207], atol=1e-5)

@@ -57,6 +57,8 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         ("½r² + 1/x", "not defined at the origin"),
         ("log(x² + y²)", "not defined at the origin"),
         ("½r² + x exp(y)", "There is no well at the origin"),
+        # A dipole, singular on its axis.
+        ("½(1/(x + 1) − (x + 1)/((x + 1)² + y²)^1.5)² + 0.02r²", "not defined everywhere on a circle"),
         ("cos(x) cos(y)", "V has a maximum there"),
         ("exp(x) + exp(−x) + y²", "No saddle leads out"),
         ("−1/√(r² + 1)", "open without a saddle"),
@@ -64,7 +66,10 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         ("½log(0.04 + r²) + 0.1(x⁴ + y⁴)", "No saddle leads out"),
         ("½(x² + y²) + 1e-8(x⁴ + y⁴)", "No saddle leads out"),
         ("1e4(x² + y²) + 1e4(x⁴ + y⁴)", "No saddle leads out"),
-        ("exp(exp(exp(exp(x y)))) − exp(exp(x)) exp(sin(exp(cos(x y)))) + ½r²", "products and functions"),
+        (
+            "½r² + x²y³ exp(sin(exp(cos(x y)))) exp(sin(x)) cos(exp(x + 2y)) exp(sin(y)) cos(exp(y − x))",
+            "products and functions",
+        ),
     ],
 )
 def test_reasons_for_refusal(text: str, reason: str) -> None:

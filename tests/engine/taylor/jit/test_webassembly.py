@@ -11,8 +11,9 @@ import pytest
 
 from engine import CASES, Plane, Potential, parse_formula, start_states
 from engine.dynamics.portable_system import make_portable_system
-from engine.exits.lyapunov_orbits import exit_curves, exit_gates
-from engine.taylor.bound_kernels import load_kernels
+from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.potentials.compiled import kernels_of
+from engine.potentials.outcomes import Centre
 from engine.taylor.jit.webassembly import webassembly_module
 from engine.taylor.source.recurrence import LANES, TOLERANCE, generate_code
 from engine.taylor.source.series import ORDER
@@ -21,6 +22,7 @@ from tests.node import needs_node, run_node
 POTENTIALS = {
     **CASES,
     "typed": parse_formula("½(x² + y²) − x²y² − x³/4"),
+    "rotating": parse_formula("½r² − x y²").in_rotating_frame(0.3).with_outcomes([Centre(0.2, 0.1, 0.05)], 0.4),
     "functions": parse_formula("½log(1 + r²) − 0.5x² y exp(−y²) − x³ cos(y)/√(2 + y²)"),
 }
 ENERGY = 0.29
@@ -50,7 +52,7 @@ def starts(potential: Potential) -> np.ndarray:
 
 def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon: float) -> tuple[np.ndarray, ...]:
     """The step of the kernels for this machine, its flags with crossings, and the series."""
-    kernels = load_kernels(potential.form.definition, potential.channels)
+    kernels = kernels_of(potential)
     now, new = np.zeros((6, LANES)), np.zeros((6, LANES))
     flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     now[:5, : len(states)] = states.T
@@ -62,7 +64,7 @@ def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon:
 
 
 @needs_node
-@pytest.mark.parametrize("name", [*CASES, "typed", pytest.param("functions", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", [*CASES, "typed", "rotating", pytest.param("functions", marks=pytest.mark.slow)])
 def test_the_step_is_the_native_one_to_rounding(name: str, tmp_path: Path) -> None:
     potential, horizon = POTENTIALS[name].in_well_units, 9.8
     states, gates = starts(potential), exit_gates(exit_curves(potential, ENERGY))

@@ -7,7 +7,7 @@ import pytest
 
 from engine import CASES, Plane, Potential, start_states
 from engine.dynamics.fates import Fate
-from engine.exits.lyapunov_orbits import exit_curves, exit_gates
+from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels.propagate import NO_TRACE, Exits, Orbits
 from engine.taylor.source.recurrence import HIDDEN, LANES, OVERSHOOT, TOLERANCE

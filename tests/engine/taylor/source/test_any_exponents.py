@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 from engine.potentials.catalogue import channel_family
-from engine.taylor.source.recurrence import ORDER, Terms, generate_code
+from engine.taylor.source.polynomial_recurrence import Terms
+from engine.taylor.source.recurrence import generate_code
+from engine.taylor.source.series import ORDER
 from engine.taylor.source.straight_line import StraightLine
 
 # Derivatives of V with respect to x and y, as numbers of differentiations.

@@ -16,7 +16,8 @@ from engine.potentials.catalogue import channel_family
 from engine.slices.planes import Plane
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
-from engine.taylor.source.recurrence import LANES, TOLERANCE, crossings_can_hide, generate_code
+from engine.taylor.source.polynomial_recurrence import crossings_can_hide
+from engine.taylor.source.recurrence import LANES, TOLERANCE, generate_code
 from engine.taylor.source.series import ORDER
 from tests.peers import taylor_heyoka
 

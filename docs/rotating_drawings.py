@@ -1,0 +1,56 @@
+"""Drawings of systems in rotating frames, and with bodies, from the maps that are compared with papers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+from drawing_panels import new_panels
+from matplotlib.figure import Figure
+
+from engine import Fate, compute_map
+from plots.figure_axes import add_figure_legend, name_panel, patches
+from plots.map_figure import draw_picture
+from plots.palette import PAPER
+from reproduction.rotating.paper_maps import PAPER_MAPS, PaperMap
+
+# Pixels of a side: the maps are fractal, and files grow with them.
+_SIDE = 120
+
+
+def earth_moon() -> Figure:
+    """Basins around the Moon with no, one and two open necks."""
+    closed, _, one_open, _, both_open = PAPER_MAPS["Earth–Moon system"]
+    return _draw((closed, one_open, both_open), {"channel 1": "L2", "channel 2": "L1"})
+
+
+def copenhagen() -> Figure:
+    """Basins of the Copenhagen problem with small and large bodies."""
+    return _draw(PAPER_MAPS["Copenhagen problem"][1:])
+
+
+def star_cluster() -> Figure:
+    """Basins of a star cluster at three energies."""
+    return _draw(PAPER_MAPS["Star cluster"])
+
+
+def four_hills() -> Figure:
+    """Directions in which orbits leave four hills, at energies below and above their tops."""
+    first, _, second, third = PAPER_MAPS["Four hills"]
+    return _draw((first, second, third), {"collision with the ": "to the "})
+
+
+def _draw(paper_maps: tuple[PaperMap, ...], renamed: Mapping[str, str] = MappingProxyType({})) -> Figure:
+    figure, panels = new_panels(len(paper_maps), 9.5)
+    frames = [compute_map(replace(paper_map.spec, resolution=(_SIDE, _SIDE))) for paper_map in paper_maps]
+    for axes, frame, paper_map in zip(panels, frames, paper_maps, strict=True):
+        draw_picture(axes, frame, "basins", PAPER)
+        name_panel(axes, paper_map.name)
+    ends = np.unique([frame.fate for frame in frames])
+    entries = [PAPER.entry(int(fate), paper_maps[0].spec.outcomes) for fate in ends if fate >= Fate.BOUNDED]
+    for old, new in renamed.items():
+        entries = [replace(entry, label=entry.label.replace(old, new)) for entry in entries]
+    add_figure_legend(figure, patches(entries))
+    return figure

@@ -1,0 +1,79 @@
+"""All exits of a system at an energy as the arrays that the kernels take."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from engine.exits.brake_orbits import saddle_axes
+from engine.exits.exit_shapes import absent_channel, closed_channel, disc, escape_circle
+from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.potentials.hill_region import check_closed_well
+from engine.potentials.potential import Potential
+from engine.potentials.singularity_check import check_defined
+from engine.potentials.well_units import nearest_power_of_two
+from engine.taylor.kernels import events
+
+# Distance of a gate from the exit, in units of the distance of the saddle rounded to a power of 2.
+_GATE_MARGIN = 1e-3
+
+
+def closed_exits(potential: Potential) -> np.ndarray:
+    """(outcomes, columns) the exits below all saddles: short lines across these, discs, and the escape circle.
+
+    Raises
+    ------
+    ValueError
+        If there are no exits, but the well is not closed either: it is not defined which orbits escape. Or if V is not defined
+        somewhere within the escape radius.
+    """
+    if potential.escape_radius is not None:
+        check_defined(potential)
+    elif not potential.channels:
+        check_closed_well(potential)
+    rows = [
+        *(closed_channel(saddle_axes(potential, k + 1), saddle) for k, saddle in enumerate(potential.saddles)),
+        *map(disc, potential.centres),
+        *([] if potential.escape_radius is None else [escape_circle(potential.escape_radius)]),
+    ]
+    return np.array(rows).reshape(len(rows), events.CURVE_COLUMNS)
+
+
+def exit_curves(potential: Potential, energy: float) -> np.ndarray:
+    """(outcomes, columns) exits at one energy, for the kernels."""
+    curves = closed_exits(potential)
+    for orbit in find_lyapunov_orbits(potential, energy):
+        curves[orbit.channel - 1] = orbit.curve
+        for channel in orbit.others:
+            curves[channel - 1] = absent_channel(saddle_axes(potential, channel), potential.saddles[channel - 1])
+    return curves
+
+
+def exit_gates(curves: np.ndarray) -> np.ndarray:
+    """(outcomes, 3) the gates of exits (…, outcomes, columns), which the kernels test first: orbits end only beyond one.
+
+    Across a channel it is the line a x + b y = c slightly inside its exits at all energies; of a disc and of the escape circle it
+    is the centre and the radius.
+    """
+    outcomes, columns = curves.shape[-2:]
+    rows = curves.reshape(math.prod(curves.shape[:-2]), outcomes, columns)
+    gates = np.ascontiguousarray(rows[0][:, [events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH]])
+    is_line = rows[0, :, events.SHAPE] < events.DISC
+    gates[is_line] = _lines_inside(rows[:, is_line])
+    return gates
+
+
+def _lines_inside(rows: np.ndarray) -> np.ndarray:
+    """(channels, 3) lines across channels, slightly inside their exits (energies, channels, columns)."""
+    s = np.linspace(-1.0, 1.0, 201)
+    u = chebyshev.chebval(s, np.moveaxis(rows[..., events.COEFFICIENTS :], -1, 0))
+    q = rows[..., events.MIDDLE, None] + rows[..., events.HALF_WIDTH, None] * s
+    origin_x, origin_y, outward_x, outward_y = np.moveaxis(rows[..., events.ORIGIN_X : events.OUTWARD_Y + 1, None], 2, 0)
+    x, y = origin_x + u * outward_x - q * outward_y, origin_y + u * outward_y + q * outward_x
+    gates = rows[0, :, events.OUTWARD_X : events.OUTWARD_Y + 1]
+    lowest = (gates[:, :1] * x + gates[:, 1:] * y).min(axis=(0, -1))
+    origins = rows[0, :, events.ORIGIN_X : events.ORIGIN_Y + 1]
+    length = np.array([nearest_power_of_two(distance) for distance in np.hypot(*origins.T).tolist()])
+    return np.column_stack([gates, lowest - _GATE_MARGIN * length])

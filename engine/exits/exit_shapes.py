@@ -1,0 +1,172 @@
+"""Exits as rows of numbers for the kernels (`engine.taylor.kernels.events`): closed channels, curves, lines, discs, a circle."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from engine.exits.brake_orbits import Axes, saddle_axes
+from engine.potentials.outcomes import Centre
+from engine.potentials.potential import Potential
+from engine.taylor.kernels import events
+
+# Largest distance of a curve from the path that it follows, in units of the well.
+_LARGEST_FIT_ERROR = 1e-9
+# The lines beyond the ends of an exit are sampled from this |s| − 1 on, up to this multiple of the distance of the saddle.
+_FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
+# Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
+_CLOSED_HALF_WIDTH = 1e-3
+# Walls are followed from the saddle to the line in this many steps. A wall is searched up to this multiple of the distance of the
+# saddle from the origin, at this many points.
+_WALL_STEPS = 32
+_FARTHEST_WALL, _WALL_POINTS, _BISECTIONS = 5.0, 400, 60
+# Points along a line for drawings; step along the ridge, in units of the distance of the saddle from the origin.
+_LINE_POINTS, _RIDGE_STEP = 41, 1e-3
+# Largest change of the position of a wall in a step, in units of the width of the neck; a larger one is a jump to another wall.
+_LARGEST_WALL_STEP = 0.25
+
+
+def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
+    """(columns,) the exit of a closed channel: a short straight line through the origin of the axes."""
+    curve = np.zeros(events.CURVE_COLUMNS)
+    curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
+    curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
+    curve[events.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
+    curve[events.REACH] = 1.0
+    return curve
+
+
+def absent_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
+    """(columns,) the exit of a channel that is part of another exit: one that no orbit crosses."""
+    curve = closed_channel(axes, saddle)
+    curve[events.REACH] = -1.0
+    return curve
+
+
+def ridge_bend(potential: Potential, channel: int) -> float:
+    """a of u = a q², which the ridge of V across a channel follows at its saddle, in the axes of this: V_u = 0 there.
+
+    From V_uqq and V_uu; V_uqq by a central difference, as any a near this one gives an exit.
+    """
+    axes = saddle_axes(potential, channel)
+    step = _RIDGE_STEP * float(np.hypot(*axes.origin)) * np.array([-axes.outward[1], axes.outward[0]])
+    sides = np.array([axes.origin - step, axes.origin + step])
+    slopes = axes.outward @ np.array(np.broadcast_arrays(*potential.gradient(*sides.T)))
+    along = axes.outward @ potential.hessian_matrix(*axes.origin) @ axes.outward
+    return float(-0.5 * slopes.sum() / (step @ step) / along)
+
+
+def line_across(potential: Potential, energy: float, channel: int, edge: float) -> np.ndarray | None:
+    """(columns,) the exit u = edge + a q² in the axes of a saddle, between the walls of its neck, V = energy; a: `ridge_bend`.
+
+    The walls beside the saddle are followed to the line. None if they do not lead there.
+    """
+    axes, bend = saddle_axes(potential, channel), ridge_bend(potential, channel)
+    walls = _find_walls(potential, energy, axes, np.linspace(0.0, edge, _WALL_STEPS + 1), bend)
+    widths = walls[:, 1] - walls[:, 0]
+    # Not a number where there is no wall.
+    if not np.all(np.abs(np.diff(walls, axis=0)) < _LARGEST_WALL_STEP * widths[1:, None]):
+        return None
+    low, high = walls[-1]
+    curve = closed_channel(axes, potential.saddles[channel - 1])
+    curve[events.SHAPE] = events.LINE
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    curve[events.MIDDLE : events.HALF_WIDTH + 1] = middle, half
+    curve[events.SLOPE_LOW : events.SLOPE_HIGH + 1] = 2.0 * bend * half * np.array([low, high])
+    # u as a sum of Chebyshev polynomials of s = (q − middle)/half.
+    constant = edge + bend * (middle * middle + 0.5 * half * half)
+    curve[events.COEFFICIENTS : events.COEFFICIENTS + 3] = constant, 2.0 * bend * middle * half, 0.5 * bend * half * half
+    curve[events.REACH] = find_reach(potential, energy, curve)
+    return curve
+
+
+def curve_along(axes: Axes, saddle: np.ndarray, path: np.ndarray) -> np.ndarray | None:
+    """(columns,) the path (2, n) as a graph u = f(s), s ∈ [−1, 1], without its reach; None if it is none or not smooth enough."""
+    u, q = axes.coordinates(path)
+    middle, half_width = 0.5 * (q[0] + q[-1]), 0.5 * (q[-1] - q[0])
+    s = (q - middle) / half_width
+    if np.any(np.diff(s) <= 0):
+        return None
+    basis = chebyshev.chebvander(s, events.CURVE_DEGREE)
+    fit = np.linalg.lstsq(basis, u, rcond=None)[0]
+    if np.max(np.abs(basis @ fit - u)) > _LARGEST_FIT_ERROR:
+        return None
+    end_slopes = chebyshev.chebval([-1.0, 1.0], chebyshev.chebder(fit))
+    curve = closed_channel(axes, saddle)
+    curve[events.SHAPE] = events.CURVE
+    curve[events.MIDDLE : events.SLOPE_HIGH + 1] = middle, half_width, *end_slopes
+    curve[events.COEFFICIENTS :] = fit
+    return curve
+
+
+def mirrored_curve(curve: np.ndarray) -> np.ndarray:
+    """An exit curve in the axes of the mirrored saddle, where u is unchanged and q has the opposite sign."""
+    image = curve.copy()
+    image[[events.ORIGIN_X, events.OUTWARD_X, events.BEARING_X, events.MIDDLE]] *= -1.0
+    image[[events.SLOPE_LOW, events.SLOPE_HIGH]] = -curve[[events.SLOPE_HIGH, events.SLOPE_LOW]]
+    image[events.COEFFICIENTS + 1 :: 2] *= -1.0
+    return image
+
+
+def find_reach(potential: Potential, energy: float, curve: np.ndarray) -> float:
+    """The |s| up to which a crossing counts: half of the way along the straight lines beyond the ends to where V ≤ h again."""
+    reach = np.inf
+    saddle, outward = curve[[events.ORIGIN_X, events.ORIGIN_Y]], curve[[events.OUTWARD_X, events.OUTWARD_Y]]
+    farthest = _FARTHEST_BEYOND * max(float(np.hypot(*saddle)) / curve[events.HALF_WIDTH], 1.0)
+    beyond = np.geomspace(_FIRST_BEYOND, farthest, _SAMPLES_BEYOND)
+    for end, slope in ((-1.0, curve[events.SLOPE_LOW]), (1.0, curve[events.SLOPE_HIGH])):
+        u = chebyshev.chebval(end, curve[events.COEFFICIENTS :]) + slope * end * beyond
+        q = curve[events.MIDDLE] + curve[events.HALF_WIDTH] * end * (1.0 + beyond)
+        x, y = saddle[0] + outward[0] * u - outward[1] * q, saddle[1] + outward[1] * u + outward[0] * q
+        reach = min(reach, 1.0 + 0.5 * beyond[potential.value(x, y) <= energy].min(initial=np.inf))
+    return float(reach)
+
+
+def line_points(curve: np.ndarray) -> np.ndarray:
+    """(41, 2) x and y along an exit that is a line, from wall to wall."""
+    origin, outward = curve[events.ORIGIN_X : events.ORIGIN_Y + 1], curve[events.OUTWARD_X : events.OUTWARD_Y + 1]
+    s = np.linspace(-1.0, 1.0, _LINE_POINTS)
+    u, q = chebyshev.chebval(s, curve[events.COEFFICIENTS :]), curve[events.MIDDLE] + curve[events.HALF_WIDTH] * s
+    points: np.ndarray = origin + u[:, None] * outward + q[:, None] * np.array([-outward[1], outward[0]])
+    return points
+
+
+def _find_walls(potential: Potential, energy: float, axes: Axes, offset: np.ndarray, bend: float) -> np.ndarray:
+    """(n, 2) the q of the walls on both sides of q = 0 on u = offset + bend q², by bisection; NaN where there is none."""
+    across = np.array([-axes.outward[1], axes.outward[0]])
+
+    def is_beyond(q: np.ndarray) -> np.ndarray:
+        """Whether V > energy at q (n, 2, m)."""
+        u = offset[:, None, None] + bend * q * q
+        points = axes.origin + u[..., None] * axes.outward + q[..., None] * across
+        beyond: np.ndarray = potential.value(points[..., 0], points[..., 1]) > energy
+        return beyond
+
+    # Denser near the saddle.
+    grid = np.linspace(0.0, 1.0, _WALL_POINTS) ** 2 * _FARTHEST_WALL * float(np.hypot(*axes.origin))
+    q = np.broadcast_to(np.array([-1.0, 1.0])[:, None] * grid, (offset.size, 2, grid.size))
+    with np.errstate(all="ignore"):
+        first = np.argmax(is_beyond(q), axis=-1)[..., None]
+        low, high = np.take_along_axis(q, np.maximum(first - 1, 0), -1), np.take_along_axis(q, first, -1)
+        for _ in range(_BISECTIONS):
+            middle = 0.5 * (low + high)
+            beyond = is_beyond(middle)
+            low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    walls: np.ndarray = np.where(first > 0, 0.5 * (low + high), np.nan)[..., 0]
+    return walls
+
+
+def disc(centre: Centre) -> np.ndarray:
+    """(columns,) the edge of the disc of a centre."""
+    return _circle(centre.x, centre.y, centre.radius, events.DISC)
+
+
+def escape_circle(radius: float) -> np.ndarray:
+    """(columns,) the circle around the origin beyond which orbits have escaped."""
+    return _circle(0.0, 0.0, radius, events.CIRCLE)
+
+
+def _circle(x: float, y: float, radius: float, shape: int) -> np.ndarray:
+    row = np.zeros(events.CURVE_COLUMNS)
+    row[[events.ORIGIN_X, events.ORIGIN_Y, events.HALF_WIDTH, events.SHAPE]] = x, y, radius, shape
+    return row

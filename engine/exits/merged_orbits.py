@@ -1,0 +1,72 @@
+"""Orbits between the outer walls of an exit of several channels, above the maxima of V between these.
+
+At the energies just below a maximum two orbits lead from an outer wall to the forbidden region around it. Above it there is none,
+and an orbit leads from one outer wall to the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from engine.exits.brake_orbits import Axes, BrakeOrbit, find_from_outside
+from engine.potentials.compiled import kernels_of
+from engine.potentials.potential import Potential
+from engine.taylor.kernels import events
+from engine.taylor.kernels.dense_output import trace_pieces
+
+# Where the lines of starts cross that between the outermost saddles, as shares of its length.
+_LINES = (0.5, 0.25, 0.75, 0.0, 1.0)
+# Orbits that leave through an exit: points of the path, angles to its normal, and how long they are followed.
+_POINTS = np.arange(5, 100, 10)
+_ANGLES = np.radians([-75.0, -40.0, 0.0, 40.0, 75.0])
+_FOLLOWED = 30.0
+# Every point is past this gate.
+_NO_GATES = np.array([[0.0, 0.0, -1.0]])
+
+
+def axes_between(potential: Potential, channels: tuple[int, ...], share: float = 0.5) -> Axes:
+    """Axes along and across the line between the outermost saddles of an exit, with the origin at a share of its length."""
+    saddles = potential.saddles[np.array(channels) - 1]
+    angles = np.arctan2(saddles[:, 1], saddles[:, 0])
+    order = np.argsort(angles)
+    gaps = np.diff(angles[order], append=angles[order[0]] + 2.0 * np.pi)
+    widest = int(np.argmax(gaps))
+    first, last = saddles[order[(widest + 1) % len(order)]], saddles[order[widest]]
+    along = last - first
+    return Axes((1.0 - share) * first + share * last, np.array([along[1], -along[0]]) / np.hypot(*along))
+
+
+def find_merged_orbits(potential: Potential, energy: float, channels: tuple[int, ...]) -> Iterator[BrakeOrbit]:
+    """The orbits that can be the exit of several channels: all their saddles lie between its ends."""
+    saddles = potential.saddles[np.array(channels) - 1].T
+    size = float(np.hypot(*saddles).max())
+    for share in _LINES:
+        axes = axes_between(potential, channels, share)
+        _, q = axes.coordinates(saddles)
+        for orbit in find_from_outside(potential, energy, axes, size):
+            ends = axes.coordinates(orbit.path[:, [0, -1]])[1]
+            if ends[0] < q.min() and q.max() < ends[1]:
+                yield orbit
+
+
+def has_returns(potential: Potential, energy: float, orbit: BrakeOrbit, curve: np.ndarray) -> bool:
+    """Whether any of 50 orbits that leave across an exit (columns,) comes back through it."""
+    kernels = kernels_of(potential)
+    for start in _leaving_states(potential, energy, orbit.path):
+        steps, _ = next(trace_pieces(kernels, start, _FOLLOWED, len(potential.outcomes)))
+        # Backward in time an orbit that returns leaves. The first step begins on the exit.
+        for (x0, y0), (x1, y1) in zip(steps[1:-1, :2], steps[2:, :2], strict=True):
+            if events.crossed_exit(x1, y1, x0, y0, curve[None], _NO_GATES):
+                return True
+    return False
+
+
+def _leaving_states(potential: Potential, energy: float, path: np.ndarray) -> np.ndarray:
+    """(50, 4) states on a path (2, 101), which has the well on its left."""
+    along = np.arctan2(*(path[:, _POINTS + 1] - path[:, _POINTS - 1])[::-1])
+    angle = (along - 0.5 * np.pi)[:, None] + _ANGLES
+    speed = np.sqrt(2.0 * (energy - potential.value(*path[:, _POINTS])))[:, None]
+    columns = [np.broadcast_to(path[k, _POINTS, None], angle.shape) for k in range(2)]
+    return np.stack([*columns, speed * np.cos(angle), speed * np.sin(angle)], axis=-1).reshape(-1, 4)

@@ -1,0 +1,286 @@
+"""Periodic orbits over a saddle of a potential in any frame, rotating or not, found by Newton's method and continuation.
+
+The motion linearised at a saddle of Φ has a pair of eigenvalues ±iν: small oscillations of period 2π/ν around the saddle, its
+centre direction. By Lyapunov's centre theorem a family of periodic orbits begins with them. With σ = √(h − E), E the energy of
+the saddle, orbits are proportional to σ at first, and (position − saddle)/σ and the period depend smoothly on σ. They are
+predicted from those at smaller σ and corrected by Newton's method for several states of one period at once, so that errors grow
+over a part of the period only (multiple shooting; Stoer & Bulirsch 2002, Introduction to Numerical Analysis, section 7.3.5). All
+in units of the well.
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.exits.brake_orbits import Axes, saddle_axes
+from engine.exits.exit_shapes import ridge_bend
+from engine.potentials.compiled import kernels_of
+from engine.potentials.potential import Potential
+from engine.taylor.kernels.dense_output import advance_states, sample_path, trace_pieces, trace_steps, transition_matrices
+
+# States of one period that are corrected together, and points of the path between two of them.
+_NODES = 8
+_POINTS_PER_NODE = 25
+_MOST_CORRECTIONS = 12
+# Relative size of a correction from which on the next ones are rounding errors as soon as they do not shrink any more; near the
+# saddle this many roundings of the energy.
+_NEARLY_EXACT = 1e-6
+_ROUNDINGS = 64
+# Largest relative change by the corrections of a prediction; a larger one can be a jump to another orbit.
+_LARGEST_CHANGE = 0.1
+# Orbits from which the next one is predicted; smallest step of σ, in units of that of the orbit to be found, and most steps.
+_PREDICTED_FROM = 4
+_SMALLEST_STEP = 2.0**-10
+_MOST_STEPS = 400
+# Steps of the integrator in a part of an orbit: one with more passes close to a centre.
+_MOST_STEPS_PER_PART = 400
+# How closely the edge follows the largest values of an orbit.
+_SHARPNESS = 50.0
+# Largest distance between the ends of neighbouring parts of an orbit, in units of the well.
+_LARGEST_GAP = 1e-10
+
+
+class PeriodicOrbit(NamedTuple):
+    """One period of an orbit over a saddle, from where it turns around at its end with the smallest q in the axes of the saddle.
+
+    Attributes
+    ----------
+    period
+        Its period, dimensionless.
+    path
+        (4, 201) x, y, ẋ, ẏ, evenly spaced in time; the last point is the first one.
+    edge
+        The u − a q² of a line just outside the orbit, in the axes of the saddle, dimensionless; a: `ridge_bend`.
+    multipliers
+        (4,) complex eigenvalues of the monodromy matrix, the largest modulus first.
+    """
+
+    period: float
+    path: np.ndarray
+    edge: float
+    multipliers: np.ndarray
+
+
+class _Family(NamedTuple):
+    """The orbits over one saddle of a potential: the saddle at rest as a state (4,), its energy, its axes and `ridge_bend`."""
+
+    potential: Potential
+    state: np.ndarray
+    energy: float
+    axes: Axes
+    bend: float
+
+
+class _Parts(NamedTuple):
+    """The parts of a trial orbit between its nodes: steps (m, 5) each, states (nodes, 4) at the ends, transition matrices."""
+
+    steps: list[np.ndarray]
+    ends: np.ndarray
+    matrices: np.ndarray
+
+
+def find_periodic_orbit(potential: Potential, energy: float, channel: int) -> PeriodicOrbit | None:
+    """The orbit over a saddle at an energy above it, followed from the small oscillations; None if it is not found.
+
+    Parameters
+    ----------
+    potential
+        The potential in units of its well, in any frame.
+    energy
+        h, above the energy of the saddle, dimensionless.
+    channel
+        Number of the saddle, from 1.
+    """
+    saddle = potential.saddles[channel - 1]
+    height = float(potential.saddle_energies[channel - 1])
+    family = _Family(
+        potential, np.array([*saddle, 0.0, 0.0]), height, saddle_axes(potential, channel), ridge_bend(potential, channel)
+    )
+    with np.errstate(all="ignore"):
+        orbit = _follow(family, float(np.sqrt(energy - height)))
+        return None if orbit is None else _finish(family, energy, orbit)
+
+
+def multipliers_of(matrix: np.ndarray) -> np.ndarray:
+    """(4,) complex eigenvalues of a monodromy matrix, the largest modulus first."""
+    values = np.linalg.eigvals(matrix).astype(complex)
+    ordered: np.ndarray = values[np.argsort(-np.abs(values), kind="stable")]
+    return ordered
+
+
+def monodromy_matrix(potential: Potential, start: np.ndarray, period: float) -> np.ndarray:
+    """(4, 4) the flow linearised along one period from a state (4,), in units of the well."""
+    kernels = kernels_of(potential)
+    steps = trace_steps(kernels, start, period, len(potential.outcomes))
+    durations = np.diff(steps[:, 4], append=period)
+    columns = np.eye(4)
+    for state, duration in zip(steps[:, :4], durations, strict=True):
+        kernels.tangent(4, np.full(4, duration), *np.repeat(state, 4).reshape(4, 4), *columns)
+    return columns
+
+
+def _follow(family: _Family, sigma: float) -> np.ndarray | None:
+    """The unknowns of the orbit at σ, see `_correct`, followed from σ = 0 with an adaptive step; None if this fails."""
+    places, found = [0.0], [_small_oscillation(family)]
+    step = sigma
+    for _ in range(_MOST_STEPS):
+        target = min(places[-1] + step, sigma)
+        predicted = _extrapolate(places[-_PREDICTED_FROM:], found[-_PREDICTED_FROM:], target)
+        corrected = _correct(family, target, predicted)
+        if corrected is not None:
+            places.append(target)
+            found.append(corrected)
+            step *= 2.0
+            if target == sigma:
+                return corrected
+        elif step > _SMALLEST_STEP * sigma:
+            step *= 0.5
+        else:
+            return None
+    return None
+
+
+def _small_oscillation(family: _Family) -> np.ndarray:
+    """The unknowns of `_correct` in the limit σ = 0."""
+    rotation, axes = family.potential.rotation, family.axes
+    flow = np.zeros((4, 4))
+    flow[:2, 2:] = np.eye(2)
+    flow[2:, :2] = -family.potential.hessian_matrix(*family.state[:2])
+    flow[2:, 2:] = 2.0 * rotation * np.array([[0.0, 1.0], [-1.0, 0.0]])
+    values, vectors = np.linalg.eig(flow)
+    centre = int(np.argmax(values.imag))
+    frequency, vector = float(values[centre].imag), vectors[:, centre]
+    # Turned so that q is at its minimum at t = 0.
+    across = axes.outward[0] * vector[1] - axes.outward[1] * vector[0]
+    turned = -vector * np.conj(across) / np.abs(across)
+    start = turned.real
+    size = 0.5 * (start[2:] @ start[2:] - start[:2] @ flow[2:, :2] @ start[:2])
+    angles = 2.0 * np.pi * np.arange(_NODES) / _NODES
+    nodes = (turned[None] * np.exp(1j * angles)[:, None]).real / np.sqrt(size)
+    return np.append(nodes, 2.0 * np.pi / frequency)
+
+
+def _extrapolate(places: list[float], values: list[np.ndarray], target: float) -> np.ndarray:
+    """The polynomial through the values at the places, at the target."""
+    points = np.array(places)
+    weights = [np.prod((target - np.delete(points, k)) / (place - np.delete(points, k))) for k, place in enumerate(points)]
+    predicted: np.ndarray = np.array(weights) @ np.array(values)
+    return predicted
+
+
+def _correct(family: _Family, sigma: float, predicted: np.ndarray) -> np.ndarray | None:
+    """The orbit at σ near a predicted one by Newton's method; None if it does not converge to one nearby.
+
+    Unknowns (4 nodes + 1,): (state − saddle)/σ at the nodes, evenly spaced over the period, and the period.
+    """
+    unknowns: np.ndarray = predicted.copy()
+    before = np.inf
+    nearly_exact = max(_NEARLY_EXACT, _ROUNDINGS * float(np.spacing(abs(family.energy))) / sigma**2)
+    for _ in range(_MOST_CORRECTIONS):
+        correction = _newton_step(family, sigma, unknowns)
+        if correction is None:
+            return None
+        unknowns = unknowns + correction
+        size = _relative_size(correction, unknowns)
+        if not _relative_size(unknowns - predicted, unknowns) < _LARGEST_CHANGE:
+            return None
+        if size < nearly_exact and size > 0.1 * before:
+            return unknowns
+        before = size
+    return None
+
+
+def _relative_size(change: np.ndarray, unknowns: np.ndarray) -> float:
+    """The largest change of a state, in units of the largest one, or of the period."""
+    states = np.abs(change[:-1]).max() / np.abs(unknowns[:-1]).max()
+    return float(max(states, np.abs(change[-1] / unknowns[-1])))
+
+
+def _newton_step(family: _Family, sigma: float, unknowns: np.ndarray) -> np.ndarray | None:
+    """The least-squares solution of the linearised equations; None where the trial orbit cannot be integrated.
+
+    The equations: each part ends where the next one begins, the energy is that of the saddle plus σ², and q̇ = 0 at the start.
+    """
+    states = family.state + sigma * unknowns[:-1].reshape(_NODES, 4)
+    parts = _trace(family.potential, states, unknowns[-1])
+    if parts is None:
+        return None
+    jacobian, residual = np.zeros((4 * _NODES + 2, unknowns.size)), np.empty(4 * _NODES + 2)
+    residual[:-2] = ((parts.ends - np.roll(states, -1, axis=0)) / sigma).ravel()
+    jacobian[:-2, -1] = (_velocities(family.potential, parts.ends) / (_NODES * sigma)).ravel()
+    for k in range(_NODES):
+        here, following = slice(4 * k, 4 * k + 4), slice(4 * ((k + 1) % _NODES), 4 * ((k + 1) % _NODES) + 4)
+        jacobian[here, here] += parts.matrices[k]
+        jacobian[here, following] -= np.eye(4)
+    start, outward = states[0], family.axes.outward
+    residual[-2] = (family.potential.energy(start) - family.energy) / sigma**2 - 1.0
+    jacobian[-2, :4] = np.array([*family.potential.gradient(start[0], start[1]), start[2], start[3]]) / sigma
+    jacobian[-1, 2:4] = -outward[1], outward[0]
+    residual[-1] = jacobian[-1, :4] @ unknowns[:4]
+    if not (np.isfinite(residual).all() and np.isfinite(jacobian).all()):
+        return None
+    correction: np.ndarray = -np.linalg.lstsq(jacobian, residual, rcond=None)[0]
+    return correction
+
+
+def _velocities(potential: Potential, states: np.ndarray) -> np.ndarray:
+    """(n, 4) time derivatives of states (n, 4)."""
+    x, y, vx, vy = states.T
+    slope_x, slope_y = potential.gradient(x, y)
+    twice = 2.0 * potential.rotation
+    return np.column_stack([vx, vy, twice * vy - slope_x, -twice * vx - slope_y])
+
+
+def _trace(potential: Potential, states: np.ndarray, period: float) -> _Parts | None:
+    """The parts of an orbit that start at its nodes (nodes, 4), each as long as the distance in time of two nodes."""
+    if not (np.isfinite(states).all() and 0.0 < period < np.inf):
+        return None
+    kernels, duration = kernels_of(potential), period / _NODES
+    steps = [next(trace_pieces(kernels, state, duration, len(potential.outcomes)))[0] for state in states]
+    if max(map(len, steps)) > _MOST_STEPS_PER_PART:
+        return None
+    counts = np.cumsum([len(each) for each in steps])
+    durations = np.concatenate([np.diff(each[:, 4], append=duration) for each in steps])
+    every_step = np.concatenate(steps)[:, :4]
+    if not np.isfinite(every_step).all():
+        return None
+    matrices = np.moveaxis(transition_matrices(kernels, every_step.T, durations), -1, 0)
+    products = [_product(part) for part in np.split(matrices, counts[:-1])]
+    ends = advance_states(kernels, every_step[counts - 1], durations[counts - 1])
+    return _Parts(steps, ends, np.array(products))
+
+
+def _product(matrices: np.ndarray) -> np.ndarray:
+    """(4, 4) the product of transition matrices (n, 4, 4), the first one applied first."""
+    product: np.ndarray = functools.reduce(lambda before, matrix: matrix @ before, matrices)
+    return product
+
+
+def _finish(family: _Family, energy: float, unknowns: np.ndarray) -> PeriodicOrbit | None:
+    """The path, the edge and the multipliers of an orbit; None if its parts do not fit."""
+    sigma, period = float(np.sqrt(energy - family.energy)), float(unknowns[-1])
+    states = family.state + sigma * unknowns[:-1].reshape(_NODES, 4)
+    parts = _trace(family.potential, states, period)
+    if parts is None or not np.abs(parts.ends - np.roll(states, -1, axis=0)).max() < _LARGEST_GAP:
+        return None
+    kernels, duration = kernels_of(family.potential), period / _NODES
+    times = np.arange(_POINTS_PER_NODE) * (duration / _POINTS_PER_NODE)
+    pieces = [sample_path(kernels, steps, times) for steps in parts.steps]
+    path = np.concatenate([*pieces, states[:1].T], axis=1)
+    edge = _edge(family, path)
+    return PeriodicOrbit(period, path, edge, multipliers_of(_product(parts.matrices)))
+
+
+def _edge(family: _Family, path: np.ndarray) -> float:
+    """A little more than the largest u − a q² on the path (4, points) of an orbit; a: `ridge_bend`.
+
+    The largest value itself is no smooth function of the energy where a second place on the orbit takes the lead.
+    """
+    u, q = family.axes.coordinates(path[:2, :-1])
+    offset = u - family.bend * q * q
+    spread = float(offset.std())
+    relative = (offset - offset.mean()) / spread
+    return float(offset.mean()) + spread / _SHARPNESS * float(np.log(np.exp(_SHARPNESS * relative).sum()))

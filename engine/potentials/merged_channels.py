@@ -1,0 +1,80 @@
+"""Exits of several channels: above a maximum of V between channels no wall separates these, and they are one exit.
+
+Such an exit has the lowest of the numbers of its channels as its number, and all of them in its name: "1+3".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+
+class ChannelMerger(NamedTuple):
+    """A maximum (x, y) between exits: above V = `energy` there, the `channels` around it are one channel."""
+
+    energy: float
+    x: float
+    y: float
+    channels: tuple[int, ...]
+
+
+class MergedExit(NamedTuple):
+    """The numbers of two or more channels that are one exit, rising, and whether it leads all around the well."""
+
+    channels: tuple[int, ...]
+    closes_ring: bool
+
+    @property
+    def name(self) -> str:
+        """Its name, such as "1+3"."""
+        return name_channels(self.channels)
+
+
+def name_channels(channels: Sequence[int]) -> str:
+    """The numbers of an exit as its name: "1", or "1+3" if it has several channels."""
+    return "+".join(map(str, channels))
+
+
+def merged_exits(mergers: Sequence[ChannelMerger], energy: float) -> tuple[MergedExit, ...]:
+    """The exits of several channels at an energy, the lowest number first."""
+    merged = [merger.channels for merger in mergers if energy > merger.energy]
+    groups: list[set[int]] = []
+    for channels in merged:
+        joined = [group for group in groups if not group.isdisjoint(channels)]
+        groups = [group for group in groups if group not in joined] + [set(channels).union(*joined)]
+    # As many maxima as channels, or more, surround the well.
+    connections = [sum(len(channels) - 1 for channels in merged if group.issuperset(channels)) for group in groups]
+    return tuple(
+        sorted(MergedExit(tuple(sorted(group)), count >= len(group)) for group, count in zip(groups, connections, strict=True))
+    )
+
+
+def exit_numbers(mergers: Sequence[ChannelMerger], outcomes: int) -> np.ndarray:
+    """(mergers + 1, outcomes + 1) the number of the exit that each outcome is part of, above the first k of sorted mergers."""
+    numbers = np.tile(np.arange(outcomes + 1, dtype=np.int8), (len(mergers) + 1, 1))
+    for k in range(len(mergers)):
+        for merged in merged_exits(mergers[: k + 1], np.inf):
+            numbers[k + 1, list(merged.channels)] = merged.channels[0]
+    return numbers
+
+
+def describe_channel(channel: int, mergers: Sequence[ChannelMerger], low: float, high: float) -> str:
+    """The name of the exit that a channel is, or is part of, at the energies from `low` to `high`.
+
+    "1", "1+3" for the lowest of the numbers, "3 in 1+3" for another one, "1, 1+3 above h = 0.3" for a range of energies.
+    """
+    names = [(low, _name_at(channel, mergers, low))]
+    for energy in sorted(merger.energy for merger in mergers if low <= merger.energy < high):
+        name = _name_at(channel, mergers, np.nextafter(energy, np.inf))
+        if name != names[-1][1]:
+            names.append((energy, name))
+    return ", ".join([names[0][1], *(f"{name} above h = {energy:.6g}" for energy, name in names[1:])])
+
+
+def _name_at(channel: int, mergers: Sequence[ChannelMerger], energy: float) -> str:
+    for merged in merged_exits(mergers, energy):
+        if channel in merged.channels:
+            return merged.name if channel == merged.channels[0] else f"{channel} in {merged.name}"
+    return str(channel)

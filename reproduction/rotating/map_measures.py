@@ -1,0 +1,82 @@
+"""Measures of complete maps that are compared with the papers: shares, escape times by place, exponents of boundaries."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine import EscapeMap, Fate, compute_uncertainty_exponent
+
+ISLAND_PIXELS = 2
+"""Largest distance of a start from a bounded one, in pixels, that counts as next to an island."""
+
+LATE = 0.01
+"""Share of the orbits that end, those that end last."""
+
+# Limit of the integration time of the pairs, in time units of the well.
+_WORK = 1e7
+_NEIGHBOURHOOD = (3, 3)
+
+
+@dataclass(frozen=True)
+class EndTimes:
+    """Median times to the end of orbits, NaN without any.
+
+    Attributes
+    ----------
+    inside
+        Of starts whose eight neighbours end alike.
+    at_boundary
+        Of starts next to one with another outcome, but not next to a bounded one.
+    """
+
+    inside: float
+    at_boundary: float
+
+
+def outcome_share(frame: EscapeMap, *codes: int) -> float:
+    """Percentage of the interior starts with one of these fates."""
+    fractions = frame.fractions()
+    return 100.0 * sum(fractions[code] for code in codes)
+
+
+def bounded_share_beside(frame: EscapeMap, sign: int) -> float:
+    """Percentage of the interior starts with x of this sign, 1 or −1, whose orbits are bounded."""
+    beside = frame.interior & (sign * frame.x > 0.0)
+    return 100.0 * float(np.mean(frame.fate[beside] == Fate.BOUNDED))
+
+
+def end_times(frame: EscapeMap) -> EndTimes:
+    """Median times to the end inside basins and at their boundaries."""
+    from scipy import ndimage
+
+    fate, counts, most = frame.fate, frame.interior, len(frame.spec.outcomes)
+    lowest = ndimage.minimum_filter(np.where(counts, fate, most), _NEIGHBOURHOOD, mode="nearest")
+    highest = ndimage.maximum_filter(np.where(counts, fate, 0), _NEIGHBOURHOOD, mode="nearest")
+    at_basins = (fate > Fate.BOUNDED) & (lowest > Fate.BOUNDED)
+    times = [frame.escape_time[at_basins & place] for place in (lowest == highest, lowest < highest)]
+    return EndTimes(*(float(np.median(each)) if each.size else float("nan") for each in times))
+
+
+def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
+    """Percentage of the starts that end, or of the last of them, within `ISLAND_PIXELS` of a bounded start."""
+    from scipy import ndimage
+
+    near = ndimage.distance_transform_edt(frame.fate != Fate.BOUNDED) <= ISLAND_PIXELS
+    ended = frame.fate > Fate.BOUNDED
+    if late:
+        ended &= frame.escape_time >= np.quantile(frame.escape_time[ended], 1.0 - LATE)
+    return 100.0 * float(np.mean(near[ended]))
+
+
+def boundary_exponent(frame: EscapeMap) -> float:
+    """Uncertainty exponent of the boundaries, 1 for smooth ones; NaN if too few starts are uncertain."""
+    return compute_uncertainty_exponent(frame.spec, work=_WORK).exponent
+
+
+def local_exponents(abscissae: Sequence[float], values: Sequence[float]) -> list[float]:
+    """Exponents of the power laws between neighbouring points with positive coordinates."""
+    exponents: list[float] = (np.diff(np.log(values)) / np.diff(np.log(abscissae))).tolist()
+    return exponents

@@ -1,0 +1,96 @@
+"""Maps of systems in rotating frames, and with bodies, that four papers study.
+
+The papers' planes, windows and grids could not be looked up: those of this module are chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from engine import POTENTIALS, Coordinate, MapSpec, Plane, Potential, Slice, Window, parse_formula
+
+BODY_RADII = (1e-5, 1e-4, 1e-3, 1e-2)
+"""Radii of both bodies of the Copenhagen problem, in units of their distance."""
+
+# Islands around the Moon are small.
+_SIDE, _SIDE_AT_MOON = 150, 300
+# In units of time of the system; orbits around the Moon end soon.
+_T_MAX, _T_MAX_AT_MOON = 1e3, 1e2
+
+_RETROGRADE = Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.BETA, -0.5 * np.pi),))
+
+# Four overlapping discs, far enough from the hills for V < 0.001 in them, stand for the four directions between the hills.
+_FOUR_HILLS = (
+    "x²y² exp(−r²); centre the right (10, 0) 7.08; centre the top (0, 10) 7.08; centre the left (−10, 0) 7.08; "
+    "centre the bottom (0, −10) 7.08; escape 20"
+)
+
+
+@dataclass(frozen=True)
+class PaperMap:
+    """A map with the name of its row in a table.
+
+    Attributes
+    ----------
+    name
+        What distinguishes it from the other maps of the paper.
+    spec
+        The request.
+    """
+
+    name: str
+    spec: MapSpec
+
+
+def four_hills() -> Potential:
+    """Four hills at (±1, ±1), of height e⁻²; discs to the right, at the top, to the left and at the bottom stand for exits."""
+    return parse_formula(_FOUR_HILLS, "Four hills")
+
+
+def copenhagen(radius: float) -> Potential:
+    """The Copenhagen problem with bodies of another radius, 1e-6 to 1e6, in units of their distance; ValueError otherwise."""
+    potential = POTENTIALS["Copenhagen"]
+    return potential.with_outcomes([replace(body, radius=radius) for body in potential.centres], potential.escape_radius)
+
+
+def _earth_moon() -> tuple[PaperMap, ...]:
+    names = {-1.108: "both necks closed", -1.1055: "L1 open", -1.102: "L1 open", -1.0985: "L1 open", -1.085: "both open"}
+    moon, size = POTENTIALS["Earth-Moon"], (_SIDE_AT_MOON, _SIDE_AT_MOON)
+    specs = {h: MapSpec(moon, Plane.X_PX, h, size, t_max=_T_MAX_AT_MOON) for h in names}
+    return tuple(PaperMap(f"{names[h]}, h = −{-h}", spec) for h, spec in specs.items())
+
+
+def _copenhagen() -> tuple[PaperMap, ...]:
+    window, size = Window(-2.0, 2.0, -2.0, 2.0), (_SIDE, _SIDE)
+    specs = {radius: MapSpec(copenhagen(radius), _RETROGRADE, -1.6, size, window, t_max=_T_MAX) for radius in BODY_RADII}
+    return tuple(PaperMap(f"radius {radius:.5f}".rstrip("0"), spec) for radius, spec in specs.items())
+
+
+def _star_cluster() -> tuple[PaperMap, ...]:
+    cluster, size = POTENTIALS["Star cluster"], (_SIDE, _SIDE)
+    return tuple(PaperMap(f"h = −{-h}", MapSpec(cluster, Plane.X_PX, h, size, t_max=_T_MAX)) for h in (-1.85, -1.75, -1.5))
+
+
+def _four_hills() -> tuple[PaperMap, ...]:
+    hills, size, window = four_hills(), (_SIDE, _SIDE), Window(-2.5, 2.5, -0.6, 0.6)
+    energies = {share: share * float(np.exp(-2.0)) for share in (0.3, 0.6, 0.9, 1.2)}
+    specs = {share: MapSpec(hills, Plane.X_PX, h, size, window, t_max=_T_MAX) for share, h in energies.items()}
+    return tuple(PaperMap(f"h = {share}/e²", spec) for share, spec in specs.items())
+
+
+PAPER_MAPS: Mapping[str, tuple[PaperMap, ...]] = MappingProxyType(
+    {
+        "Earth–Moon system": _earth_moon(),
+        "Copenhagen problem": _copenhagen(),
+        "Star cluster": _star_cluster(),
+        "Four hills": _four_hills(),
+    }
+)
+"""The maps by system."""
+
+LONG_MAP = replace(PAPER_MAPS["Copenhagen problem"][0].spec, resolution=(220, 220), t_max=1e4)
+"""The map of the Copenhagen problem with the smallest bodies, of more starts and longer: for the decay of the survival."""

@@ -1,0 +1,49 @@
+"""Rotating systems for tests: Hill's problem and the circular restricted three-body problem around its smaller body."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import heyoka as hy
+import numpy as np
+
+from engine import Potential, parse_formula
+
+EARTH_MOON = 1.215058560962404e-2
+"""Mass ratio of the catalogue of periodic orbits of the Jet Propulsion Laboratory."""
+
+
+def hill() -> Potential:
+    """Φ = −1/r − 3x²/2, Ω = 1."""
+    return parse_formula("-1/r - x² + ½y²").in_rotating_frame(1.0)
+
+
+def three_body(mu: float) -> Potential:
+    """The restricted three-body problem with the body of mass μ at the origin, the other one at x = −1; H = −C/2."""
+    larger = f"{1.0 - mu!r}"
+    return parse_formula(f"-{larger}/sqrt((x+1)²+y²) - {mu!r}/r - {larger}*x - {0.5 * (1.0 - mu) ** 2!r}").in_rotating_frame(1.0)
+
+
+def at_jacobi_constant(constant: float) -> float:
+    """The energy of the Jacobi constant C = x² + y² + 2(1 − μ)/r1 + 2μ/r2 − v² of the three-body problem."""
+    return -0.5 * constant
+
+
+def integrate(mu: float | None, start: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """(n, 4) states by heyoka at increasing times, the first of which is 0; mu None for Hill's problem."""
+    integrator = _integrator(mu)
+    integrator.time, integrator.state[:] = 0.0, start
+    return np.asarray(integrator.propagate_grid(list(times))[-1])
+
+
+@cache
+def _integrator(mu: float | None) -> hy.taylor_adaptive:
+    """From equations of motion written here."""
+    x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
+    nearby = (1.0 if mu is None else mu) * (x * x + y * y) ** -1.5
+    if mu is None:
+        force = 3.0 * x - nearby * x, -nearby * y
+    else:
+        far = (1.0 - mu) * ((x + 1.0) ** 2 + y * y) ** -1.5
+        force = x + 1.0 - mu - far * (x + 1.0) - nearby * x, y - far * y - nearby * y
+    return hy.taylor_adaptive([(x, vx), (y, vy), (vx, 2.0 * vy + force[0]), (vy, -2.0 * vx + force[1])], [0.1, 0.0, 0.0, 0.0])

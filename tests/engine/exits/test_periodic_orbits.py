@@ -1,0 +1,189 @@
+"""The Lyapunov orbits of rotating systems, and those at rest found by the same method."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, find_multipliers
+from engine.exits.lyapunov_orbits import exit_curve_over_chord
+from engine.exits.periodic_orbits import PeriodicOrbit, find_periodic_orbit
+from engine.potentials.catalogue import POTENTIALS
+from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
+from tests.engine.exits.test_lyapunov_orbits import ENERGIES
+from tests.fuzz.test_random_wells import random_well
+
+WELLS = [
+    *((CASES[name], h) for name, h in ENERGIES),
+    *((POTENTIALS[name], factor * POTENTIALS[name].escape_energy) for name in ("C5", "Barbanis") for factor in (1.1, 2.0)),
+    *((random_well(seed), factor * random_well(seed).escape_energy) for seed in (4, 6, 9, 11) for factor in (1.02, 2.0)),
+]
+each_well = pytest.mark.parametrize(("potential", "energy"), WELLS)
+# Channel 1 is beyond the smaller body, L2, channel 2 is L1.
+L1, L2 = 2, 1
+HILL_SADDLE = -0.5 * 3.0 ** (4.0 / 3.0)
+
+
+def orbit_of(potential: Potential, energy: float, channel: int) -> PeriodicOrbit:
+    """The orbit, in units of the well."""
+    orbit = find_periodic_orbit(potential.in_well_units, energy / potential.units.energy, channel)
+    assert orbit is not None
+    return orbit
+
+
+def path_of(potential: Potential, energy: float, channel: int) -> tuple[float, np.ndarray]:
+    """Period and path (4, 201) in the units of the potential."""
+    orbit = orbit_of(potential, energy, channel)
+    return orbit.period * potential.units.time, orbit.path * potential.units.state[:, None]
+
+
+def crossings_of(mu: float | None, period: float, path: np.ndarray) -> np.ndarray:
+    """(4, n) the states in which an orbit crosses y = 0, integrated by heyoka from the points before."""
+
+    def later(point: int, time: float) -> np.ndarray:
+        return integrate(mu, path[:, point], np.array([0.0, time]))[-1]
+
+    before = np.flatnonzero(path[1, :-1] * path[1, 1:] < 0.0).tolist()
+    times = [brentq(lambda time, k=k: later(k, time)[1], 1e-300, period / 200, xtol=1e-16) for k in before]
+    return np.array([later(k, time) for k, time in zip(before, times, strict=True)]).T
+
+
+@each_well
+def test_brake_orbits_are_found_by_continuation_too(potential: Potential, energy: float) -> None:
+    scaled = energy / potential.units.energy
+    for expected in find_lyapunov_orbits(potential.in_well_units, scaled):
+        orbit = find_periodic_orbit(potential.in_well_units, scaled, expected.channel)
+        assert orbit is not None
+        assert orbit.period == pytest.approx(expected.period, abs=1e-9)
+        path, wanted = orbit.path[:2], np.array([expected.x, expected.y])
+        # Mirrored orbits start at the other end.
+        from_the_other_end = np.roll(wanted[:, :-1], 100, axis=1)
+        assert min(np.abs(path - wanted).max(), np.abs(path[:, :-1] - from_the_other_end).max()) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("channel", "jacobi", "period", "stability"),
+    [
+        (L1, 3.15273107702723, 2.8325231152377177, 964.064108375553),
+        (L1, 3.08822007759733, 3.208925672981277, 485.414013814097),
+        (L1, 2.9598499076413, 5.323648857835835, 76.1891993736543),
+        (L1, 2.91113555914615, 6.525492852637634, 53.6707952348081),
+        (L2, 3.16393725780824, 3.3894933326727212, 675.385278577229),
+        (L2, 3.05538226005407, 3.84882135824887, 216.77243118681),
+        (L2, 2.95787377644491, 5.640853006654308, 61.0217545317533),
+    ],
+)
+def test_orbits_of_earth_and_moon_are_those_of_the_catalogue(
+    channel: int, jacobi: float, period: float, stability: float
+) -> None:
+    """Three-Body Periodic Orbits of NASA's Jet Propulsion Laboratory, version 1.0: Earth-Moon, planar Lyapunov orbits.
+
+    Jacobi constant, period and stability index (λ + 1/λ)/2 of some members of both families, from a published copy of what its
+    interface served in October 2026.
+    """
+    orbit = orbit_of(three_body(EARTH_MOON), at_jacobi_constant(jacobi), channel)
+    assert orbit.period * three_body(EARTH_MOON).units.time == pytest.approx(period, rel=1e-9)
+    largest = orbit.multipliers[0].real
+    assert 0.5 * (largest + 1.0 / largest) == pytest.approx(stability, rel=1e-7)
+
+
+def test_orbit_of_oterma_is_that_of_a_computer_assisted_proof() -> None:
+    """Wilczak & Zgliczyński 2003, Commun. Math. Phys. 234, 37 (arXiv math/0201278): μ = 0.0009537, C = 3.03.
+
+    Their C includes μ(1 − μ). They enclose the points in which the Lyapunov orbits cross y = 0. The CAPD library, which they
+    wrote, has bounds of the period of the one around L1 among its examples: 3.082119126376508 to 3.082119126392904.
+    """
+    mu = 0.0009537
+    potential, energy = three_body(mu), at_jacobi_constant(3.03 - mu * (1.0 - mu))
+    period, path = path_of(potential, energy, L1)
+    assert 3.082119126376508 < period < 3.082119126392904
+    assert np.abs(crossings_of(mu, period, path)[0] + 1.0 - mu - 0.9208034913207400196).min() < 1e-11
+    period, path = path_of(potential, energy, L2)
+    assert np.abs(crossings_of(mu, period, path)[0] + 1.0 - mu - 1.081929486841799903).min() < 1e-11
+
+
+ROTATING = [
+    *((None, HILL_SADDLE + above, L2) for above in (1e-6, 0.05, 0.5, 1.5)),
+    *((EARTH_MOON, at_jacobi_constant(jacobi), channel) for jacobi in (3.17, 3.1, 2.95) for channel in (L1, L2)),
+]
+each_rotating = pytest.mark.parametrize(("mu", "energy", "channel"), ROTATING)
+
+
+def system(mu: float | None) -> Potential:
+    return hill() if mu is None else three_body(mu)
+
+
+@each_rotating
+def test_orbits_return_to_their_start_when_integrated_by_heyoka(mu: float | None, energy: float, channel: int) -> None:
+    period, path = path_of(system(mu), energy, channel)
+    integrated = integrate(mu, path[:, 0], np.linspace(0.0, period, 201))
+    np.testing.assert_allclose(integrated[-1], path[:, 0], rtol=0, atol=1e-10)
+    np.testing.assert_allclose(integrated, path.T, rtol=0, atol=1e-10)
+
+
+@each_rotating
+def test_the_jacobi_integral_is_the_energy_all_along_the_orbit(mu: float | None, energy: float, channel: int) -> None:
+    _, path = path_of(system(mu), energy, channel)
+    np.testing.assert_allclose(system(mu).energy(path.T), energy, rtol=0, atol=1e-12)
+
+
+@each_rotating
+def test_orbits_of_symmetric_systems_cross_the_axis_at_right_angles(mu: float | None, energy: float, channel: int) -> None:
+    period, path = path_of(system(mu), energy, channel)
+    # The velocity at right angles to the axis makes an orbit of a symmetric system symmetric.
+    crossings = crossings_of(mu, period, path)
+    assert crossings.shape == (4, 2)
+    np.testing.assert_allclose(crossings[[1, 2]], 0.0, rtol=0, atol=1e-11)
+    assert path[1].max() == pytest.approx(-path[1].min(), rel=1e-3)
+
+
+@each_rotating
+def test_multipliers_are_a_reciprocal_pair_and_a_pair_at_1(mu: float | None, energy: float, channel: int) -> None:
+    multipliers = orbit_of(system(mu), energy, channel).multipliers
+    assert abs(np.prod(multipliers) - 1.0) < 1e-8
+    assert np.abs(multipliers[[1, 2]] - 1.0).max() < 1e-5
+    assert multipliers[0].real > 10.0
+
+
+@pytest.mark.parametrize("above", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("channel", [1, 2])
+def test_the_period_converges_to_that_of_the_linear_centre(above: float, channel: int) -> None:
+    # In Hill's problem Φ_xx = −9 and Φ_yy = 3 at the saddles, so that s⁴ − 2s² − 27 = 0 and ν² = 2√7 − 1.
+    period, _ = path_of(hill(), HILL_SADDLE + above, channel)
+    assert period == pytest.approx(2.0 * np.pi / np.sqrt(2.0 * np.sqrt(7.0) - 1.0), abs=above)
+
+
+def test_an_orbit_in_a_frame_that_rotates_the_other_way_is_the_mirror_image() -> None:
+    forward, backward = (path_of(potential, -2.0, 1)[1] for potential in (hill(), hill().reversed_in_time))
+    np.testing.assert_allclose(backward[:, ::-1], forward * np.array([1.0, 1.0, -1.0, -1.0])[:, None], atol=1e-11)
+
+
+def test_no_orbit_is_found_where_the_family_cannot_be_followed() -> None:
+    well = three_body(EARTH_MOON).in_well_units
+    assert find_periodic_orbit(well, (well.saddle_energies[0] + 20.0), L2) is None
+
+
+def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:
+    return find_lyapunov_orbits(potential, energy)[0]
+
+
+@pytest.mark.parametrize("potential", [hill(), CASES["III"], POTENTIALS["C5"]], ids=lambda potential: potential.name)
+def test_multipliers_of_a_lyapunov_orbit_are_those_of_the_same_orbit_by_continuation(potential: Potential) -> None:
+    energy = -2.0 if potential.rotation else 1.5 * potential.escape_energy
+    found = find_multipliers(potential, first_orbit(potential, energy))
+    expected = orbit_of(potential, energy, 1).multipliers
+    assert found[0] == pytest.approx(expected[0], rel=1e-7)
+    assert abs(np.prod(found) - 1.0) < 1e-8
+
+
+def test_plots_show_the_whole_closed_path_of_an_orbit_in_a_rotating_frame() -> None:
+    orbit = first_orbit(hill(), -2.0)
+    assert orbit.half_path.shape == (201, 2)
+    np.testing.assert_allclose(orbit.half_path[0], orbit.half_path[-1], atol=1e-12)
+
+
+def test_the_exit_over_a_chord_in_a_rotating_frame_is_the_line() -> None:
+    well = hill().in_well_units
+    orbit = first_orbit(well, -2.0 / hill().units.energy)
+    assert exit_curve_over_chord(well, orbit) is orbit.curve

@@ -1,0 +1,67 @@
+"""Graphs of expressions: how few sums over all lower orders the series of a gradient need."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine.expressions.calculus import derivative
+from engine.expressions.graph import Graph, Node, evaluate, make_graph
+from engine.expressions.nodes import Expression
+from engine.potentials.formulas.formula_parser import parse_formula
+
+
+def definition_of(text: str) -> Expression:
+    definition = parse_formula(text).form.definition
+    assert isinstance(definition, Expression)
+    return definition
+
+
+def gradient_graph(text: str) -> Graph:
+    return make_graph(tuple(derivative(definition_of(text), axis) for axis in (0, 1)))[0]
+
+
+def curvature_graph(text: str) -> Graph:
+    slope = derivative(definition_of(text), 0)
+    return make_graph((slope, derivative(slope, 0)))[0]
+
+
+def nodes_of(graph: Graph, kind: str) -> list[Node]:
+    return [node for node in graph.nodes if node.kind == kind]
+
+
+def test_a_factor_is_multiplied_by_the_sum_of_what_it_has() -> None:
+    graph = gradient_graph("−1/√(r² + 1) − 2/√(r² + 4) − 3/√(r² + 9)")
+    # x², y², and x and y times one sum.
+    assert len(nodes_of(graph, "product")) == 4
+
+
+def test_sums_that_differ_in_their_constants_have_a_node_in_common() -> None:
+    shifts = nodes_of(gradient_graph("−1/√(r² + 1) − 2/√(r² + 4)"), "shift")
+    assert len(shifts) == 2
+    assert shifts[0].operands == shifts[1].operands
+
+
+@pytest.mark.parametrize(
+    ("text", "exponents"),
+    [
+        ("√(1 + x² + 2y²)", {0.5: None, -0.5: 0.5, -1.5: -0.5}),
+        ("−1/√(1 + x² + 2y²)", {-1.5: None, -2.5: -1.5}),
+        ("1/(1 + x² + 2y²)²", {-1.0: None}),
+    ],
+)
+def test_powers_of_a_base_follow_from_each_other(text: str, exponents: dict[float, float | None]) -> None:
+    graph = curvature_graph(text)
+    higher = {node.exponent: [graph.nodes[k].exponent for k in node.operands[1:]] for node in nodes_of(graph, "power")}
+    assert higher == {exponent: [] if other is None else [other] for exponent, other in exponents.items()}
+
+
+def test_the_slope_of_an_inverse_hyperbolic_sine_keeps_its_digits_where_its_argument_is_small() -> None:
+    graph, numbers = make_graph((derivative(definition_of("log(x + √(x² + y² + 1))"), 0),))
+    assert evaluate(graph, numbers, -1e6, 0.3)[0] == pytest.approx(1.0 / np.sqrt(1e12 + 1.09), rel=1e-15)
+
+
+def test_other_slopes_of_logarithms_of_roots_are_quotients() -> None:
+    graph, numbers = make_graph((derivative(definition_of("log(x + √(2x² + y² + 1))"), 0),))
+    root = np.sqrt(2.0 * 0.49 + 1.09)
+    assert evaluate(graph, numbers, 0.7, 0.3)[0] == pytest.approx((1.0 + 1.4 / root) / (0.7 + root), rel=1e-14)

@@ -1,0 +1,92 @@
+"""What rests on the symmetry of time reversal, on tori as evidence or on fixed steps is refused or off where it does not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engine import (
+    CASES,
+    MapSpec,
+    Plane,
+    Potential,
+    compute_birkhoff_digits,
+    compute_flux,
+    compute_map,
+    compute_regularity,
+    find_lyapunov_orbits,
+    find_stable_manifolds,
+    integrate_orbit,
+    judge_orbit,
+    parse_formula,
+    sample_entrances,
+)
+from engine.dynamics.certificates import Certificate
+from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS
+from engine.invariant_sets.exit_entry_points import find_entry_points
+from engine.invariant_sets.unstable_manifold import UnstableManifold
+from engine.maps.run import certifies_before
+from engine.potentials.outcomes import Centre
+
+ROTATING = parse_formula("½(x² + y²) + ½(x² + y²) - x² y").in_rotating_frame(0.5)
+ENERGY = 1.2 * ROTATING.escape_energy
+WITH_CENTRE = replace(CASES["I"], centres=(Centre(0.3, 0.0, 0.01),))
+WITH_RADIUS = replace(CASES["I"], escape_radius=3.0)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        compute_flux,
+        find_stable_manifolds,
+        find_entry_points,
+        lambda potential, energy: sample_entrances(potential, energy, 10),
+        lambda potential, energy: UnstableManifold.from_orbit(potential, find_lyapunov_orbits(potential, energy)[0]),
+    ],
+)
+def test_what_rests_on_time_reversal_refuses_rotating_frames(call: Callable[[Potential, float], Any]) -> None:
+    with pytest.raises(ValueError, match="its frame rotates"):
+        call(ROTATING, ENERGY)
+
+
+@pytest.mark.parametrize(
+    ("potential", "certifies"), [(CASES["I"], True), (ROTATING, False), (WITH_CENTRE, False), (WITH_RADIUS, False)]
+)
+def test_tori_are_evidence_in_wells_at_rest_only(potential: Potential, certifies: bool) -> None:
+    spec = MapSpec(potential, Plane.X_PX, 0.12, (4, 4), t_max=1e5)
+    assert certifies_before(spec, 1000.0, 1e4) == certifies
+
+
+def test_a_quasi_periodic_orbit_in_a_rotating_frame_is_bounded_by_integration_only() -> None:
+    state = (0.0, -0.1, np.sqrt(2.0 * (1.02 * ROTATING.escape_energy - ROTATING.value(0.0, -0.1))), 0.0)
+    digits = compute_birkhoff_digits(ROTATING, state, t_max=3000.0)
+    assert digits.digits[-1] > CERTIFIED_DIGITS
+    assert judge_orbit(integrate_orbit(ROTATING, state, t_max=3000.0), digits).certificate is Certificate.INTEGRATED
+
+
+def test_orbits_below_all_saddles_are_closed_unless_they_can_collide() -> None:
+    assert CASES["I"].is_closed_at(0.1)
+    assert ROTATING.is_closed_at(0.9 * ROTATING.escape_energy)
+    assert not CASES["I"].is_closed_at(0.13)
+    assert not WITH_CENTRE.is_closed_at(0.1)
+    assert not WITH_RADIUS.is_closed_at(0.1)
+    assert CASES["I"].is_closed_at(np.array([0.1, 0.2])).tolist() == [True, False]
+
+
+def test_a_colliding_orbit_below_the_saddles_is_not_marked_bounded() -> None:
+    start = (0.1, 0.0, 0.3, 0.0)
+    assert integrate_orbit(WITH_CENTRE, start, t_max=100.0).fate == WITH_CENTRE.channels + 1
+
+
+def test_regularity_of_maps_refuses_centres() -> None:
+    escapes = compute_map(MapSpec(WITH_CENTRE, Plane.X_PX, 0.12, (4, 4), t_max=100.0))
+    with pytest.raises(ValueError, match="has centres; regular and chaotic orbits of a map are computed with fixed steps"):
+        compute_regularity(escapes)
+
+
+def test_there_are_no_birkhoff_digits_around_centres() -> None:
+    assert compute_birkhoff_digits(WITH_CENTRE, (0.0, 0.1, 0.0, 0.2), t_max=3000.0).digits.size == 0

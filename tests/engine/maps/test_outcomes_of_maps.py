@@ -1,0 +1,89 @@
+"""Maps, statistics and curves of a system with two exits and a collision count and name all three."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine import (
+    CurvesSpec,
+    EscapeMap,
+    Fate,
+    Plane,
+    classify_orbits,
+    compute_curves,
+    compute_origin_fates,
+    compute_statistics,
+    open_result,
+    sample_starts,
+)
+from engine.service import tabulate_crossing_statistics
+from tests.disc import DISC, LABELS, disc_map
+
+
+@pytest.fixture(scope="module")
+def escape_map() -> EscapeMap:
+    return disc_map()
+
+
+def test_shares_are_of_each_outcome(escape_map: EscapeMap) -> None:
+    interior, shares = escape_map.fate[escape_map.interior], escape_map.fractions()
+    assert [shares[k] for k in (1, 2, 3)] == [float(np.mean(interior == k)) for k in (1, 2, 3)]
+    assert min(shares[k] for k in (1, 2, 3)) > 0.1
+    assert set(LABELS) <= set(escape_map.numbers())
+
+
+def test_orbits_that_end_at_a_singularity_are_counted_and_not_called_bounded(escape_map: EscapeMap) -> None:
+    fate = np.where(escape_map.fate == 3, Fate.FAILED, escape_map.fate)
+    unresolved = replace(escape_map, fate=fate)
+    assert unresolved.fractions()[Fate.FAILED] == escape_map.fractions()[3]
+    assert unresolved.fractions()[Fate.BOUNDED] == escape_map.fractions()[Fate.BOUNDED]
+    assert unresolved.numbers()["unresolved"] == escape_map.fractions()[3]
+
+
+def test_files_explain_the_code_of_a_collision(escape_map: EscapeMap) -> None:
+    assert escape_map.to_xarray()["fate"].attrs["codes"].endswith("; 3: collision with a disc")
+
+
+def test_statistics_have_a_count_for_each_outcome(escape_map: EscapeMap) -> None:
+    statistics = compute_statistics(escape_map)
+    assert statistics.channel_counts == tuple(int(np.sum(escape_map.fate == k)) for k in (1, 2, 3))
+    assert [outcome.label for outcome in statistics.outcomes] == LABELS
+    assert statistics.escaped == int(np.sum(escape_map.fate >= 1))
+
+
+def test_statistics_count_an_outcome_that_does_not_occur(escape_map: EscapeMap) -> None:
+    fate = np.where(escape_map.fate == 3, Fate.BOUNDED, escape_map.fate)
+    assert compute_statistics(replace(escape_map, fate=fate)).channel_counts[2] == 0
+
+
+def test_a_table_of_crossings_has_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
+    table = tabulate_crossing_statistics([escape_map])
+    np.testing.assert_allclose(table["share"].sel(fate=3), escape_map.fractions()[3])
+    assert "3: collision with a disc" in table["fate"].attrs["codes"]
+
+
+def test_curves_have_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
+    curves = compute_curves(CurvesSpec(DISC, Plane.X_PX, (0.19,), (40, 40), 300.0, exponent=False))
+    shares = escape_map.fractions()
+    np.testing.assert_allclose(curves.shares, [[shares[k] for k in (0, 1, 2, 3)]])
+    assert "3: collision with a disc" in curves.to_xarray()["fate"].attrs["codes"]
+
+
+def test_passages_are_counted_between_all_outcomes(escape_map: EscapeMap) -> None:
+    origins = compute_origin_fates(escape_map.spec)
+    counts = origins.count_passages()
+    assert counts.shape == (4, 4)
+    assert counts[3, 1] == np.sum((origins.origin == 3) & (origins.fate == 1)) > 0
+    assert "channel" not in origins.describe()
+
+
+def test_outcomes_of_orbits_come_back_from_a_file(tmp_path: Path) -> None:
+    found = classify_orbits(DISC, 0.19, sample_starts(DISC, 0.19, 50, seed=1), 100.0)
+    found.to_xarray().to_netcdf(tmp_path / "orbits.nc", engine="h5netcdf")
+    opened = open_result(tmp_path / "orbits.nc")
+    assert opened.outcomes == found.outcomes == DISC.outcomes
+    assert compute_statistics(opened).channel_counts == compute_statistics(found).channel_counts

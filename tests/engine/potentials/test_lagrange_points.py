@@ -1,0 +1,124 @@
+"""Equilibria of rotating systems and their energies beside solutions of the equilibrium equations with 40 digits."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+from engine import System, review_potential
+
+ACCURACY = 1e-12
+
+
+def critical(name: str) -> dict[tuple[float, float], float]:
+    """The energies of the critical points of a system by their places."""
+    return {(point.x, point.y): point.energy for point in review_potential(System(name).potential).critical_points}
+
+
+def nearest(name: str, x: mpmath.mpf, y: mpmath.mpf) -> tuple[float, float, float]:
+    points = critical(name)
+    place = min(points, key=lambda each: np.hypot(each[0] - float(x), each[1] - float(y)))
+    return (*place, points[place])
+
+
+def three_bodies(mu: mpmath.mpf, shift: mpmath.mpf):
+    """Φ of the restricted problem, with the masses 1 − μ at x = −shift and μ at 1 − shift, and the axis at x = μ − shift."""
+
+    def phi(x, y):
+        one, other = (mpmath.sqrt((x + shift - place) ** 2 + y**2) for place in (0, 1))
+        return -(1 - mu) / one - mu / other - ((x + shift - mu) ** 2 + y**2) / 2
+
+    return phi
+
+
+def equilibrium(phi, x: float, y: float) -> tuple[mpmath.mpf, mpmath.mpf, mpmath.mpf]:
+    with mpmath.workdps(40):
+        gradient = [lambda x, y, order=order: mpmath.diff(phi, (x, y), order) for order in ((1, 0), (0, 1))]
+        if y == 0.0:
+            place = (mpmath.findroot(lambda x: gradient[0](x, mpmath.mpf(0)), x), mpmath.mpf(0))
+        else:
+            place = tuple(mpmath.findroot(gradient, (x, y)))
+        return (*place, phi(*place))
+
+
+def check(name: str, x: mpmath.mpf, y: mpmath.mpf, energy: mpmath.mpf) -> None:
+    found = nearest(name, x, y)
+    size = float(mpmath.hypot(x, y)) or 1.0
+    assert abs(found[0] - x) < ACCURACY * size
+    assert abs(found[1] - y) < ACCURACY * size
+    assert abs(found[2] - energy) < ACCURACY * abs(energy)
+
+
+@pytest.mark.parametrize("guess", [(0.0, 0.0), (1.2, 0.0), (-1.2, 0.0), (0.0, 0.87), (0.0, -0.87)])
+def test_lagrange_points_of_copenhagen(guess: tuple[float, float]) -> None:
+    with mpmath.workdps(40):
+        half = mpmath.mpf(1) / 2
+        check("Copenhagen", *equilibrium(three_bodies(half, half), *guess))
+
+
+def test_l4_and_l5_of_copenhagen_form_equilateral_triangles() -> None:
+    with mpmath.workdps(40):
+        # Φ = −½ − ½ − ½ · ¾ at r = √3/2.
+        for sign in (1, -1):
+            check("Copenhagen", mpmath.mpf(0), sign * mpmath.sqrt(3) / 2, mpmath.mpf(-11) / 8)
+
+
+@pytest.mark.parametrize("guess", [(-0.15, 0.0), (0.17, 0.0), (-2.0, 0.0), (-0.5, 0.87), (-0.5, -0.87)])
+def test_lagrange_points_of_earth_and_moon(guess: tuple[float, float]) -> None:
+    mu = mpmath.mpf(System("Earth-Moon").value_of("m"))
+    with mpmath.workdps(40):
+        plain = three_bodies(mu, mpmath.mpf(1))
+        # The entry leaves out the constant term of −½(x + 1 − μ)².
+        check("Earth-Moon", *equilibrium(lambda x, y: plain(x, y) + (1 - mu) ** 2 / 2, *guess))
+
+
+def test_lagrange_points_of_earth_and_moon_are_the_known_ones() -> None:
+    mu = 0.01215
+    system = System("Earth-Moon", parameters={"m": mu})
+    l2, l1 = system.potential.saddles[:, 0] + 1.0 - mu
+    assert l1 == pytest.approx(0.8369, abs=6e-5)
+    assert l2 == pytest.approx(1.1557, abs=6e-5)
+
+
+def test_lagrange_points_of_hill() -> None:
+    with mpmath.workdps(40):
+        radius, energy = mpmath.cbrt(mpmath.mpf(1) / 3), -mpmath.power(3, mpmath.mpf(4) / 3) / 2
+        for sign in (1, -1):
+            check("Hill", sign * radius, mpmath.mpf(0), energy)
+
+
+def barred_galaxy(x, y):
+    """Jung & Zotos (2016), at z = 0: nucleus, disc (h + k = 3.175), halo, bar, and the rotation."""
+    r2, rate = x**2 + y**2, mpmath.mpf("4.5")
+    spheres = ((400, "0.25"), (7000, "3.175"), (20000, "20"))
+    central = sum(-mass / mpmath.sqrt(r2 + mpmath.mpf(size) ** 2) for mass, size in spheres)
+    near, far = (x + side * 10 + mpmath.sqrt((x + side * 10) ** 2 + y**2 + 1) for side in (-1, 1))
+    return central + mpmath.mpf(3500) / 20 * mpmath.log(near / far) - rate**2 * r2 / 2
+
+
+@pytest.mark.parametrize("guess", [(10.6, 0.0), (-10.6, 0.0), (0.0, 7.6), (0.0, -7.6)])
+def test_lagrange_points_of_the_barred_galaxy(guess: tuple[float, float]) -> None:
+    with mpmath.workdps(40):
+        check("Barred galaxy", *equilibrium(barred_galaxy, *guess))
+
+
+def test_energy_of_l2_of_the_barred_galaxy_is_the_published_one() -> None:
+    assert System("Barred galaxy").potential.escape_energy == pytest.approx(-3242.77217493, abs=1e-8)
+
+
+def test_lagrange_points_of_the_logarithmic_bar() -> None:
+    with mpmath.workdps(40):
+        core, q = mpmath.mpf(System("Logarithmic bar").value_of("c")), mpmath.mpf(System("Logarithmic bar").value_of("q"))
+        check("Logarithmic bar", mpmath.sqrt(1 - core**2), mpmath.mpf(0), -(1 - core**2) / 2)
+        y = mpmath.sqrt(1 - (q * core) ** 2)
+        check("Logarithmic bar", mpmath.mpf(0), y, mpmath.log(y**2 / q**2 + core**2) / 2 - y**2 / 2)
+
+
+def test_lagrange_points_of_the_star_cluster() -> None:
+    with mpmath.workdps(40):
+        core, k = (mpmath.mpf(System("Star cluster").value_of(letter)) for letter in "ck")
+        # x / (x² + c²)^(3/2) = (4 − κ²) x, for Ω = 1.
+        tide = 4 - k**2
+        x2 = mpmath.power(tide, mpmath.mpf(-2) / 3) - core**2
+        check("Star cluster", mpmath.sqrt(x2), mpmath.mpf(0), -1 / mpmath.sqrt(x2 + core**2) - tide * x2 / 2)

@@ -1,0 +1,61 @@
+"""Symmetries of rotating systems: reflection with time reversal, and rotation by π.
+
+For Φ even in y the orbits of (x, y, ẋ, ẏ, t) → (x, −y, −ẋ, ẏ, −t) are orbits; where Φ is even in x, too, so are those of
+(x, y, ẋ, ẏ, t) → (−x, −y, −ẋ, −ẏ, t).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from engine import MapSpec, Plane, System, classify_orbits, compute_map, sample_starts
+from engine.potentials.rotating_systems import ROTATING_ENTRIES
+
+ENERGIES = {
+    "Copenhagen": -1.6,
+    "Earth-Moon": -1.095,
+    "Hill": -2.0,
+    "Star cluster": -1.6,
+    "Barred galaxy": -3200.0,
+    "Logarithmic bar": -0.485,
+    "Two Yukawa centres": -0.4,
+}
+DURATION, STARTS = 10.0, 200
+REFLECTED, TURNED = np.array([1.0, -1.0, -1.0, 1.0]), -np.ones(4)
+# Images of the fates 1, 2, 3 under a rotation by π.
+TURNED_FATES = np.array([0, 2, 1, 3])
+
+
+@pytest.mark.parametrize("name", [entry.name for entry in ROTATING_ENTRIES])
+def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
+    potential, energy = System(name).potential, ENERGIES[name]
+    t_max = DURATION * potential.exact_time_unit
+    starts = sample_starts(potential, energy, STARTS, seed=5)
+    # Backward in time an orbit is one of the reversed system with the opposite velocity.
+    backward = classify_orbits(potential.reversed_in_time, energy, starts * [1.0, 1.0, -1.0, -1.0], t_max)
+    forward = classify_orbits(potential, energy, starts * REFLECTED, t_max)
+    assert np.count_nonzero(forward.fate) > 0
+    np.testing.assert_array_equal(backward.fate, forward.fate)
+    np.testing.assert_allclose(backward.escape_time, forward.escape_time, rtol=1e-6, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["Copenhagen", "Hill", "Star cluster", "Barred galaxy", "Two Yukawa centres"])
+def test_orbits_turned_by_half_a_circle_are_orbits(name: str) -> None:
+    potential, energy = System(name).potential, ENERGIES[name]
+    t_max = DURATION * potential.exact_time_unit
+    starts = sample_starts(potential, energy, STARTS, seed=6)
+    one, other = (classify_orbits(potential, energy, states, t_max) for states in (starts, starts * TURNED))
+    np.testing.assert_array_equal(TURNED_FATES[one.fate], other.fate)
+    np.testing.assert_allclose(one.escape_time, other.escape_time, rtol=1e-6, atol=1e-12)
+
+
+# On (x, px), y = 0, py > 0, the reflected start of (x, px) is (x, −px).
+@pytest.mark.parametrize("name", ["Copenhagen", "Barred galaxy"])
+def test_a_map_backward_is_the_reflected_map_forward(name: str) -> None:
+    potential, energy = System(name).potential, ENERGIES[name]
+    t_max = DURATION * potential.exact_time_unit
+    spec = MapSpec(potential, Plane.X_PX, energy, (40, 40), t_max=t_max)
+    forward = compute_map(spec)
+    backward = compute_map(MapSpec(potential, Plane.X_PX, energy, (40, 40), spec.find_window(), t_max=t_max, backward=True))
+    np.testing.assert_array_equal(backward.fate, forward.fate[::-1])

@@ -1,0 +1,102 @@
+"""Escapes by heyoka in any potential: an orbit leaves where its finely sampled path crosses that of a Lyapunov orbit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import heyoka as hy
+import numpy as np
+
+from engine import Potential
+from tests.peers import taylor_heyoka
+
+# Points of a path in each step, how often the interval of a crossing is divided into as many parts, and points of an exit.
+_SAMPLES, _ZOOMS, _EXIT_POINTS = 16, 5, 2001
+
+
+@dataclass(frozen=True)
+class Exits:
+    """The exits of one energy: (n, 2) paths and their channels."""
+
+    channels: list[int]
+    paths: list[np.ndarray]
+
+    def first_crossed(self, path: np.ndarray) -> tuple[int, int]:
+        """The segment of a path (m, 2) that crosses an exit first, and the channel of this exit; channel 0 if there is none."""
+        crossings = [(int(np.argmax(hits)), channel) for channel, hits in self._hits(path) if hits.any()]
+        return min(crossings, default=(0, 0))
+
+    def _hits(self, path: np.ndarray):
+        for channel, line in zip(self.channels, self.paths, strict=True):
+            if np.any(line.max(axis=0) < path.min(axis=0)) or np.any(path.max(axis=0) < line.min(axis=0)):
+                continue
+            along, apart = np.diff(line, axis=0)[:, None], path - line[:-1, None]
+            left = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+            along, apart = np.diff(path, axis=0)[:, None], line - path[:-1, None]
+            below = along[..., 0] * apart[..., 1] > along[..., 1] * apart[..., 0]
+            yield channel, ((left[:, 1:] != left[:, :-1]) & (below[:, 1:] != below[:, :-1]).T).any(axis=0)
+
+
+@dataclass(frozen=True)
+class End:
+    """Where (2,) and when an orbit ends, its channel, 0 for none, and how often y passed 0 upward before."""
+
+    channel: int
+    time: float
+    crossings: int
+    place: np.ndarray
+
+    @property
+    def outcome(self) -> tuple[int, int]:
+        """Channel and crossings."""
+        return self.channel, self.crossings
+
+
+class Peer:
+    """Orbits of a potential by heyoka, with one tolerance."""
+
+    def __init__(self, potential: Potential, tolerance: float) -> None:
+        self.upward: list[float] = []
+        # Without a reference to this object, which would never be freed.
+        passed = self.upward.append
+        y, upward = taylor_heyoka.coordinates()[1], hy.event_direction.positive
+        # heyoka does not copy a lambda.
+        rising = hy.nt_event(y, lambda _integrator, time, _sign: passed(time), direction=upward)
+        equations = taylor_heyoka.equations(potential)
+        self.integrator = hy.taylor_adaptive(equations, [0.0] * 4, tol=tolerance, nt_events=[rising], compact_mode=True)
+
+    def start(self, state: np.ndarray) -> None:
+        self.integrator.time = 0.0
+        self.integrator.state[:] = state
+        self.upward.clear()
+
+    def path_from_rest(self, place: np.ndarray, duration: float) -> np.ndarray:
+        """(n, 4) the states of an orbit that starts at rest."""
+        self.start(np.concatenate([place, [0.0, 0.0]]))
+        path: np.ndarray = self.integrator.propagate_grid(np.linspace(0.0, duration, _EXIT_POINTS))[-1]
+        return path
+
+    def end_of(self, state: np.ndarray, exits: Exits, t_max: float, farthest: float) -> End:
+        """The end of an orbit at the first exit that it crosses, at t_max, or at the distance `farthest`."""
+        self.start(state)
+        while self.integrator.time < t_max and np.hypot(*self.integrator.state[:2]) < farthest:
+            begin = self.integrator.time
+            self.integrator.step(max_delta_t=t_max - begin, write_tc=True)
+            end, channel = self._first_crossing(exits, begin, self.integrator.time)
+            if channel:
+                return End(channel, end, sum(time <= end for time in self.upward), self._path(np.array([end]))[0])
+        return End(0, self.integrator.time, len(self.upward), self.integrator.state[:2].copy())
+
+    def _first_crossing(self, exits: Exits, begin: float, end: float) -> tuple[float, int]:
+        """When an orbit crosses an exit first between two times of the last step, and its channel; 0 if it crosses none."""
+        crossed = 0
+        for _ in range(_ZOOMS):
+            times = np.linspace(begin, end, _SAMPLES)
+            segment, channel = exits.first_crossed(self._path(times))
+            if not channel:
+                break
+            (begin, end), crossed = times[segment : segment + 2], channel
+        return float(end), crossed
+
+    def _path(self, times: np.ndarray) -> np.ndarray:
+        return np.array([self.integrator.update_d_output(time)[:2].copy() for time in times])

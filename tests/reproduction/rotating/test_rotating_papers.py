@@ -1,0 +1,140 @@
+"""Comparisons with papers on rotating systems: the measures, and the tables of the document."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from engine import POTENTIALS, EscapeMap, Fate, MapSpec, Plane, compute_map, fit_decay_laws
+from reproduction.rotating.map_measures import (
+    bounded_share_beside,
+    end_times,
+    local_exponents,
+    outcome_share,
+    share_next_to_islands,
+)
+from reproduction.rotating.paper_maps import BODY_RADII, LONG_MAP, PAPER_MAPS, PaperMap, copenhagen, four_hills
+from reproduction.rotating.tables import COLUMNS, make_table
+
+SIDE = 12
+PAGE = Path(__file__).parents[3] / "docs" / "rotating-papers.md"
+
+BOUNDED = int(Fate.BOUNDED)
+# The system whose table is computed often.
+OFTEN = "Star cluster"
+
+
+@pytest.fixture(scope="module")
+def computed() -> EscapeMap:
+    return compute_map(MapSpec(POTENTIALS["Star cluster"], Plane.X_PX, -1.5, (SIDE, SIDE), t_max=50.0))
+
+
+def with_fates(computed: EscapeMap, columns: list[int]) -> EscapeMap:
+    """The map with one fate per column, and the number of the column as the escape time."""
+    times = np.tile(np.arange(SIDE, dtype=float), (SIDE, 1))
+    return replace(computed, fate=np.tile(np.array(columns, np.int8), (SIDE, 1)), escape_time=times)
+
+
+def test_shares_of_outcomes_add(computed: EscapeMap) -> None:
+    frame = with_fates(computed, [1] * 6 + [2] * 3 + [BOUNDED] * 3)
+    assert outcome_share(frame, 1) == 50.0
+    assert outcome_share(frame, 2, BOUNDED) == 50.0
+
+
+def test_bounded_starts_are_counted_on_one_side(computed: EscapeMap) -> None:
+    frame = with_fates(computed, [BOUNDED] * 3 + [1] * 9)
+    assert bounded_share_beside(frame, -1) == 50.0
+    assert bounded_share_beside(frame, 1) == 0.0
+
+
+def test_times_at_boundaries_are_those_of_neighbours_of_another_outcome(computed: EscapeMap) -> None:
+    times = end_times(with_fates(computed, [1] * 6 + [2] * 6))
+    assert times.at_boundary == 5.5
+    assert times.inside == 5.5
+
+
+def test_starts_next_to_islands_are_at_no_boundary_of_basins(computed: EscapeMap) -> None:
+    times = end_times(with_fates(computed, [1] * 6 + [BOUNDED] * 6))
+    assert np.isnan(times.at_boundary)
+    assert times.inside == 2.0
+
+
+def test_late_ends_are_those_with_the_longest_times(computed: EscapeMap) -> None:
+    frame = with_fates(computed, [1] * 10 + [BOUNDED] * 2)
+    assert share_next_to_islands(frame, late=False) == pytest.approx(20.0)
+    assert share_next_to_islands(frame, late=True) == 100.0
+
+
+def test_a_power_law_has_the_same_exponent_everywhere() -> None:
+    assert local_exponents([1.0, 10.0, 100.0], [3.0, 6.0, 12.0]) == pytest.approx([np.log10(2.0)] * 2)
+
+
+def test_bodies_have_the_given_radius() -> None:
+    assert [body.radius for body in copenhagen(0.02).centres] == [0.02, 0.02]
+
+
+def test_the_discs_of_the_four_hills_enclose_the_hills_and_leave_no_gap() -> None:
+    hills = four_hills()
+    x, y = 5.0 * np.cos(angles := np.linspace(0.0, 2.0 * np.pi, 721)), 5.0 * np.sin(angles)
+    far = np.sqrt(2.0) * np.array([x, y])
+    assert np.any([disc.contains(*far) for disc in hills.centres], axis=0).all()
+    span = np.linspace(-3.0, 3.0, 301)
+    places = np.meshgrid(span, span)
+    covered = np.any([disc.contains(*places) for disc in hills.centres], axis=0)
+    assert hills.value(*places)[covered].max() < 1e-3
+
+
+@pytest.mark.parametrize("paper_map", PAPER_MAPS["Four hills"], ids=lambda paper_map: paper_map.name)
+def test_every_orbit_leaves_the_four_hills(paper_map: PaperMap) -> None:
+    assert outcome_share(compute_map(replace(paper_map.spec, resolution=(40, 40))), BOUNDED) == 0.0
+
+
+def document_table(system: str) -> str:
+    (table,) = re.findall(rf"^\| {re.escape(system)} \|(?:.*\n)(?:\|.*\n)+", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    return table
+
+
+def cells(table: str) -> list[list[str]]:
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+
+
+@pytest.mark.parametrize("system", PAPER_MAPS)
+def test_tables_of_the_document_have_a_row_for_each_map(system: str) -> None:
+    heads, _, *rows = cells(document_table(system))
+    assert heads == [system, *COLUMNS[system]]
+    assert [row[0] for row in rows] == [paper_map.name for paper_map in PAPER_MAPS[system]]
+
+
+def test_the_exponents_of_the_document_follow_from_its_table() -> None:
+    heads, _, *rows = cells(document_table("Copenhagen problem"))
+    shares = [float(row[heads.index("collides")]) for row in rows]
+    found = ", ".join(f"{exponent:.2f}" for exponent in local_exponents(BODY_RADII, shares))
+    assert f"the exponent falls, {found}:" in PAGE.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "system",
+    [pytest.param(name, marks=pytest.mark.slow if name == OFTEN else pytest.mark.exhaustive) for name in PAPER_MAPS],
+)
+def test_tables_of_the_document_are_those_of_the_library(system: str) -> None:
+    # Orbits of the chaotic seas may end otherwise on another processor.
+    for stated, computed in zip(cells(document_table(system))[2:], cells(make_table(system))[2:], strict=True):
+        numbers = [(a, b) for a, b in zip(stated[1:], computed[1:], strict=True) if "none" not in (a, b)]
+        assert [float(a) for a, _ in numbers] == pytest.approx([float(b) for _, b in numbers], rel=0.05, abs=0.15)
+        assert [a for a in stated if a == "none"] == [b for b in computed if b == "none"]
+
+
+@pytest.mark.exhaustive
+def test_survivors_of_the_copenhagen_problem_are_those_of_the_document() -> None:
+    heads, _, stated = cells(document_table("survivors at"))
+    computed = compute_map(LONG_MAP)
+    times = computed.escape_time[computed.fate > Fate.BOUNDED]
+    found = [100.0 * float(np.mean(times > float(head.removeprefix("t = ")))) for head in heads[1:]]
+    assert [float(cell) for cell in stated[1:]] == pytest.approx(found, rel=0.05, abs=0.04)
+    exponential = fit_decay_laws(computed).exponential
+    assert exponential is not None
+    assert not exponential.plausible
