@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import astuple
+from functools import partial
 from typing import Any
 
 import numpy as np
+from bokeh.document import Document
 from bokeh.models import Range1d
 
 from engine import MapSpec, Window
@@ -32,11 +34,10 @@ class MapRanges:
 
     def __init__(self, on_zoom: Callable[[Window | None], None], on_rest: Callable[[], None]) -> None:
         self.x, self.ordinate = Range1d(-1.0, 1.0), Range1d(-1.0, 1.0)
-        self._on_zoom, self._on_rest = on_zoom, on_rest
+        self._on_zoom = on_zoom
         self._shown: Window | None = None
         self._home: Window | None = None
-        self._rest_timer: Any = None
-        self._gesture_timer: Any = None
+        self._rest, self._gesture = _Pause(REST_MS, self._rested), _Pause(GESTURE_PAUSE_MS, on_rest)
         self._following = False
         for edges in (self.x, self.ordinate):
             edges.on_change("start", self._moved)
@@ -45,7 +46,7 @@ class MapRanges:
     def follow(self, window: Window) -> None:
         """Go to the window of a new map, unless the ranges are being moved."""
         self._shown = window
-        if self._rest_timer is None:
+        if not self._rest.waits:
             self._following = True
             self.x.update(start=window.x_low, end=window.x_high)
             self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
@@ -53,7 +54,7 @@ class MapRanges:
 
     def go_to(self, window: Window) -> None:
         """Go to a window that is chosen, also by something else than a move, which is dropped if it is not reported yet."""
-        self._stop_waiting()
+        self._rest.cancel()
         self.follow(window)
 
     def set_home(self, home: MapSpec) -> None:
@@ -74,36 +75,19 @@ class MapRanges:
         """The end of a drag, or a step of the wheel, which has no end: the next one may follow."""
         self._rested()
         document = self.x.document
-        if document is not None and self._gesture_timer is None:
-            self._gesture_timer = document.add_timeout_callback(self._finish_gesture, GESTURE_PAUSE_MS)
-
-    def _finish_gesture(self) -> None:
-        self._gesture_timer = None
-        self._on_rest()
+        if document is not None and not self._gesture.waits:
+            self._gesture.start(document)
 
     def _moved(self, _name: str, _old: float, _new: float) -> None:
         """The ranges change: wait until they stop."""
         document = self.x.document
         if not self._following and document is not None:
-            self._stop_waiting()
-            if self._gesture_timer is not None:
-                document.remove_timeout_callback(self._gesture_timer)
-                self._gesture_timer = None
-            self._rest_timer = document.add_timeout_callback(self._waited, REST_MS)
-
-    def _stop_waiting(self) -> None:
-        if self._rest_timer is not None:
-            self.x.document.remove_timeout_callback(self._rest_timer)
-            self._rest_timer = None
-
-    def _waited(self) -> None:
-        # A timeout callback that runs is already removed.
-        self._rest_timer = None
-        self._rested()
+            self._gesture.cancel()
+            self._rest.start(document)
 
     def _rested(self) -> None:
         """The ranges have stopped: report the window."""
-        self._stop_waiting()
+        self._rest.cancel()
         x, ordinate = self.x, self.ordinate
         # The page and its browser can change a range at once.
         if not (x.start < x.end and ordinate.start < ordinate.end):
@@ -112,6 +96,40 @@ class MapRanges:
         if self._shown is None or is_near(window, self._shown):
             return
         self._on_zoom(None if self._home is not None and is_near(window, self._home) else window)
+
+
+class _Pause:
+    """Calls a function when some time has passed since the last start.
+
+    Bokeh runs a timeout callback that is due although it is removed while it waits for the lock of the document; it is no
+    longer the latest one then, and does nothing.
+    """
+
+    def __init__(self, length_ms: int, on_end: Callable[[], None]) -> None:
+        self._length_ms, self._on_end = length_ms, on_end
+        self._cancel: Callable[[], None] | None = None
+        self._starts = 0
+
+    @property
+    def waits(self) -> bool:
+        return self._cancel is not None
+
+    def start(self, document: Document) -> None:
+        self.cancel()
+        self._starts += 1
+        timer: Any = document.add_timeout_callback(partial(self._end, self._starts), self._length_ms)
+        self._cancel = partial(document.remove_timeout_callback, timer)
+
+    def cancel(self) -> None:
+        cancel, self._cancel = self._cancel, None
+        if cancel is not None:
+            cancel()
+
+    def _end(self, start: int) -> None:
+        if self.waits and start == self._starts:
+            # A callback that runs is already removed.
+            self._cancel = None
+            self._on_end()
 
 
 def is_near(one: Window, other: Window) -> bool:

@@ -64,6 +64,40 @@ def test_a_chosen_window_drops_a_move_that_is_not_reported() -> None:
     assert ranges.x.start == home.x_low
 
 
+def test_a_timer_that_is_due_when_the_ranges_move_on_reports_nothing() -> None:
+    zooms: list[Window | None] = []
+    ranges = MapRanges(zooms.append, lambda: None)
+    document = Document()
+    document.add_root(ranges.x)
+    ranges.follow(HOME.find_window())
+    ranges.x.start = -0.1
+    [timer] = document.session_callbacks
+    ranges.x.end = 0.1
+    # Bokeh calls it all the same, once the message that moved the ranges has released the lock.
+    timer.callback()
+    assert zooms == []
+    [timer] = document.session_callbacks
+    timer.callback()
+    assert [(zoom.x_low, zoom.x_high) for zoom in zooms if zoom] == [(-0.1, 0.1)]
+
+
+def test_a_step_within_the_pause_belongs_to_the_same_gesture() -> None:
+    ends: list[None] = []
+    ranges = MapRanges(lambda window: None, lambda: ends.append(None))
+    document = Document()
+    document.add_root(ranges.x)
+    ranges.follow(HOME.find_window())
+    ranges.end_gesture()
+    [pause] = document.session_callbacks
+    ranges.x.start = -0.1
+    pause.callback()
+    assert ends == []
+    ranges.end_gesture()
+    [pause] = document.session_callbacks
+    pause.callback()
+    assert ends == [None]
+
+
 def test_the_magnification_is_that_of_the_width() -> None:
     ranges = MapRanges(lambda window: None, lambda: None)
     ranges.set_home(HOME)
