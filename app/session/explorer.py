@@ -248,7 +248,10 @@ class Explorer:
 
     def _zoom_to(self, window: Window | None) -> None:
         self.links.history.begin_gesture()
-        self._show_window(window)
+        try:
+            self._show_window(window)
+        finally:
+            self.maps.ranges.finish_report()
 
     def _go_to_window(self, *events: Any) -> None:
         """Show the window of the state before its map is there, as a late report of an earlier move would count as a new one."""

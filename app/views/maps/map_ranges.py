@@ -20,6 +20,9 @@ GESTURE_PAUSE_MS = 500
 REST_MS = 90
 """A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
 
+Edges = tuple[float, float, float, float]
+"""Ends of the ranges of x and of the ordinate: low, high, low, high."""
+
 
 class MapRanges:
     """The ranges of x and of the ordinate, which all maps share.
@@ -27,7 +30,8 @@ class MapRanges:
     Parameters
     ----------
     on_zoom
-        Called with the window when the ranges have stopped changing; None is the whole interior.
+        Called with the window when the ranges have stopped changing; None is the whole interior. It calls `finish_report`, also
+        later: until then the ranges follow no other window, as a hand may have moved them on.
     on_rest
         Called `GESTURE_PAUSE_MS` after the end of the last drag or step of the wheel.
     """
@@ -38,7 +42,7 @@ class MapRanges:
         self._shown: Window | None = None
         self._home: Window | None = None
         self._rest, self._gesture = _Pause(REST_MS, self._rested), _Pause(GESTURE_PAUSE_MS, on_rest)
-        self._following = False
+        self._following, self._reports = False, 0
         for edges in (self.x, self.ordinate):
             edges.on_change("start", self._moved)
             edges.on_change("end", self._moved)
@@ -46,16 +50,27 @@ class MapRanges:
     def follow(self, window: Window) -> None:
         """Go to the window of a new map, unless the ranges are being moved."""
         self._shown = window
-        if not self._rest.waits:
-            self._following = True
-            self.x.update(start=window.x_low, end=window.x_high)
-            self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
-            self._following = False
+        if self._rest.waits or self._reports:
+            return
+        # What is written while the browser moves the ranges on replaces the move there: nothing is written for rounding.
+        if is_near(self._edges, window):
+            return
+        self._following = True
+        self.x.update(start=window.x_low, end=window.x_high)
+        self.ordinate.update(start=window.ordinate_low, end=window.ordinate_high)
+        self._following = False
 
     def go_to(self, window: Window) -> None:
-        """Go to a window that is chosen, also by something else than a move, which is dropped if it is not reported yet."""
-        self._rest.cancel()
+        """Go to a window that is chosen by something else than a move, which is dropped if it is not reported yet."""
+        if not self._reports:
+            self._rest.cancel()
         self.follow(window)
+
+    def finish_report(self) -> None:
+        """The window of a report is shown, or refused."""
+        self._reports -= 1
+        if self._shown is not None:
+            self.follow(self._shown)
 
     def set_home(self, home: MapSpec) -> None:
         """Set the map of the whole interior, and with it the smallest window, where zooming ends."""
@@ -88,14 +103,16 @@ class MapRanges:
     def _rested(self) -> None:
         """The ranges have stopped: report the window."""
         self._rest.cancel()
-        x, ordinate = self.x, self.ordinate
+        x_low, x_high, low, high = edges = self._edges
         # The page and its browser can change a range at once.
-        if not (x.start < x.end and ordinate.start < ordinate.end):
+        if not (x_low < x_high and low < high) or self._shown is None or is_near(edges, self._shown):
             return
-        window = Window(x.start, x.end, ordinate.start, ordinate.end)
-        if self._shown is None or is_near(window, self._shown):
-            return
-        self._on_zoom(None if self._home is not None and is_near(window, self._home) else window)
+        self._reports += 1
+        self._on_zoom(None if self._home is not None and is_near(edges, self._home) else Window(*edges))
+
+    @property
+    def _edges(self) -> Edges:
+        return self.x.start, self.x.end, self.ordinate.start, self.ordinate.end
 
 
 class _Pause:
@@ -132,8 +149,8 @@ class _Pause:
             self._on_end()
 
 
-def is_near(one: Window, other: Window) -> bool:
-    """Whether two windows are equal up to rounding in the browser."""
-    width, height = other.x_high - other.x_low, other.ordinate_high - other.ordinate_low
-    apart = np.abs(np.subtract(astuple(one), astuple(other)))
+def is_near(edges: Edges, window: Window) -> bool:
+    """Whether the ends of two ranges are those of a window up to rounding in the browser."""
+    width, height = window.x_high - window.x_low, window.ordinate_high - window.ordinate_low
+    apart = np.abs(np.subtract(edges, astuple(window)))
     return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))

@@ -64,6 +64,39 @@ def test_a_chosen_window_drops_a_move_that_is_not_reported() -> None:
     assert ranges.x.start == home.x_low
 
 
+def test_a_window_that_is_shown_late_does_not_undo_what_the_hand_did_since() -> None:
+    zooms: list[Window | None] = []
+    ranges = MapRanges(zooms.append, lambda: None)
+    document = Document()
+    document.add_root(ranges.x)
+    home = HOME.find_window()
+    ranges.follow(home)
+    ranges.x.update(start=-0.2, end=0.2)
+    ranges.end_gesture()
+    [reported] = zooms
+    assert reported is not None
+    ranges.ordinate.update(start=-0.1, end=0.1)
+    ranges.go_to(reported)
+    ranges.finish_report()
+    assert ranges.ordinate.end == 0.1
+    [timer] = document.session_callbacks
+    timer.callback()
+    assert zooms[-1] == Window(-0.2, 0.2, -0.1, 0.1)
+
+
+def test_ranges_do_not_follow_an_earlier_map_before_their_window_is_shown() -> None:
+    ranges = MapRanges(lambda window: None, lambda: None)
+    home = HOME.find_window()
+    ranges.follow(home)
+    ranges.x.update(start=-0.2, end=0.2)
+    ranges.end_gesture()
+    ranges.follow(home)
+    assert ranges.x.end == 0.2
+    # The window was refused.
+    ranges.finish_report()
+    assert ranges.x.end == home.x_high
+
+
 def test_a_timer_that_is_due_when_the_ranges_move_on_reports_nothing() -> None:
     zooms: list[Window | None] = []
     ranges = MapRanges(zooms.append, lambda: None)
