@@ -59,7 +59,7 @@ def by_engine(potential: Potential, energy: float, states: np.ndarray, duration:
     curves, n = closed_exits(potential)[None], len(states)
     counts, fates, pending = np.zeros((3, n), np.int64), np.full(n, NOT_COMPUTED, np.int8), np.ones(n, np.uint8)
     exits = propagate.Exits(exit_gates(curves), curves, counts[0])
-    orbits = propagate.Orbits(states.copy(), np.zeros(n), counts[1], counts[2], fates, pending)
+    orbits = propagate.Orbits(states.copy(), np.zeros(n), counts[1], counts[2], fates, pending, np.zeros((n, 2)))
     begin = time.process_time()
     steps = kernels_of(potential).propagate(np.arange(n), duration, True, TOLERANCE, 2**62, 0, exits, orbits, propagate.NO_TRACE)
     seconds = time.process_time() - begin

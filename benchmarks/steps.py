@@ -60,7 +60,7 @@ def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float
         counts = np.zeros((3, n), np.int64)
         begin = time.perf_counter()
         orbits = propagate.Orbits(
-            state, np.zeros(n), counts[1], counts[2], np.full(n, NOT_COMPUTED, np.int8), np.ones(n, np.uint8)
+            state, np.zeros(n), counts[1], counts[2], np.full(n, NOT_COMPUTED, np.int8), np.ones(n, np.uint8), np.zeros((n, 2))
         )
         exits = propagate.Exits(gates, curves, counts[0])
         steps = kernels.propagate(np.arange(n), horizon, True, tolerance, 2**62, 0, exits, orbits, propagate.NO_TRACE)

@@ -50,6 +50,8 @@ class OrbitBatch:
         (n,) int8: the channel beyond whose Lyapunov orbit the start lies; 0 if it lies inside.
     certificate
         (n,) int8 codes, see `Certificate`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
+    remainder
+        (n, 2) what rounding has dropped from x and y of `state`, see `engine.taylor.kernels.propagate.Orbits`.
     """
 
     state: np.ndarray
@@ -60,6 +62,7 @@ class OrbitBatch:
     curve_row: np.ndarray
     outside: np.ndarray
     certificate: np.ndarray
+    remainder: np.ndarray
 
     @classmethod
     def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
@@ -68,7 +71,7 @@ class OrbitBatch:
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
         states = np.full((n, 4), np.nan)
-        return cls(states, np.zeros(n), counts[0], counts[1], fate, curve_row, codes[0], codes[1])
+        return cls(states, np.zeros(n), counts[0], counts[1], fate, curve_row, codes[0], codes[1], np.zeros((n, 2)))
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
@@ -127,6 +130,7 @@ class OrbitBatch:
             (n, outcomes + 1) the image of each fate, see `Potential.mirror_numbers`.
         """
         self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
+        self.remainder[images] = self.remainder[which] * [-1.0, 1.0]
         for name in ("t", "crossings", "last_crossings"):
             getattr(self, name)[images] = getattr(self, name)[which]
         fate, orbits = self.fate[which], np.arange(which.size)
@@ -148,7 +152,7 @@ class OrbitBatch:
 
     def for_kernels(self, pending: np.ndarray) -> Orbits:
         """The arrays that `propagate` changes in place; pending (n,) uint8: 1 for the orbits to propagate."""
-        return Orbits(self.state, self.t, self.crossings, self.last_crossings, self.fate, pending)
+        return Orbits(self.state, self.t, self.crossings, self.last_crossings, self.fate, pending, self.remainder)
 
     @property
     def nbytes(self) -> int:

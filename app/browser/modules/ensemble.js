@@ -5,12 +5,14 @@
  */
 
 import {crossedExit, exitCurves, findExitTime, passedExit} from "./exits.js"
-import {FLAGS, PX, PY, SIZE, T, X, Y} from "./integrator.js"
+import {FLAGS, PX, PY, SIZE, T, X, X_REMAINDER, Y, Y_REMAINDER} from "./integrator.js"
 import {seriesSlope, seriesValue} from "./series.js"
 
 /** Orbits are followed for this long beyond an exit that is no disc, in units of the well. */
 export const AFTERGLOW = 1.5
 const ROOT_HALVINGS = 40
+/** What a step takes and gives of each orbit, besides the time. */
+const STATE = [X, Y, PX, PY, X_REMAINDER, Y_REMAINDER]
 
 export class Ensemble {
   /**
@@ -25,7 +27,7 @@ export class Ensemble {
     this.#starts = states
     this.#terms = integrator.system.layout.order + 1
     this.#series = new Float64Array(2 * this.#terms * count)
-    this.#ends = new Float64Array(states.length)
+    this.#ends = new Float64Array(STATE.length * count)
     this.#begin = new Float64Array(count)
     this.#size = new Float64Array(count)
     this.#leaving = new Uint8Array(count)
@@ -61,7 +63,7 @@ export class Ensemble {
   /** Put all orbits back to their starts. */
   restart() {
     this.time = 0
-    this.#ends.set(this.#starts)
+    this.#ends.fill(0)
     this.#begin.fill(0)
     this.#size.fill(0)
     this.#leaving.fill(0)
@@ -71,6 +73,7 @@ export class Ensemble {
     this.sectionX.fill(NaN)
     this.sectionPx.fill(NaN)
     for (let i = 0; i < this.count; i++) {
+      this.#ends.set(this.#starts.subarray(4 * i, 4 * i + 4), STATE.length * i)
       this.x[i] = this.#starts[4 * i]
       this.y[i] = this.#starts[4 * i + 1]
     }
@@ -140,10 +143,10 @@ export class Ensemble {
     orbits.forEach((orbit, lane) => {
       this.#begin[orbit] += this.#size[orbit]
       integrator.now.rows[T * lanes + lane] = this.#begin[orbit]
-      for (const [place, row] of [X, Y, PX, PY].entries()) {
-        const value = this.#ends[4 * orbit + place]
+      for (const [place, row] of STATE.entries()) {
+        const value = this.#ends[STATE.length * orbit + place]
         integrator.now.rows[row * lanes + lane] = value
-        starts[place * lanes + lane] = value
+        if (place < 4) starts[place * lanes + lane] = value
       }
     })
     integrator.step(orbits.length)
@@ -167,8 +170,9 @@ export class Ensemble {
       this.#series[first + this.#terms + k] = y.jet[y.first + k * y.stride + lane]
     }
     const [x0, y0] = [this.#series[first], this.#series[first + this.#terms]]
-    for (const [place, row] of [X, Y, PX, PY].entries()) this.#ends[4 * orbit + place] = now.rows[row * lanes + lane]
-    const [x1, y1] = [this.#ends[4 * orbit], this.#ends[4 * orbit + 1]]
+    const end = STATE.length * orbit
+    for (const [place, row] of STATE.entries()) this.#ends[end + place] = now.rows[row * lanes + lane]
+    const [x1, y1] = [this.#ends[end], this.#ends[end + 1]]
     if (this.escapeTime[orbit] < Infinity) return
     const isNear = now.integers[2 * (FLAGS * lanes + lane)] & this.#integrator.system.layout.near
     const crossed = crossedExit(this.#exits, x0, y0, x1, y1)

@@ -9,7 +9,7 @@ const STATE_ROWS = 5
  * Rows of lanes in memory; row r of lane i is `rows[r * lanes + i]`.
  *
  * A block of lanes begins with what step says of the step that led here: new crossings of y = 0 and flags, as integers; then x,
- * y, px, py, t and the size of the step.
+ * y, px, py, t, the size of the step, and what rounding has dropped from x and y, in systems whose steps carry it.
  *
  * @typedef {object} Block
  * @property {number} address  of the state, row 2
@@ -26,7 +26,9 @@ export const PX = 4
 export const PY = 5
 export const T = 6
 export const SIZE = 7
-const BLOCK_ROWS = 8
+export const X_REMAINDER = 8
+export const Y_REMAINDER = 9
+export const BLOCK_ROWS = 10
 
 export class Integrator {
   /**

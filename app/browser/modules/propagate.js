@@ -6,7 +6,7 @@
  */
 
 import {crossedExit, findExitTime, passedExit} from "./exits.js"
-import {CROSSED, FLAGS, SIZE, T, X, Y} from "./integrator.js"
+import {BLOCK_ROWS, CROSSED, FLAGS, SIZE, T, X, X_REMAINDER, Y, Y_REMAINDER} from "./integrator.js"
 import {countUpwardCrossings, seriesValue} from "./series.js"
 
 /**
@@ -145,7 +145,7 @@ class Propagation {
     const {lanes} = this
     const orbit = this.orbits.todo[this.following++]
     for (let c = 0; c < 4; c++) rows[(X + c) * lanes + i] = this.orbits.state[4 * orbit + c]
-    rows[T * lanes + i] = 0
+    for (const row of [T, X_REMAINDER, Y_REMAINDER]) rows[row * lanes + i] = 0
     this.lane_orbit[i] = orbit
   }
 
@@ -156,7 +156,7 @@ class Propagation {
    */
   move({rows}, source, target) {
     const {lanes} = this
-    for (let row = X; row <= T; row++) rows[row * lanes + target] = rows[row * lanes + source]
+    for (let row = X; row < BLOCK_ROWS; row++) rows[row * lanes + target] = rows[row * lanes + source]
     this.lane_orbit[target] = this.lane_orbit[source]
   }
 

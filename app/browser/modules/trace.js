@@ -2,7 +2,7 @@
 /** One orbit with its path, for the card beside the cursor. */
 
 import {crossedExit, exitCurves, findExitTime, passedExit} from "./exits.js"
-import {FLAGS, PX, PY, SIZE, T, X, Y} from "./integrator.js"
+import {FLAGS, PX, PY, SIZE, T, X, X_REMAINDER, Y, Y_REMAINDER} from "./integrator.js"
 import {countUpwardCrossings, seriesValue} from "./series.js"
 
 /**
@@ -38,6 +38,8 @@ export function traceOrbit(integrator, start, duration) {
     [PX, start.px],
     [PY, start.py],
     [T, 0],
+    [X_REMAINDER, 0],
+    [Y_REMAINDER, 0],
   ]) {
     integrator.now.rows[row * lanes] = value
   }

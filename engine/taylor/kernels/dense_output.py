@@ -52,7 +52,7 @@ def trace_pieces(
     exits = Exits(gates, np.zeros((1, channels, CURVE_COLUMNS)), np.zeros(1, np.int64))
     fate = np.full(1, NOT_COMPUTED, np.int8)
     crossings, last_crossings = np.zeros((2, 1), np.int64)
-    orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8))
+    orbits = Orbits(state[None].copy(), np.zeros(1), crossings, last_crossings, fate, np.ones(1, np.uint8), np.zeros((1, 2)))
     return trace_orbit(kernels, exits, orbits, t_end, execution, tolerance)
 
 

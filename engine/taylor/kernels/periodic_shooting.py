@@ -10,7 +10,7 @@ import numpy as np
 from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_potential_value, call_step
 from engine.taylor.kernels.events import series_slope
-from engine.taylor.source.recurrence import LANES
+from engine.taylor.source.recurrence import LANES, ROWS
 from engine.taylor.source.series import ORDER
 
 _WALL_STRIDE = 0.02
@@ -58,8 +58,8 @@ def shoot(
     Lyapunov orbit. For an orbit that moves further than `reach` along the channel before it turns, returns ∓1 and NaN.
     steps (m, 5): x, y, px, py, t at the start of each step, written in place.
     """
-    now = np.zeros((6, LANES))
-    new = np.zeros((6, LANES))
+    now = np.zeros((ROWS, LANES))
+    new = np.zeros((ROWS, LANES))
     flag = np.zeros(LANES, np.int64)
     crossed = np.zeros(LANES, np.int64)
     # No step is past these gates: exits are ignored.

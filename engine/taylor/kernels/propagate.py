@@ -28,7 +28,7 @@ from engine.taylor.kernels.events import (
     series_slope,
     series_value,
 )
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, NEAR, OVERSHOOT
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, NEAR, OVERSHOOT, ROWS
 from engine.taylor.source.series import ORDER
 
 VECTOR = 8
@@ -78,6 +78,8 @@ class Orbits(NamedTuple):
         (n,) int8: the number of the exit at which an orbit ended, BOUNDED, NOT_COMPUTED or FAILED.
     pending
         (n,) uint8: set to 0 when an orbit has escaped, failed or reached the horizon.
+    remainder
+        (n, 2) what rounding has dropped from x and y at time `t`; 0 where steps do not carry it.
     """
 
     state: np.ndarray
@@ -86,6 +88,7 @@ class Orbits(NamedTuple):
     last_crossings: np.ndarray
     fate: np.ndarray
     pending: np.ndarray
+    remainder: np.ndarray
 
 
 class _StepBuffer(NamedTuple):
@@ -111,8 +114,8 @@ def propagate(step, jets, coefficients, todo, horizon, final, tolerance, budget,
     `NO_TRACE` for more than one orbit. Returns the number of steps of orbits.
     """
     # Only `np.zeros`: Numba compiles each function that makes arrays, and for each type of array, in about 0.1 s.
-    now = np.zeros((6, LANES))
-    new = np.zeros((6, LANES))
+    now = np.zeros((ROWS, LANES))
+    new = np.zeros((ROWS, LANES))
     # Lanes without an orbit take harmless steps that never reach the horizon.
     now[0] = 0.01
     now[4] = -np.inf
@@ -203,26 +206,30 @@ def _passes_exit(jets, coefficients, now, i, h, curves):
 
 @subroutine
 def _load_orbit(orbits, orbit, lanes, i, lane_orbit, crossed):
-    """Put an orbit into lane i of the (6, LANES) array `lanes`."""
+    """Put an orbit into lane i of the (ROWS, LANES) array `lanes`."""
     for c in range(4):
         lanes[c, i] = orbits.state[orbit, c]
     lanes[4, i] = orbits.t[orbit]
+    for c in range(2):
+        lanes[6 + c, i] = orbits.remainder[orbit, c]
     lane_orbit[i] = orbit
     crossed[i] = 0
 
 
 @subroutine
 def _store_orbit(lanes, i, crossed, orbits, orbit):
-    """Write lane i of the (6, LANES) array `lanes` back to its orbit."""
+    """Write lane i of the (ROWS, LANES) array `lanes` back to its orbit."""
     for c in range(4):
         orbits.state[orbit, c] = lanes[c, i]
     orbits.t[orbit] = lanes[4, i]
+    for c in range(2):
+        orbits.remainder[orbit, c] = lanes[6 + c, i]
     orbits.crossings[orbit] += crossed[i]
 
 
 @subroutine
 def _move_lane(lanes, source, target, lane_orbit, crossed):
-    for c in range(5):
+    for c in range(ROWS):
         lanes[c, target] = lanes[c, source]
     lane_orbit[target] = lane_orbit[source]
     crossed[target] = crossed[source]
@@ -271,5 +278,6 @@ def _locate_events(jets, coefficients, buffer, n, horizon, exits, orbits):
         orbits.state[j, 1] = series_value(y_jet, i, tau)
         orbits.state[j, 2] = series_slope(x_jet, i, tau)
         orbits.state[j, 3] = series_slope(y_jet, i, tau)
+        orbits.remainder[j] = 0.0
         # Only rounding errors make an orbit leave over the saddle of a closed channel, on which it is at rest.
         orbits.fate[j] = BOUNDED if curves[channel - 1, SHAPE] == CLOSED else channel

@@ -13,7 +13,7 @@ from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import append_crossings, crossed_exit, find_exit_time
 from engine.taylor.kernels.propagate import VECTOR
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT
+from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT, ROWS
 from engine.taylor.source.series import ORDER
 
 
@@ -38,12 +38,12 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
     """
     lanes = state.shape[1]
     most = passages.shape[1]
-    now = np.zeros((6, LANES))
+    now = np.zeros((ROWS, LANES))
     # Element by element: for `now[:4] = state` Numba compiles an error message as well, which takes 2 s.
     for c in range(4):
         for i in range(lanes):
             now[c, i] = state[c, i]
-    new = np.zeros((6, LANES))
+    new = np.zeros((ROWS, LANES))
     flag = np.zeros(LANES, np.int64)
     crossed = np.zeros(LANES, np.int64)
     lane_orbit = np.zeros(lanes, np.int64)
@@ -77,7 +77,7 @@ def find_section_passages(step, jets, coefficients, tolerance, horizon, gates, c
                     buffered = 0
             if late or full or channel > 0:
                 active -= 1
-                for c in range(5):
+                for c in range(ROWS):
                     new[c, i] = new[c, active]
                 lane_orbit[i] = lane_orbit[active]
         now, new = new, now

@@ -43,7 +43,7 @@ def generate_deep_step(coefficients: tuple[tuple[Monomial, Fraction], ...], vect
     can_hide = crossings_can_hide({powers: float(c) for powers, c in coefficients})
     structure = PolynomialStructure(tuple(terms), Setting(), can_hide, None, None)
     program = StraightLine("_deep_step", table)
-    x, y = structure.orbit(program, DEEP_ORDER)
+    x, y = structure.orbit(program, order=DEEP_ORDER)
     h = step_size(program, x, y, structure)
     program.results = [value.index for value in (*horner(x, h), *horner(y, h), h, *x, *y)]
     function = GeneratedFunction("deep_step", program, _KERNEL.format(vector=vector))

@@ -9,8 +9,10 @@ al. 2016, The Parameterization Method for Invariant Manifolds, chapter 2). Coeff
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import reduce
 from itertools import islice
+from operator import add
 from typing import NamedTuple
 
 from engine.expressions.calculus import derivative
@@ -18,6 +20,7 @@ from engine.expressions.graph import Graph, Node, make_graph
 from engine.expressions.nodes import Expression
 from engine.taylor.source.elementary import FUNCTIONS, power_of
 from engine.taylor.source.series import (
+    NO_REMAINDERS,
     ORDER,
     Hessian,
     PointFunctions,
@@ -67,9 +70,14 @@ class ExpressionStructure(NamedTuple):
         """A step of 1e-12, as near centres."""
         return _LARGEST_NORM
 
-    def orbit(self, program: StraightLine) -> tuple[Series, Series]:
+    @property
+    def carries_remainders(self) -> bool:
+        """Around centres."""
+        return self.setting.discs > 0
+
+    def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
         """The recurrence of the gradient."""
-        recurrence = _Recurrence(program, "motion", self.motion, self.setting.rotates)
+        recurrence = _Recurrence(program, "motion", self.motion, self.setting.rotates, remainders)
         for k in range(ORDER - 1):
             recurrence.advance(k)
         return recurrence.x, recurrence.y
@@ -125,8 +133,15 @@ def _graphs(expression: Expression) -> dict[str, tuple[Graph, tuple[float, ...]]
 class _Recurrence:
     """The series of all nodes of a graph along an orbit."""
 
-    def __init__(self, program: StraightLine, name: str, graph: Graph, rotates: bool) -> None:
-        self.program, self.name, self.graph, self.rotates = program, name, graph, rotates
+    def __init__(
+        self,
+        program: StraightLine,
+        name: str,
+        graph: Graph,
+        rotates: bool,
+        remainders: Mapping[str, Value] = NO_REMAINDERS,
+    ) -> None:
+        self.program, self.name, self.graph, self.rotates, self.remainders = program, name, graph, rotates, remainders
         self.x, self.y = ([program.input(f"{axis}{k}") for k in (0, 1)] for axis in "xy")
         self.series: list[list[Value]] = [{"x": self.x, "y": self.y}.get(node.kind, []) for node in graph.nodes]
         # k u_k of the arguments of functions, and 1 / u_0 of those of powers and logarithms.
@@ -151,7 +166,15 @@ class _Recurrence:
             add_coriolis(self.program, self.x, self.y)
 
     def _first(self, node: Node) -> Value:
-        return _value_of(self.program, self.name, node, {index: series[0] for index, series in enumerate(self.series) if series})
+        value = _value_of(self.program, self.name, node, {index: series[0] for index, series in enumerate(self.series) if series})
+        return reduce(add, self._remainders(node), value)
+
+    def _remainders(self, node: Node) -> Iterator[Value]:
+        """What is to be added to a sum with x or y, such as the distance from a body; elsewhere the remainders do not count."""
+        for operand, place in zip(node.operands, node.numbers, strict=False):
+            remainder = self.remainders.get(self.graph.nodes[operand].kind)
+            if remainder is not None and node.kind in ("sum", "shift"):
+                yield remainder if node.kind == "shift" else self.program.entry((self.name, place)) * remainder
 
     def slopes(self, index: int, k: int) -> list[Value]:
         """j u_j of a node for j = 0 … k; the first is not used."""

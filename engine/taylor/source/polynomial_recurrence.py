@@ -26,6 +26,7 @@ from engine.taylor.source.cauchy_products import (
 )
 from engine.taylor.source.series import (
     LONGEST_STEP,
+    NO_REMAINDERS,
     ORDER,
     REACH,
     Hessian,
@@ -79,7 +80,14 @@ class PolynomialStructure(NamedTuple):
         """A step of 3e-7."""
         return _LARGEST_NORM
 
-    def orbit(self, program: StraightLine, order: int = ORDER) -> tuple[Series, Series]:
+    @property
+    def carries_remainders(self) -> bool:
+        """V of a polynomial is smooth everywhere."""
+        return False
+
+    def orbit(
+        self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS, order: int = ORDER
+    ) -> tuple[Series, Series]:
         """The recurrence with the products for the equations of motion only."""
         products = _plan(self.monomials, _GRADIENT)
         series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates, order)

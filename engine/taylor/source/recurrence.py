@@ -67,6 +67,10 @@ _LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
 LANES = 64
 """Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
 
+ROWS = 8
+"""Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and
+y, which rounding has dropped; they are 0 for structures whose steps do not carry them."""
+
 HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
 """Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon; it may pass an
 exit although its end is not beyond."""
@@ -177,6 +181,19 @@ def horner(series: Series, h: Value) -> tuple[Value, Value]:
     return value, slope
 
 
+def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
+    """As `horner`, and with a remainder, which is added to the first coefficient, the remainder of the value.
+
+    It is what the last sum drops, found without error (Knuth's TwoSum).
+    """
+    if remainder is None:
+        return *horner(series, h), []
+    change, slope = horner([remainder, *series[1:]], h)
+    end = series[0] + change
+    rounded = end - series[0]
+    return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
+
+
 def _bend(series: Series, h: Value) -> Value:
     """½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
     twice = h + h
@@ -247,21 +264,27 @@ def _start_in(lanes: str) -> dict[str, str]:
 
 def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_step", table)
-    x, y = structure.orbit(program)
+    remainders = {axis: program.input(f"{axis}_remainder") for axis in "xy"} if structure.carries_remainders else {}
+    x, y = structure.orbit(program, remainders)
     h = step_size(program, x, y, structure)
-    x_end, px_end = horner(x, h)
-    y_end, py_end = horner(y, h)
+    x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
+    y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
     hidden = _hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
     gates, gate = _gates(structure.setting, program, (x, y), (x_end, y_end), h)
     t_end = program.input("t0") + h
+    end = x_end, y_end, px_end, py_end
     flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
     writes = {
         "crossed[i] +=": where((y[0] < 0.0) & (y_end >= 0.0) & flags.equals(0), 1, 0),
         "flag[i] =": flags,
-        **{f"new[{row}, i] =": value for row, value in enumerate((x_end, y_end, px_end, py_end, t_end, h))},
+        **{f"new[{row}, i] =": value for row, value in enumerate((*end, t_end, h, *x_remainder, *y_remainder))},
     }
     arguments = "tolerance, horizon, gates, now, new, flag, crossed"
-    return _lane_loop(program, arguments, {**_start_in("now"), "t0": "now[4, i]"}, writes, gates, rows=("now", "new"))
+    reads = {**_start_in("now"), "t0": "now[4, i]"}
+    if remainders:
+        # In WebAssembly inputs have the rows of this order.
+        reads |= {"last_size": "now[5, i]", "x_remainder": "now[6, i]", "y_remainder": "now[7, i]"}
+    return _lane_loop(program, arguments, reads, writes, gates, rows=("now", "new"))
 
 
 def _gates(

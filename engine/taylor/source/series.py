@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 
 from engine.taylor.source.straight_line import StraightLine, Value
@@ -30,6 +31,8 @@ coefficients are to be asked for in turn."""
 
 PointFunctions = Mapping[str, Callable[[StraightLine], Mapping[str, Value]]]
 """{name of a function: what appends it to a program with the inputs x and y, and returns its results by their names}."""
+
+NO_REMAINDERS: Mapping[str, Value] = MappingProxyType({})
 
 
 class Setting(NamedTuple):
@@ -66,6 +69,10 @@ class Structure(Hashable, Protocol):
         """What it depends on besides V."""
 
     @property
+    def carries_remainders(self) -> bool:
+        """Whether a step also takes and gives what rounding has dropped from x and y, as next to a body each digit counts."""
+
+    @property
     def can_hide(self) -> bool:
         """Whether a step can contain two crossings of y = 0 that the signs of y at its ends do not show."""
 
@@ -77,8 +84,8 @@ class Structure(Hashable, Protocol):
     def largest_norm(self) -> float:
         """Norm of the last coefficients above which steps would be too short to change t; such an orbit fails, as with NaN."""
 
-    def orbit(self, program: StraightLine) -> tuple[Series, Series]:
-        """The series of x and y to `ORDER` from the inputs x0, x1, y0 and y1."""
+    def orbit(self, program: StraightLine, remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
+        """The series of x and y to `ORDER` from the inputs x0, x1, y0 and y1; remainders: what is to be added to x0 and y0."""
 
     def hessian(self, program: StraightLine) -> Hessian:
         """The second derivatives of −V along the orbit from these inputs."""

@@ -1,7 +1,7 @@
 // @ts-check
 /** One step of some states, and the series of their orbits. */
 
-import {Integrator, X} from "../../../app/browser/modules/integrator.js"
+import {BLOCK_ROWS, Integrator, X} from "../../../app/browser/modules/integrator.js"
 import {input, module} from "./read_input.js"
 
 const {system, states, gates, horizon} = input
@@ -22,4 +22,4 @@ integrator.step(states.length)
 integrator.jets(states.length)
 const {rows, integers} = integrator.now
 const flags = states.map((/** @type {any} */ _, /** @type {number} */ i) => [integers[2 * i], integers[2 * (lanes + i)]])
-console.log(JSON.stringify({new: read(rows, X, 6), flags, jets: read(integrator.x.jet, 0, 2 * (order + 1))}))
+console.log(JSON.stringify({new: read(rows, X, BLOCK_ROWS - X), flags, jets: read(integrator.x.jet, 0, 2 * (order + 1))}))

@@ -15,7 +15,7 @@ from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.potentials.compiled import kernels_of
 from engine.potentials.outcomes import Centre
 from engine.taylor.jit.webassembly import webassembly_module
-from engine.taylor.source.recurrence import LANES, TOLERANCE, generate_code
+from engine.taylor.source.recurrence import LANES, ROWS, TOLERANCE, generate_code
 from engine.taylor.source.series import ORDER
 from tests.node import needs_node, run_node
 
@@ -23,6 +23,7 @@ POTENTIALS = {
     **CASES,
     "typed": parse_formula("½(x² + y²) − x²y² − x³/4"),
     "rotating": parse_formula("½r² − x y²").in_rotating_frame(0.3).with_outcomes([Centre(0.2, 0.1, 0.05)], 0.4),
+    "body": parse_formula("½r² − 0.01/√((x − 0.5)² + y²)").with_outcomes([Centre(0.5, 0.0, 0.01)], 0.8),
     "functions": parse_formula("½log(1 + r²) − 0.5x² y exp(−y²) − x³ cos(y)/√(2 + y²)"),
 }
 ENERGY = 0.29
@@ -53,7 +54,7 @@ def starts(potential: Potential) -> np.ndarray:
 def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon: float) -> tuple[np.ndarray, ...]:
     """The step of the kernels for this machine, its flags with crossings, and the series."""
     kernels = kernels_of(potential)
-    now, new = np.zeros((6, LANES)), np.zeros((6, LANES))
+    now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
     flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     now[:5, : len(states)] = states.T
     kernels.step(len(states), TOLERANCE, horizon, gates, now, new, flag, crossed)
@@ -64,7 +65,7 @@ def native(potential: Potential, states: np.ndarray, gates: np.ndarray, horizon:
 
 
 @needs_node
-@pytest.mark.parametrize("name", [*CASES, "typed", "rotating", pytest.param("functions", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", [*CASES, "typed", "rotating", "body", pytest.param("functions", marks=pytest.mark.slow)])
 def test_the_step_is_the_native_one_to_rounding(name: str, tmp_path: Path) -> None:
     potential, horizon = POTENTIALS[name].in_well_units, 9.8
     states, gates = starts(potential), exit_gates(exit_curves(potential, ENERGY))

@@ -10,7 +10,7 @@ from engine.dynamics.fates import Fate
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels.propagate import NO_TRACE, Exits, Orbits
-from engine.taylor.source.recurrence import HIDDEN, LANES, OVERSHOOT, TOLERANCE
+from engine.taylor.source.recurrence import HIDDEN, LANES, OVERSHOOT, ROWS, TOLERANCE
 from engine.taylor.source.series import ORDER
 
 # Not even in y, so orbits can turn anywhere and y = 0 can be grazed.
@@ -25,12 +25,12 @@ def single_steps(potential: Potential, states: np.ndarray, horizon: float = np.i
     kernels = load_kernels(potential.terms, potential.channels)
     parts = []
     for part in np.split(states, range(LANES, len(states), LANES)):
-        now, new, counts = np.zeros((6, LANES)), np.zeros((6, LANES)), np.zeros((2, LANES), np.int64)
+        now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
         now[:4, : len(part)] = part.T
         kernels.step(LANES, TOLERANCE, horizon, gates, now, new, *counts)
         parts.append(np.vstack([new, counts])[:, : len(part)])
     result = np.hstack(parts)
-    return result[:6], result[6].astype(int), result[7].astype(int)
+    return result[:6], result[-2].astype(int), result[-1].astype(int)
 
 
 def sampled_y(potential: Potential, states: np.ndarray, h: np.ndarray) -> np.ndarray:
@@ -82,7 +82,7 @@ def start_orbits(count: int) -> Orbits:
     assert np.isfinite(state).all()
     crossings, last_crossings = np.zeros((2, count), np.int64)
     fate, pending = np.full(count, Fate.NOT_COMPUTED, np.int8), np.ones(count, np.uint8)
-    return Orbits(state, np.zeros(count), crossings, last_crossings, fate, pending)
+    return Orbits(state, np.zeros(count), crossings, last_crossings, fate, pending, np.zeros((count, 2)))
 
 
 def propagate(

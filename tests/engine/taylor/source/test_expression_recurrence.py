@@ -15,7 +15,7 @@ from engine.expressions.calculus import derivative
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
-from engine.taylor.source.recurrence import LANES, TOLERANCE, generate_code
+from engine.taylor.source.recurrence import LANES, ROWS, TOLERANCE, generate_code
 from engine.taylor.source.series import ORDER
 
 # Together all kinds of nodes.
@@ -97,7 +97,7 @@ def test_steps_do_not_depend_on_lanes(text: str) -> None:
     kernels, states = kernels_of(text), states_of(LANES)
 
     def stepped(rows: np.ndarray) -> np.ndarray:
-        now, new, counts = np.zeros((6, LANES)), np.zeros((6, LANES)), np.zeros((2, LANES), np.int64)
+        now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
         now[:4, : len(rows)] = rows.T
         kernels.step(len(rows), TOLERANCE, np.inf, np.tile([0.0, 0.0, np.inf], (2, 1)), now, new, *counts)
         return new[:, : len(rows)]
@@ -112,7 +112,7 @@ def test_steps_around_a_body_shrink_as_its_periods(size: float) -> None:
     """By the third law of Kepler, h of the same orbit in another size is as size^(3/2), to 6 % of each root."""
     states, kernels = np.tile([1.0, 0.2, 0.3, 0.8], (2, 1)), load_kernels(parse_formula("−1/r").form.definition, 0)
     states[1] *= [size, size, size**-0.5, size**-0.5]
-    now, new, counts = np.zeros((6, LANES)), np.zeros((6, LANES)), np.zeros((2, LANES), np.int64)
+    now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[:4, :2] = states.T
     kernels.step(2, TOLERANCE, np.inf, np.zeros((0, 3)), now, new, *counts)
     assert new[5, 1] / new[5, 0] == pytest.approx(size**1.5, rel=0.15)
@@ -127,7 +127,7 @@ def test_formulas_that_differ_in_numbers_share_code() -> None:
 
 def test_a_step_outside_the_domain_fails() -> None:
     potential = Potential("", parse_formula("½r² + (1 − x)^(3/2)").form)
-    now, new, counts = np.zeros((6, LANES)), np.zeros((6, LANES)), np.zeros((2, LANES), np.int64)
+    now, new, counts = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES)), np.zeros((2, LANES), np.int64)
     now[0, 0] = 2.0
     load_kernels(potential.form.definition, 0).step(1, TOLERANCE, np.inf, np.zeros((0, 3)), now, new, *counts)
     assert np.isnan(new[5, 0])

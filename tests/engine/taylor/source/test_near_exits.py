@@ -10,7 +10,7 @@ import pytest
 
 from engine import CASES
 from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.source.recurrence import LANES, NEAR, TOLERANCE
+from engine.taylor.source.recurrence import LANES, NEAR, ROWS, TOLERANCE
 from engine.taylor.source.series import ORDER
 
 # Rows of 64 orbits, points along a step, and how far orbits that return go beyond an exit.
@@ -34,7 +34,7 @@ SHAPES = {
 
 def step(kernels: Any, states: np.ndarray, row: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Flags of a step, and x and y (TIMES, LANES) along it."""
-    now, new = np.zeros((6, LANES)), np.zeros((6, LANES))
+    now, new = np.zeros((ROWS, LANES)), np.zeros((ROWS, LANES))
     flag, crossed = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
     now[:4] = states
     kernels.step(LANES, TOLERANCE, 100.0, np.array([row]), now, new, flag, crossed)
