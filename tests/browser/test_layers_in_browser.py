@@ -14,8 +14,8 @@ from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
-VIEW = "?case=III&h=0.28&resolution=112&t_max=10000"
-SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (112, 112), t_max=1e4)
+VIEW = "?case=III&h=0.28&resolution=112&t_max=1000"
+SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.28, (112, 112), t_max=1e3)
 _BAR = """name => {
     for (const view of Bokeh.index.all_views()) {
         if (view.model.type !== 'Figure' || !view.model.elements.some(one => one.html?.includes(`help-${name}`))) continue
