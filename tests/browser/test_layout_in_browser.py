@@ -137,6 +137,13 @@ def test_on_a_phone_the_map_comes_first_with_the_energy_below_it(phone: Explorer
     assert play["y"] <= slider["y"] <= play["y"] + play["height"]
 
 
+@pytest.mark.slow
+def test_on_a_phone_a_notice_is_above_the_rest(open_explorer: Callable[..., ExplorerPage]) -> None:
+    phone = open_explorer(420, 900, QUICK.replace("h=0.19", "h=-1"), touch=True)
+    # A trial fails where something else would be clicked.
+    phone.text("Ignored h=-1").click(trial=True)
+
+
 def test_on_a_phone_the_rest_scrolls_over_the_map(phone: ExplorerPage) -> None:
     top = figures(phone)["basins"][1]
     phone.page.evaluate("window.scrollTo(0, 200)")

@@ -36,7 +36,7 @@ class Notice:
     """Shows one message at a time."""
 
     def __init__(self) -> None:
-        self._pane = _NamedPane("", width=0, height=0, margin=0, styles={"position": "absolute"})
+        self._pane = _NamedPane("", width=0, height=0, margin=0, styles={"position": "absolute"}, css_classes=["notices"])
 
     def layout(self) -> pn.viewable.Viewable:
         """The pane; its place on the page does not matter."""
