@@ -15,8 +15,9 @@ from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.taylor.jit.webassembly import constant_inputs, webassembly_module
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, NEAR, OVERSHOOT, TOLERANCE, generate_code
+from engine.taylor.source.recurrence import LANES, TOLERANCE, generate_code
 from engine.taylor.source.series import ORDER, ROTATION
+from engine.taylor.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,8 +28,9 @@ from engine.taylor.kernels.events import (
     series_slope,
     series_value,
 )
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, NEAR, OVERSHOOT, ROWS
+from engine.taylor.source.recurrence import LANES, ROWS
 from engine.taylor.source.series import ORDER
+from engine.taylor.source.step_flags import GATE, HIDDEN, NEAR, OVERSHOOT
 
 VECTOR = 8
 """The number of active lanes is rounded up to a multiple of this, so that none is computed by the scalar remainder of a loop."""

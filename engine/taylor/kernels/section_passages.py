@@ -13,8 +13,9 @@ from engine.taylor.jit.decorator import kernel, subroutine
 from engine.taylor.jit.function_pointers import call_jets, call_step
 from engine.taylor.kernels.events import append_crossings, crossed_exit, find_exit_time
 from engine.taylor.kernels.propagate import VECTOR
-from engine.taylor.source.recurrence import GATE, HIDDEN, LANES, OVERSHOOT, ROWS
+from engine.taylor.source.recurrence import LANES, ROWS
 from engine.taylor.source.series import ORDER
+from engine.taylor.source.step_flags import GATE, HIDDEN, OVERSHOOT
 
 
 class _StepBuffer(NamedTuple):

@@ -47,6 +47,7 @@ from engine.taylor.source.series import (
     cauchy,
     total,
 )
+from engine.taylor.source.step_flags import OVERSHOOT, flag_gates, flag_hidden_crossings
 from engine.taylor.source.straight_line import TABLE, StraightLine, Value, where
 
 TOLERANCE = 3e-15
@@ -61,19 +62,12 @@ _USUAL_STEP, _CAUTION = 0.35, 10.0
 _LEAST_SPEED = 1.0 / 16.0
 _ORDERS_OF_NORM = 3
 
-# Of σ − σ^k, 0 ≤ σ ≤ 1, rounded up; 1 for larger k.
-_LARGEST_SAGS = {2: 0.25, 3: 0.385, 4: 0.473}
-
 LANES = 64
 """Length of the rows of arrays with one column per orbit, of which a step computes the first ones."""
 
 ROWS = 8
 """Rows of the arrays of lanes ``now`` and ``new``: x, y, px, py, t, the size of the last step, and the remainders of x and
 y, which rounding has dropped; they are 0 for structures whose steps do not carry them."""
-
-HIDDEN, GATE, OVERSHOOT, NEAR = 1, 2, 4, 8
-"""Flags of a step: it may hide crossings of y = 0; it ends past the gate of an exit; it ends after the horizon; it may pass an
-exit although its end is not beyond."""
 
 # Cached structures, 3 MB each with eight terms of degree 8.
 _STRUCTURES = 32
@@ -194,35 +188,6 @@ def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Val
     return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
 
 
-def _bend(series: Series, h: Value) -> Value:
-    """½ Σ_{k≥2} |y_k| (2h)^k, which is at least twice the distance of y from its chord over a step."""
-    twice = h + h
-    bound = abs(series[ORDER])
-    for k in reversed(range(2, ORDER)):
-        bound = bound * twice + abs(series[k])
-    return bound * twice * h
-
-
-def _sag(series: Series, h: Value) -> Value:
-    """A bound of the distance of a coordinate from its chord over a step, Σ_{k≥2} max(σ − σ^k) |x_k| h^k with 0 ≤ σ ≤ 1."""
-    bound = abs(series[ORDER])
-    for k in reversed(range(2, ORDER)):
-        bound = bound * h + (_LARGEST_SAGS.get(k, 1.0) * abs(series[k]))
-    return bound * h * h
-
-
-def _hidden_crossings(y: Series, end: Value, h: Value) -> Value:
-    """The test of a step for hidden crossings of y = 0, for potentials where there can be any: HIDDEN or 0.
-
-    The bound of `_bend` is at least h · max|ẏ − ẏ(0)|. So none hide where ẏ keeps its sign (|ẏ(0)| h > bound), nor where both
-    ends lie on one side, further off than bound/2.
-    """
-    bound = _bend(y, h)
-    near, far = abs(y[0]), abs(end)
-    near = where(near < far, near, far)
-    return where(abs(y[1]) * h > bound, 0, where((y[0] * end > 0.0) & (near > 0.5 * bound), 0, HIDDEN))
-
-
 def _lane_loop(
     program: StraightLine,
     arguments: str,
@@ -269,8 +234,8 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     h = step_size(program, x, y, structure)
     x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
     y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
-    hidden = _hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
-    gates, gate = _gates(structure.setting, program, (x, y), (x_end, y_end), h)
+    hidden = flag_hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
+    gates, gate = flag_gates(structure.setting, program, (x, y), (x_end, y_end), h)
     t_end = program.input("t0") + h
     end = x_end, y_end, px_end, py_end
     flags = hidden + gate + where(t_end <= program.input("horizon"), 0, OVERSHOOT)
@@ -285,40 +250,6 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
         # In WebAssembly inputs have the rows of this order.
         reads |= {"last_size": "now[5, i]", "x_remainder": "now[6, i]", "y_remainder": "now[7, i]"}
     return _lane_loop(program, arguments, reads, writes, gates, rows=("now", "new"))
-
-
-def _gates(
-    setting: Setting, program: StraightLine, series: tuple[Series, Series], end: tuple[Value, Value], h: Value
-) -> tuple[dict[str, str], Value]:
-    """The inputs of the gates with their sources, and GATE, NEAR or 0.
-
-    A row of `gates` is g_x, g_y, g: for a channel the line g_x x + g_y y = g, for a centre its place and the radius of its disc,
-    for the escape circle 0, 0 and its radius.
-    """
-    count = setting.channels + setting.discs + setting.ring
-    columns = {"x": 0, "y": 1, "": 2}
-    sources = {f"g{k}{name}": f"gates[{k}, {column}]" for k in range(count) for name, column in columns.items()}
-    flag = program.constant(0)
-    rows = [[program.input(f"g{k}{name}") for name in columns] for k in range(count)]
-    lines, circles = rows[: setting.channels], rows[setting.channels :]
-    if not setting.needs_whole_steps:
-        for g_x, g_y, g in lines:
-            flag = where(g_x * end[0] + g_y * end[1] > g, GATE, flag)
-        return sources, flag
-    start = series[0][0], series[1][0]
-    # No point of the step is further than this from its chord.
-    bend = _sag(series[0], h) + _sag(series[1], h)
-    half_chord = 0.5 * (abs(end[0] - start[0]) + abs(end[1] - start[1]))
-    for g_x, g_y, g in lines:
-        for x, y in (start, end):
-            flag = where(g_x * x + g_y * y + bend > g, NEAR, flag)
-    for k, (c_x, c_y, radius) in enumerate(circles):
-        squares = [(x - c_x) * (x - c_x) + (y - c_y) * (y - c_y) for x, y in (start, end)]
-        is_disc = k < setting.discs
-        edge = radius + (bend + half_chord) if is_disc else where(radius > bend, radius - bend, 0.0)
-        for square in squares:
-            flag = where(square < edge * edge if is_disc else square > edge * edge, NEAR, flag)
-    return sources, flag
 
 
 def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:

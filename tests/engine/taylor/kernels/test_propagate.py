@@ -10,8 +10,9 @@ from engine.dynamics.fates import Fate
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels.propagate import NO_TRACE, Exits, Orbits
-from engine.taylor.source.recurrence import HIDDEN, LANES, OVERSHOOT, ROWS, TOLERANCE
+from engine.taylor.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.taylor.source.series import ORDER
+from engine.taylor.source.step_flags import HIDDEN, OVERSHOOT
 
 # Not even in y, so orbits can turn anywhere and y = 0 can be grazed.
 ODD = Potential("odd", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 0.3), (0, 3, -0.2), (4, 1, 0.11), (1, 1, 0.07)))

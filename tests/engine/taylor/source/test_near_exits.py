@@ -10,8 +10,9 @@ import pytest
 
 from engine import CASES
 from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.source.recurrence import LANES, NEAR, ROWS, TOLERANCE
+from engine.taylor.source.recurrence import LANES, ROWS, TOLERANCE
 from engine.taylor.source.series import ORDER
+from engine.taylor.source.step_flags import NEAR
 
 # Rows of 64 orbits, points along a step, and how far orbits that return go beyond an exit.
 BATCHES, TIMES, DEPTH = 40, 401, 1e-4
