@@ -10,7 +10,7 @@ from panel.custom import JSComponent
 
 from app.browser.callbacks import module_path
 from app.browser.module_files import WATCH_ADDRESS
-from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, PLACES, SMALLEST_RADIUS
+from app.state.watched_starts import COUNTS, EXPLANATIONS, LARGEST_RADIUS, SMALLEST_RADIUS
 
 _STYLE = """
 :host { display: block; font-size: 0.8125rem; color: var(--ui-ink) }
@@ -45,7 +45,7 @@ class EnsemblePlayer(JSComponent):
     address = param.String(default=WATCH_ADDRESS, doc="of the module that is loaded when the player is first shown")
     counts = param.List(default=list(COUNTS), doc="numbers of orbits to choose from")
     radii = param.List(default=[SMALLEST_RADIUS, LARGEST_RADIUS], doc="least and largest radius, as powers of ten")
-    places = param.Dict(default={str(where): words for where, words in PLACES.items()}, doc="where starts can be, in words")
+    places = param.Dict(default={}, doc="where starts can be in the system, in words")
     explanations = param.Dict(default={str(where): sentence for where, sentence in EXPLANATIONS.items()}, doc="of some of them")
     where = param.String(doc="see `WatchedStarts`")
     count = param.Integer()
