@@ -91,6 +91,10 @@ class System:
         known: Mapping[str, float] = {ROTATION: 0.0} if self.case == TYPED else CATALOGUE[self.case].parameters
         return known.get(name, 1.0)
 
+    def range_of(self, name: str) -> tuple[float, float]:
+        """The smallest and the largest legal value of a parameter."""
+        return RANGES.get(name, (-LARGEST_VALUE, LARGEST_VALUE))
+
     def value_of(self, name: str) -> float:
         """The value of a parameter."""
         return self.parameters.get(name, self.default_of(name))

@@ -185,14 +185,15 @@ class ParameterAxis(_OfSystem):
     key
         Name of the parameter: omega_1, omega_2, epsilon, or a letter of the system's formula.
     low, high
-        Its range in the default window, dimensionless, low < high.
+        Its range in the default window, dimensionless, low < high, within `System.range_of`.
     system
         The system; its own value of the parameter is that at which exits have their numbers.
 
     Raises
     ------
     ValueError
-        If the system has no such parameter, the range is empty, or the system has no potential at one of its ends.
+        If the system has no such parameter, or the range is empty or not legal. That the system has a potential at each value is
+        not checked here, as this takes seconds for some formulas; `potential` does.
     """
 
     key: str
@@ -210,8 +211,9 @@ class ParameterAxis(_OfSystem):
             raise ValueError(f"parameter {self.key} from {low:g} to {high:g}: the lower end must be below the upper end")
         object.__setattr__(self, "low", low)
         object.__setattr__(self, "high", high)
-        for value in (low, high):
-            self.potential(value)
+        lowest, highest = self.system.range_of(self.key)
+        if low < lowest or high > highest:
+            raise ValueError(f"parameter {self.key} from {low:g} to {high:g}: must be between {lowest:g} and {highest:g}")
 
     def potential(self, value: float) -> Potential:
         """The potential at a value of the parameter; ValueError if there is none."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from engine.potentials.formulas.formula_parser import LARGEST_VALUE
-from engine.potentials.system import PARAMETERS, RANGES, System
+from engine.potentials.system import PARAMETERS, System
 from engine.slices.axes import STATE, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.planes import Plane, checked_slice
 from engine.slices.slice import Slice
@@ -80,7 +79,7 @@ def default_range(system: System, name: str) -> tuple[float, float]:
     """A legal range of a parameter about its value in a system: from half of it to twice as much, or from −1 to 1 about 0."""
     value = system.value_of(name)
     low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
-    lowest, highest = RANGES.get(name, (-LARGEST_VALUE, LARGEST_VALUE))
+    lowest, highest = system.range_of(name)
     return max(low, lowest), min(high, highest)
 
 

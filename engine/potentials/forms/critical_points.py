@@ -41,7 +41,8 @@ _LARGEST_ROOT = 1e5
 NO_POINTS = read_only(np.empty((0, 2)))
 """(0, 2) an empty list of points."""
 
-_MOST_REFINEMENTS = 60
+# Sample points of a circle, to start with and at most. A turn of the slope within 1e-9 radians needs some 30 more than the first.
+_SAMPLES, _MOST_SAMPLES = 721, 20_000
 # Largest rotation of a vector, in radians, and largest change of the logarithm of its length between neighbouring sample points
 # of a circle. A vector that turns fast is short there: its length shows a whole turn between two points.
 _LARGEST_ROTATION, _LARGEST_GROWTH = 0.5, 1.0
@@ -118,10 +119,10 @@ def winding_number(vector: Callable[[np.ndarray, np.ndarray], tuple[Any, Any]], 
     Raises
     ------
     UndecidedError
-        If the vector is not defined somewhere on the circle.
+        If the vector is not defined somewhere on the circle, or turns too often along it.
     """
-    angle = np.linspace(0.0, 2.0 * np.pi, 721)
-    for _ in range(_MOST_REFINEMENTS):
+    angle = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
+    while angle.size <= _MOST_SAMPLES:
         x, y = radius * np.cos(angle), radius * np.sin(angle)
         first, second = vector(x, y)
         second, first, _ = np.broadcast_arrays(second, first, x)
@@ -133,9 +134,9 @@ def winding_number(vector: Callable[[np.ndarray, np.ndarray], tuple[Any, Any]], 
             growth = np.abs(np.diff(np.log(np.hypot(first, second))))
         too_large = np.flatnonzero((np.abs(rotation) > _LARGEST_ROTATION) | (growth > _LARGEST_GROWTH))
         if not too_large.size:
-            break
+            return round(float(rotation.sum()) / (2.0 * np.pi))
         angle = np.insert(angle, too_large + 1, 0.5 * (angle[too_large] + angle[too_large + 1]))
-    return round(float(rotation.sum()) / (2.0 * np.pi))
+    raise UndecidedError("The slope of V turns too often on a circle around critical points or around a pole.")
 
 
 def _normalized(terms: Terms, length: float) -> Terms:

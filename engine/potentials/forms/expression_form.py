@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ from engine.results.arrays import read_only
 
 MOST_CONVOLUTIONS = 120
 """Largest number of products and functions in the graph of gradient and Hessian: their cost and compile time grow with it."""
+
+# Results of searches for zeros, some 0.1 kB each.
+_ZEROS = 1024
 
 _ORDERS = ((2, 0), (1, 1), (0, 2))
 # Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
@@ -47,7 +50,9 @@ class ExpressionForm:
     expression: Expression
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
+        # An expression that is refused for its size is not searched.
+        if self.limits_refusal() is None:
+            object.__setattr__(self, "expression", replace_parts(self.expression, _from_zeros(self.expression)))
 
     def __repr__(self) -> str:
         return f"ExpressionForm({self.text})"
@@ -108,12 +113,12 @@ class ExpressionForm:
         """The graph of V, V_x and V_y, and its numbers."""
         return make_graph((self.expression, *self._slopes))
 
-    @cached_property
+    @property
     def _slopes(self) -> tuple[Expression, Expression]:
         return derivative(self.expression, 0), derivative(self.expression, 1)
 
-    @cached_property
-    def _curvatures(self) -> tuple[Expression, ...]:
+    @property
+    def _curvatures(self) -> tuple[Expression, Expression, Expression]:
         along_x, along_y = self._slopes
         return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
 
@@ -198,10 +203,16 @@ class ExpressionForm:
         return bool(known.any() and np.all(error <= _ROTATION_ERROR * np.abs(one[known]).max(axis=1)))
 
     def limits_refusal(self) -> str | None:
-        """Size."""
-        used = make_graph((*self._slopes, *self._curvatures))[0].convolutions
-        if used > MOST_CONVOLUTIONS:
-            return f"The second derivatives of V have {used} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
+        """Size of V and of its derivatives, each before the next ones are made: they can be a hundred times as large."""
+        graphs = (
+            ("V has", lambda: (self.expression,)),
+            ("The first derivatives of V have", lambda: self._slopes),
+            ("The first and second derivatives of V have", lambda: (*self._slopes, *self._curvatures)),
+        )
+        for subject, expressions in graphs:
+            used = make_graph(expressions())[0].convolutions
+            if used > MOST_CONVOLUTIONS:
+                return f"{subject} {used} products and functions; at most {MOST_CONVOLUTIONS} are allowed."
         return None
 
 
@@ -227,6 +238,7 @@ def _shifted(terms: Terms, a: float, b: float) -> Expression:
     return linear_combination((c, multiply(power(x, k), power(y, m))) for (k, m), c in kept.items())
 
 
+@lru_cache(maxsize=_ZEROS)
 def _isolated_zeros(expression: Expression) -> np.ndarray:
     """(n, 2) the stationary points of an expression at which it is 0, to rounding; none where these form a curve."""
     terms = as_terms(expression)

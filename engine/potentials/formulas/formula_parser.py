@@ -93,9 +93,9 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     ------
     ValueError
         A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
-        50 nested brackets, neither x nor y, a function of a number outside its domain, or, as a polynomial, a degree above 12,
-        more than 60 terms, or a coefficient whose magnitude is not between 1e-9 and 1e9. A ValueError, if a parameter is no
-        letter of the formula or its value is not legal.
+        50 nested brackets, neither x nor y, a function of a number outside its domain, as a polynomial a degree above 12, more
+        than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and functions
+        with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula or its value is not legal.
 
     Examples
     --------
@@ -114,6 +114,9 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     expanded = _Parser(clauses.formula, values).parse()
     if isinstance(expanded, Expression):
         potential = Potential(name or "", expanded)
+        # Whatever is made of it next needs its derivatives.
+        if (problem := potential.form.limits_refusal()) is not None:
+            raise FormulaError(0, problem)
     else:
         _check_expanded(expanded)
         terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))

@@ -209,6 +209,12 @@ def test_a_slice_along_a_letter_belongs_to_the_system_of_the_link() -> None:
     assert "plane" not in without_system(values)
 
 
+@pytest.mark.parametrize("formula", ["a x^2 +", "a x^2 + log(y)", "a" + "/(x - 1)" * 40])
+def test_a_slice_along_a_letter_is_read_without_its_potential(formula: str) -> None:
+    values, problems = read_link({"V": formula, "plane": "x,a=1:2"})
+    assert (values["plane"].parameter.system.formula, problems) == (formula, [])
+
+
 COMPARED = [
     ComparedView(System("II", "", {"epsilon": 1.25}), Plane.X_PX, 0.1 + 0.2),
     ComparedView(System(TYPED, "½(x²+y²) − a x y²", {"a": 1.5}), Slice(Coordinate.X, Coordinate.THETA), 0.2),

@@ -387,6 +387,7 @@ def test_a_start_at_a_value_that_the_parameter_cannot_have_is_forbidden() -> Non
     [
         (lambda: ParameterAxis("mass", 0.5, 2.0, System("I")), "must be one of the system, omega_1, omega_2, epsilon"),
         (lambda: ParameterAxis("epsilon", 2.0, 0.5, System("I")), "the lower end must be below the upper end"),
+        (lambda: ParameterAxis("a", 1.0, 2e9, System("typed", "a x² + y²")), r"at most 1e\+09 in magnitude"),
         (lambda: ParameterAxis("epsilon", -1.0, 0.5, System("I")), "must be between 0.01 and 100"),
         (lambda: Direction("x", x=1.0), "must be an identifier and none of a coordinate"),
         (lambda: Direction("u"), "must not be 0"),

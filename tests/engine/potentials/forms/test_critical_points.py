@@ -101,6 +101,18 @@ def test_a_turn_within_a_narrow_angle_is_counted() -> None:
     assert winding_number(random_well(34, 10).gradient, 533.0) == -3
 
 
+def test_turns_too_many_to_be_counted_are_refused() -> None:
+    counts = []
+
+    def noise(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        counts.append(x.size)
+        return np.sin(1e15 * x), np.cos(1e15 * y)
+
+    with pytest.raises(UndecidedError, match="turns too often"):
+        winding_number(noise, 1.0)
+    assert max(counts) <= 20_000
+
+
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 def test_points_scale_with_the_polynomials(size: float) -> None:
     terms = random_terms(1, 5)
