@@ -13,6 +13,7 @@ from weakref import WeakKeyDictionary
 from bokeh.document import Document
 
 from app.runtime.fair_share import FairShare
+from app.runtime.limited_process import LimitedProcess
 from app.runtime.load_monitor import LoadMonitor
 from app.runtime.metrics import ServerMetrics
 from app.runtime.overload import OverloadMonitor
@@ -39,6 +40,8 @@ class ProcessState:
         Number of requests for the picture of a link under way, by address.
     jobs
         Background jobs of all sessions.
+    limited
+        The process for what visitors type.
     load
         Delay of the event loop.
     overload
@@ -58,6 +61,7 @@ class ProcessState:
     sockets: Counter[str] = field(default_factory=Counter, init=False)
     link_pictures: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
+    limited: LimitedProcess = field(default_factory=LimitedProcess, init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)
     overload: OverloadMonitor = field(init=False)
     metrics: ServerMetrics = field(default_factory=ServerMetrics, init=False)
@@ -73,6 +77,7 @@ class ProcessState:
             cache_bytes=self.settings.cache_bytes,
             most_orbits=self.settings.most_orbits,
             threads=self.settings.threads,
+            limited=self.limited,
         )
 
     def fair_share(self, document: Document) -> FairShare:

@@ -41,6 +41,11 @@ class StateCollector(Collector):
         )
         yield _gauge("delay_limit_seconds", "Delay above which pages are refused", state.settings.longest_delay)
         yield _gauge("resident_memory_bytes", "Resident memory", resident_bytes())
+        yield CounterMetricFamily(
+            f"{NAMESPACE}_formulas_stopped",
+            "Typed formulas whose review exceeded its time or its memory",
+            value=state.limited.stopped,
+        )
         yield from _job_metrics(state)
 
 

@@ -59,6 +59,7 @@ def begin_shutdown(state: ProcessState) -> None:
     state.stopping.set()
     log.info("stopping")
     state.jobs.stop()
+    state.limited.close()
 
 
 def finish_shutdown(state: ProcessState) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from engine import CASES, Potential, PotentialReview, Slice, System, review_potential
-from engine.service import EnergyRange, Job, Queue
+from engine.service import TYPED, EnergyRange, Job, Queue
 from plots.accepted_potentials import refusal
 
 
@@ -57,7 +57,7 @@ def is_known(system: System) -> bool:
 
 
 def review_system(system: System) -> SystemReview:
-    """Review a system: up to seconds, so that the page calls this on worker threads only.
+    """Review a system: up to seconds, so that the page calls this through `review_job` only.
 
     Raises
     ------
@@ -70,8 +70,8 @@ def review_system(system: System) -> SystemReview:
 
 
 def review_job(system: System) -> Job[SystemReview]:
-    """The job of `review_system`."""
-    return Job(review_system, (system,), queue=Queue.LONG_CALL)
+    """The job of `review_system`; what visitors type has limits on its time and memory."""
+    return Job(review_system, (system,), queue=Queue.LIMITED if system.case == TYPED else Queue.LONG_CALL)
 
 
 @cache

@@ -40,6 +40,10 @@ class Expression:
     def __hash__(self) -> int:
         return self._hash
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the hash, which is another one in another process."""
+        return {name: value for name, value in self.__dict__.items() if name not in ("key", "_hash")}
+
 
 @dataclass(frozen=True, eq=False)
 class Coordinate(Expression):

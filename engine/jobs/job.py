@@ -27,6 +27,9 @@ class Queue(Enum):
     LONG_CALL = "long call"
     """The function is one call of up to seconds."""
 
+    LIMITED = "limited"
+    """The function is one call on what a visitor typed, in a process with limits if there is one; one at a time runs."""
+
     COMPILATION = "compilation"
     """The function compiles kernels; one at a time runs in the process."""
 

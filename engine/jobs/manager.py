@@ -77,6 +77,8 @@ class Jobs:
         Most orbits of all large running jobs together, at about 120 bytes per orbit.
     threads
         Size of a thread pool of its own; None for the default pool of this process.
+    limited
+        Calls a function in a process with limits, for `Queue.LIMITED`; None for a thread of this process.
     """
 
     def __init__(
@@ -85,11 +87,14 @@ class Jobs:
         cache_bytes: int = DEFAULT_CACHE_BYTES,
         most_orbits: int = DEFAULT_ORBITS,
         threads: int | None = None,
+        limited: Callable[[Callable[[], Any]], Any] | None = None,
     ) -> None:
         self._executor = executor
+        self._limited = limited
         self._scheduler = FairScheduler(None if threads is None else create_thread_pool(threads))
         # Numba compiles one function at a time: more threads would only wait for each other, and orbits for all of them.
         self._compilations = FairScheduler(create_thread_pool(1))
+        self._limited_calls = FairScheduler(create_thread_pool(1))
         self._semaphore = OrbitSemaphore(most_orbits)
         self._ended: Counter[str] = Counter()
         self._coordinators = ThreadPoolExecutor(_COORDINATORS, thread_name_prefix="jobs")
@@ -165,6 +170,7 @@ class Jobs:
         """Pause or resume everything but first frames and long calls; see `FairScheduler.pause_background`."""
         self._scheduler.pause_background(paused)
         self._compilations.pause_background(paused)
+        self._limited_calls.pause_background(paused)
 
     def stop(self) -> None:
         """Cancel all jobs and subscriptions; the computations end within about 0.2 s."""
@@ -214,7 +220,9 @@ class Jobs:
             "resume": job.find_earlier(job, self.cache) if job.find_earlier is not None else None,
         }
         call = partial(job.function, *arguments, **job.keywords(offered))
-        if job.queue in (Queue.LONG_CALL, Queue.COMPILATION):
+        if job.queue is Queue.LIMITED and self._limited is not None:
+            call = partial(self._limited, call)
+        if job.queue in (Queue.LONG_CALL, Queue.LIMITED, Queue.COMPILATION):
             return executors[job.queue].submit(call).result()
         return call()
 
@@ -238,6 +246,7 @@ class Jobs:
             Queue.BACKGROUND: calls,
             Queue.IDLE: calls,
             Queue.LONG_CALL: long_calls,
+            Queue.LIMITED: self._limited_calls.executor(run.client, lambda: Priority.LONG_CALL),
             Queue.COMPILATION: self._compilations.executor(run.client, lambda: Priority.LONG_CALL),
         }
 

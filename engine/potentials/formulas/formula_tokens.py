@@ -45,6 +45,10 @@ class FormulaError(ValueError):
         super().__init__(f"formula, character {position + 1}: {problem}")
         self.position, self.problem = position, problem
 
+    def __reduce__(self) -> tuple[type[FormulaError], tuple[int, str]]:
+        """Errors are pickled between processes."""
+        return FormulaError, (self.position, self.problem)
+
 
 @dataclass(frozen=True)
 class Token:

@@ -1,9 +1,8 @@
-"""The potential of a link, of a preset or of the browser's history is reviewed on another thread than the event loop's."""
+"""The potential of a link, of a preset or of the browser's history is reviewed in another process."""
 
 from __future__ import annotations
 
 import asyncio
-import threading
 import time
 from collections.abc import Callable, Coroutine
 from typing import Any
@@ -42,16 +41,16 @@ SLOW = [
 
 
 @pytest.fixture
-def threads(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[int]]:
-    """The threads that call each slow function."""
-    called: dict[str, set[int]] = {}
+def called(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The slow functions that are called in this process."""
+    called: list[str] = []
     # As when the server starts.
     for case in CASES:
         review_module.review_catalogue_entry(case)
 
     def recording(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         def call(*arguments: Any, **options: Any) -> Any:
-            called.setdefault(name, set()).add(threading.get_ident())
+            called.append(name)
             return function(*arguments, **options)
 
         return call
@@ -80,10 +79,10 @@ async def settle(document: Document) -> None:
         await asyncio.sleep(0.01)
 
 
-def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> int:
-    """Open a page with a link on a new event loop and check it; returns the loop's thread."""
+def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[Any, Any, None]]) -> None:
+    """Open a page with a link on a new event loop and check it."""
 
-    async def run() -> int:
+    async def run() -> None:
         built: list[Explorer] = []
 
         def build(document: Document) -> None:
@@ -103,24 +102,22 @@ def with_page(parameters: dict[str, str], check: Callable[[Explorer], Coroutine[
         finally:
             built[0].close()
             await settle(session.document)
-        return threading.get_ident()
 
-    return run_on_new_loop(run)
+    run_on_new_loop(run)
 
 
-def test_a_circular_potential_in_a_link_is_refused_on_another_thread(threads: dict[str, set[int]]) -> None:
+def test_a_circular_potential_in_a_link_is_refused_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
         assert "Reviewing" in explorer.progress.text.object
         await wait_for(lambda: "Ignored the potential in the link" in explorer.notice._pane.object)
         assert "circular potential" in explorer.notice._pane.object
         assert (explorer.state.case, explorer.state.t_max) == ("I", 1e3)
 
-    loop = with_page(CIRCULAR | {"t_max": "1e3", "h": "0.7"}, check)
-    assert threads.keys() >= {"parse_formula", "review_potential", "find_critical_points"}
-    assert all(loop not in found for found in threads.values())
+    with_page(CIRCULAR | {"t_max": "1e3", "h": "0.7"}, check)
+    assert not called
 
 
-def test_a_link_is_shown_whole_when_its_potential_has_passed(threads: dict[str, set[int]]) -> None:
+def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) -> None:
     asked = {"plane": "x_y", "h": "0.4", "window": "-1,1,-0.5,0.5", "orbits": "0.1,0.2", "resolution": "112", "t_max": "100"}
 
     async def check(explorer: Explorer) -> None:
@@ -131,29 +128,29 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(threads: dict[str, 
         assert state.window == Window(-1.0, 1.0, -0.5, 0.5)
         assert explorer.links.history.entry == 0
 
-    loop = with_page(LEGAL | asked, check)
-    assert all(loop not in found for found in threads.values())
+    with_page(LEGAL | asked, check)
+    assert not called
 
 
-def test_a_typed_potential_is_reviewed_on_another_thread(threads: dict[str, set[int]]) -> None:
+def test_a_typed_potential_is_reviewed_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
         explorer.potential.panel.formula._receive({"text": "½(x² + y²) − 0.79x²y²", "typed": 1, "done": True})
         await wait_for(lambda: explorer.state.case == TYPED)
         assert explorer.state.potential.channels == 4
 
-    loop = with_page({}, check)
-    assert all(loop not in found for found in threads.values())
+    with_page({}, check)
+    assert not called
 
 
-def test_an_entry_of_the_browsers_history_is_reviewed_on_another_thread(threads: dict[str, set[int]]) -> None:
+def test_an_entry_of_the_browsers_history_is_reviewed_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
         explorer.links.navigate("?" + urlencode(LEGAL | {"h": "0.5"}), 0, 0)
         assert explorer.state.case == "I"
         await wait_for(lambda: explorer.state.case == TYPED)
         assert explorer.state.energy == 0.5
 
-    loop = with_page({}, check)
-    assert all(loop not in found for found in threads.values())
+    with_page({}, check)
+    assert not called
 
 
 def test_a_choice_made_during_a_review_is_kept() -> None:

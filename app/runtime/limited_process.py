@@ -1,0 +1,125 @@
+"""A process for what visitors type: its time and memory are limited, and the server goes on when it ends."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Future
+from concurrent.futures import TimeoutError as FutureTimeoutError
+from contextlib import suppress
+from functools import partial
+from math import ceil
+
+from loky import ProcessPoolExecutor
+
+SECONDS = 5
+"""Processor time of a call."""
+
+MEMORY = 2**30
+"""Memory of the process beside that which it has when it starts, in bytes."""
+
+# A call on a busy machine may wait for the processor this many times as long as it runs.
+_PATIENCE = 4
+
+
+class LimitError(ValueError):
+    """A call needs more time or memory than it may have."""
+
+
+class LimitedProcess:
+    """A process that makes one call at a time; it starts with the first call, and again after one that exceeded a limit.
+
+    Parameters
+    ----------
+    seconds
+        Processor time of a call, a whole number from 1.
+    memory
+        Memory of the process beside that which it has when it starts, in bytes.
+
+    Attributes
+    ----------
+    stopped
+        Number of calls that exceeded a limit.
+    """
+
+    def __init__(self, seconds: int = SECONDS, memory: int = MEMORY) -> None:
+        self._seconds, self._memory = seconds, memory
+        self._lock = threading.Lock()
+        self._executor: ProcessPoolExecutor | None = None
+        self.stopped = 0
+
+    def __call__[Result](self, function: Callable[[], Result]) -> Result:
+        """The result of a function, which can be pickled with it.
+
+        Raises
+        ------
+        LimitError
+            If the function exceeds a limit.
+        """
+        with self._lock:
+            try:
+                return self._call(function)
+            except LimitError:
+                self.stopped += 1
+                raise
+
+    def start(self) -> None:
+        """Start the process ahead of the first call."""
+        self(_do_nothing)
+
+    def close(self) -> None:
+        """End the process."""
+        executor, self._executor = self._executor, None
+        if executor is not None:
+            executor.shutdown(wait=False, kill_workers=True)
+
+    def _call[Result](self, function: Callable[[], Result]) -> Result:
+        future = self._submit(partial(_call_limited, self._seconds, function))
+        try:
+            result: Result = future.result(_PATIENCE * self._seconds)
+        except (BrokenExecutor, FutureTimeoutError):
+            self.close()
+        except (MemoryError, RecursionError):
+            pass
+        else:
+            return result
+        raise LimitError(
+            f"this formula needs more than {self._seconds} s or {self._memory // 2**20} MB to be understood; choose a simpler one"
+        )
+
+    def _submit[Result](self, call: Callable[[], Result]) -> Future[Result]:
+        """Start a call, in a new process if there is none or if it has ended between two calls."""
+        if self._executor is not None:
+            with suppress(BrokenExecutor):
+                waiting: Future[Result] = self._executor.submit(call)
+                return waiting
+        self._executor = ProcessPoolExecutor(max_workers=1, initializer=_limit_memory, initargs=(self._memory,))
+        first: Future[Result] = self._executor.submit(call)
+        return first
+
+
+def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Result:
+    """Call a function; the system ends the process when it has used these seconds."""
+    # Not on Windows, where the caller's patience is the only limit.
+    with suppress(ImportError):
+        import resource
+
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+        resource.setrlimit(resource.RLIMIT_CPU, (ceil(used.ru_utime + used.ru_stime) + seconds, hard))
+    return function()
+
+
+def _limit_memory(most: int) -> None:
+    with suppress(ImportError):
+        import resource
+
+        import psutil
+
+        # Without a file of its memory when the system ends it.
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_AS, (psutil.Process().memory_info().vms + most, resource.RLIM_INFINITY))
+
+
+def _do_nothing() -> None:
+    """A call that starts the process."""

@@ -1,0 +1,67 @@
+"""Calls that exceed their time or their memory end, and later ones do not notice."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+import pytest
+
+from app.runtime.limited_process import LimitedProcess, LimitError
+from app.state.system_review import review_system
+from engine import System, parse_formula
+from engine.potentials.formulas.formula_tokens import FormulaError
+
+
+@pytest.fixture
+def limited() -> Iterator[LimitedProcess]:
+    process = LimitedProcess(seconds=1, memory=2**29)
+    yield process
+    process.close()
+
+
+def compute_forever() -> None:
+    while True:
+        pass
+
+
+def fill_memory() -> None:
+    parts = []
+    while True:
+        parts.append(np.ones(2**22))
+
+
+def recurse() -> None:
+    recurse()
+
+
+@pytest.mark.parametrize("function", [compute_forever, fill_memory, recurse])
+def test_a_call_beyond_a_limit_is_refused_and_the_next_one_is_answered(limited: LimitedProcess, function: object) -> None:
+    with pytest.raises(LimitError, match="needs more than 1 s or 512 MB"):
+        limited(function)  # type: ignore[arg-type]
+    assert limited.stopped == 1
+    assert limited(partial(divmod, 7, 2)) == (3, 1)
+
+
+def test_calls_share_a_process_which_is_replaced_when_it_ends(limited: LimitedProcess) -> None:
+    first = limited(os.getpid)
+    assert limited(os.getpid) == first != os.getpid()
+    with pytest.raises(LimitError):
+        limited(partial(os._exit, 1))
+    assert limited(os.getpid) != first
+
+
+def test_errors_are_those_of_the_function(limited: LimitedProcess) -> None:
+    with pytest.raises(FormulaError, match="character 4: ") as caught:
+        limited(partial(parse_formula, "x +"))
+    assert (caught.value.position, limited.stopped) == (3, 0)
+
+
+def test_the_review_of_a_formula_is_equal_to_one_of_this_process(limited: LimitedProcess) -> None:
+    system = System("typed", "½r² − a x²y exp(−y²)", {"a": 2.0})
+    found, expected = limited(partial(review_system, system)), review_system(system)
+    assert found == expected
+    assert hash(found.potential) == hash(expected.potential)
+    np.testing.assert_array_equal(found.potential.saddles, expected.potential.saddles)
