@@ -6,6 +6,7 @@ import functools
 
 import numpy as np
 
+from engine.potentials.forms.stationary_points import SINGULAR_RATIO
 from engine.potentials.potential import Potential
 
 # The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
@@ -16,9 +17,6 @@ _SMALLEST_RADIUS, _LARGEST_RADIUS = 1e-2, 50.0
 # Where an opening without a saddle is searched: at this multiple of the range of the critical energies.
 _OPEN_ENERGY_FACTOR = 100.0
 _CACHE_SIZE = 256
-
-SINGULAR_RATIO = 1e-10
-"""A Hessian is singular if the ratio of its eigenvalues is at most this."""
 
 
 def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:

@@ -242,12 +242,21 @@ class Potential(Result):
         discs = {(each.x, each.y, each.radius) for each in self.centres}
         return not self.rotation and {(signs[0] * x, signs[1] * y, radius) for x, y, radius in discs} == discs
 
-    @cached_property
+    @property
     def critical_points(self) -> np.ndarray:
         """(n, 2) all points with ∇V = 0; the origin, if it is one, is exactly (0, 0). Raises ValueError if they form a curve.
 
         Those of a formula that is no polynomial are all of a region, see `engine.potentials.forms.stationary_points`.
         """
+        return self._points_and_indices[:, :2]
+
+    @property
+    def critical_indices(self) -> np.ndarray:
+        """(n,) the index of each critical point: 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate one."""
+        return self._points_and_indices[:, 2]
+
+    @cached_property
+    def _points_and_indices(self) -> np.ndarray:
         return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
 
     @cached_property
@@ -260,9 +269,9 @@ class Potential(Result):
         """
         if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
-        points, sinks = self.critical_points, self.form.singular_points
+        form, points, indices = self.form, self.critical_points, self.critical_indices
         leads_out = stored_points(
-            "exit_saddles", self.form, lambda: leads_out_of_well(self.form.downhill, self.hessian, points, sinks)
+            "exit_saddles", form, lambda: leads_out_of_well(form.downhill, form.hessian, points, indices, form.singular_points)
         )
         return self._in_channel_order(points[leads_out])
 
@@ -451,9 +460,9 @@ class Potential(Result):
         """
         if not self.channels:
             return ()
-        points = self.critical_points
+        form, points, indices = self.form, self.critical_points, self.critical_indices
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
-        beside = stored_points("maxima", self.form, lambda: find_maxima_beside(self.form.downhill, self.hessian, points, saddles))
+        beside = stored_points("maxima", form, lambda: find_maxima_beside(form.downhill, form.hessian, points, indices, saddles))
         mergers = []
         for k in np.flatnonzero(beside.sum(axis=0) > 1):
             (x, y), channels = points[k].tolist(), (np.flatnonzero(beside[:, k]) + 1).tolist()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import Enum
@@ -10,11 +11,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError
+from engine.potentials.forms.common_roots import UndecidedError
+from engine.potentials.forms.critical_points import NotIsolatedError
 from engine.potentials.forms.exit_saddles import DescentError
 from engine.potentials.formulas.formula_parser import LONGEST_TEXT
 from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.hill_region import SINGULAR_RATIO, is_open_below, is_open_without_saddle
+from engine.potentials.hill_region import is_open_below, is_open_without_saddle
 from engine.potentials.merged_channels import name_channels
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
 from engine.potentials.singularity_check import singularity_refusal
@@ -163,7 +165,7 @@ def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoi
             "The force vanishes along a curve instead of at isolated points, as in an infinite valley or a circular potential, "
             "so the well at the origin is not bounded by isolated saddles. Add terms that make V vary along this curve."
         )
-    refusals = (check(potential, points) for check in (_well_refusal, _points_refusal, _exits_refusal))
+    refusals = (check(potential, points) for check in (_well_refusal, _degenerate_refusal, _exits_refusal))
     return points, next(filter(None, refusals), None)
 
 
@@ -176,20 +178,19 @@ def _known_critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
 
 
 def _critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
-    points = potential.critical_points[np.argsort(np.hypot(*potential.critical_points.T), kind="stable")]
-    return tuple(
-        CriticalPoint(float(x), float(y), _kind(potential, x, y), float(potential.value(x, y)), _channel(potential, x, y))
-        for x, y in points
-    )
+    points = [
+        CriticalPoint(x, y, _kind(potential, x, y, index), float(potential.value(x, y)), _channel(potential, x, y))
+        for (x, y), index in zip(potential.critical_points.tolist(), potential.critical_indices.tolist(), strict=True)
+    ]
+    return tuple(sorted(points, key=lambda point: math.hypot(point.x, point.y)))
 
 
-def _kind(potential: Potential, x: float, y: float) -> PointKind:
-    low, high = np.linalg.eigvalsh(potential.hessian_matrix(x, y))
-    if min(abs(low), abs(high)) <= SINGULAR_RATIO * max(abs(low), abs(high)):
+def _kind(potential: Potential, x: float, y: float, index: float) -> PointKind:
+    if index == 0.0:
         return PointKind.DEGENERATE
-    if low * high < 0.0:
+    if index < 0.0:
         return PointKind.SADDLE
-    return PointKind.MINIMUM if low > 0.0 else PointKind.MAXIMUM
+    return PointKind.MINIMUM if np.trace(potential.hessian_matrix(x, y)) > 0.0 else PointKind.MAXIMUM
 
 
 def _channel(potential: Potential, x: float, y: float) -> int:
@@ -237,16 +238,13 @@ def _moved_to_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> s
     return formula if len(formula) <= LONGEST_TEXT else None
 
 
-def _points_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
     for point in points:
         if point.kind is PointKind.DEGENERATE:
             return (
                 f"V has a degenerate critical point at ({point.x:.6g}, {point.y:.6g}), which is neither a saddle nor a minimum "
                 f"nor a maximum, so it is undefined whether orbits escape over it."
             )
-    saddles = sum(point.kind is PointKind.SADDLE for point in points)
-    if not potential.form.are_complete(potential.critical_points, len(points) - 2 * saddles):
-        return "Not all critical points were found: the sum of their indices is wrong (Poincaré–Hopf theorem)."
     return None
 
 

@@ -41,7 +41,9 @@ class DescentError(ValueError):
     """A line of steepest descent whose end is not found."""
 
 
-def leads_out_of_well(downhill: Downhill, hessian: Hessian, points: np.ndarray, poles: np.ndarray = NO_POINTS) -> np.ndarray:
+def leads_out_of_well(
+    downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, poles: np.ndarray = NO_POINTS
+) -> np.ndarray:
     """(n,) whether each critical point (n, 2) of a potential is a saddle that leads out of the well or pole at the origin.
 
     Parameters
@@ -52,26 +54,27 @@ def leads_out_of_well(downhill: Downhill, hessian: Hessian, points: np.ndarray, 
         (V_xx, V_xy, V_yy) as a function of x and y.
     points
         All critical points, including the origin exactly; if it is neither a minimum nor a pole, no point leads out.
+    indices
+        (n,) −1 for saddles, 1 for minima and maxima.
     poles
         (m, 2) points at which V is not defined, where lines of steepest descent can end.
     """
-    count, points = len(points), np.concatenate([points, poles])
+    flags = np.zeros(len(points), bool)
+    sinks = np.concatenate([points[(indices > 0) & (hessian(*points.T)[0] > 0.0)], poles])
+    points, is_saddle = np.concatenate([points, poles]), np.concatenate([indices < 0, np.zeros(len(poles), bool)])
     origin = np.flatnonzero(np.hypot(*points.T) == 0.0)
-    vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(points[:, 0], points[:, 1]))
-    with np.errstate(over="ignore", invalid="ignore"):
-        # An overflow gives NaN or infinity, which is not a saddle.
-        determinant = vxx * vyy - vxy**2
-    flags = np.zeros(count, bool)
-    if not origin.size or determinant[origin[0]] <= 0.0 or vxx[origin[0]] <= 0.0 or len(points) < 2:
+    if not np.any(np.hypot(*sinks.T) == 0.0) or len(points) < 2:
         return flags
-    descent = _Descent(downhill, 1.0, hessian, points, determinant < 0.0)
-    for k in np.flatnonzero(determinant < 0.0):
+    descent = _Descent(downhill, 1.0, hessian, points, is_saddle)
+    for k in np.flatnonzero(is_saddle):
         one, other = (descent.find_ends(int(k), side) for side in (1.0, -1.0))
         flags[k] = (int(origin[0]) in one) != (int(origin[0]) in other)
     return flags
 
 
-def find_maxima_beside(downhill: Downhill, hessian: Hessian, points: np.ndarray, saddles: np.ndarray) -> np.ndarray:
+def find_maxima_beside(
+    downhill: Downhill, hessian: Hessian, points: np.ndarray, indices: np.ndarray, saddles: np.ndarray
+) -> np.ndarray:
     """(m, n) whether a line of steepest ascent from each of m saddles ends at each critical point, a maximum.
 
     Parameters
@@ -82,14 +85,15 @@ def find_maxima_beside(downhill: Downhill, hessian: Hessian, points: np.ndarray,
         (V_xx, V_xy, V_yy) as a function of x and y.
     points
         (n, 2) all critical points.
+    indices
+        (n,) −1 for saddles, 1 for minima and maxima.
     saddles
-        (m,) indices of saddles.
+        (m,) places of saddles among the points.
     """
-    vxx, vxy, vyy = hessian(points[:, 0], points[:, 1])
     flags = np.zeros((len(saddles), len(points)), bool)
-    if not len(saddles) or not np.any((vxx < 0.0) & (vxx * vyy > vxy**2)):
+    if not len(saddles) or not np.any((indices > 0) & (hessian(*points.T)[0] < 0.0)):
         return flags
-    ascent = _Descent(downhill, -1.0, lambda x, y: tuple(-entry for entry in hessian(x, y)), points, vxx * vyy < vxy**2)
+    ascent = _Descent(downhill, -1.0, lambda x, y: tuple(-entry for entry in hessian(x, y)), points, indices < 0)
     for row, saddle in zip(flags, saddles, strict=True):
         ends = ascent.find_ends(int(saddle), 1.0) | ascent.find_ends(int(saddle), -1.0)
         row[[end for end in ends if end >= 0]] = True

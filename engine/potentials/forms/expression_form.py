@@ -16,7 +16,8 @@ from engine.expressions.parity import EVEN, parity
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.polynomials import Terms
-from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError, UndecidedError
+from engine.potentials.forms.common_roots import UndecidedError
+from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 from engine.potentials.forms.form import Velocity
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.forms.stationary_points import find_stationary_points
@@ -70,7 +71,7 @@ class ExpressionForm:
     @property
     def length(self) -> float:
         """The distance of the nearest critical point from the origin, or 1."""
-        distance = np.hypot(*self.find_critical_points().T)
+        distance = np.hypot(*self.find_critical_points()[:, :2].T)
         distance = distance[distance > 0.0]
         return nearest_power_of_two(float(distance.min())) if distance.size else 1.0
 
@@ -127,12 +128,8 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(-1.0, self._slopes[axis])]))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 2) those of a region, see `engine.potentials.forms.stationary_points`."""
+        """(n, 3) those of a region, see `engine.potentials.forms.stationary_points`."""
         return find_stationary_points(self.value, self.gradient, self.hessian, self.singular_points)
-
-    def are_complete(self, _points: np.ndarray, _index_sum: int) -> bool:
-        """The sum of the indices is checked where they are found."""
-        return True
 
     def downhill(self, length: float, sign: float) -> Velocity:
         """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`, or V on average around a centre."""
@@ -244,7 +241,7 @@ def _isolated_zeros(expression: Expression) -> np.ndarray:
     terms = as_terms(expression)
     form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
     try:
-        points = form.find_critical_points()
+        points = form.find_critical_points()[:, :2]
     except (NotIsolatedError, UndecidedError):
         return NO_POINTS
     size = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0) * (1.0 + (points**2).sum(axis=1))

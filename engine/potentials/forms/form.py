@@ -54,10 +54,10 @@ class Form(Protocol):
         """−∂V/∂x (axis 0) or −∂V/∂y (axis 1)."""
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 2) the points with ∇V = 0; the origin, if it is one, is exactly (0, 0)."""
+        """(n, 3) x and y of the points with ∇V = 0, and 1 for a minimum or a maximum, −1 for a saddle, 0 for a degenerate one.
 
-    def are_complete(self, points: np.ndarray, index_sum: int) -> bool:
-        """Whether the critical points (n, 2) are all, by the Poincaré–Hopf theorem; index_sum is the sum of their indices."""
+        The origin, if it is one, is exactly (0, 0).
+        """
 
     def downhill(self, length: float, sign: float) -> Velocity:
         """The flow along −sign ∇V, whose lines are those of steepest descent; it is slower where V is steep at large scales."""

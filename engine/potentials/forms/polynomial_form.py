@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, degree, derivative, evaluate, largest_coefficients, substitute
-from engine.potentials.forms.critical_points import NO_POINTS, characteristic_length, find_critical_points, winding_number
+from engine.potentials.forms.critical_points import NO_POINTS, find_critical_points
 from engine.potentials.forms.form import Velocity
 from engine.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
 
@@ -23,12 +23,6 @@ COEFFICIENT_RANGE = (1e-9, 1e9)
 
 # Smallest coefficient as a share of the largest one, beyond which one of them has no effect in double precision.
 _SMALLEST_RATIO = 1e-18
-# Coordinates below this, in units of the characteristic length, are rounding errors of zero.
-_ROUNDING = 1e-13
-# A critical point this close to the origin, in units of the characteristic length, is the origin.
-_SAME_POINT = 1e-8
-# Radius of the circle for the index check, in units of the distance of the outermost critical point.
-_CIRCLE_RADIUS = 4.0
 # Coefficients below this share of the largest one, after a shift of the origin or among those of one degree, are errors of zero.
 _ZERO_COEFFICIENT = 1e-12
 
@@ -56,8 +50,15 @@ class PolynomialForm:
 
     @property
     def length(self) -> float:
-        """The unit of length in which the largest coefficients of the lowest and the highest degree are about equal."""
-        return characteristic_length(self.coefficients)
+        """The unit of length in which the largest coefficients of the lowest and the highest degree are about equal.
+
+        It is a power of 2, so that scaling by it is exact.
+        """
+        largest = {n: c for n, c in largest_coefficients(self.coefficients).items() if n and c}
+        if len(largest) < 2:
+            return 1.0
+        low, high = min(largest), max(largest)
+        return float(2.0 ** np.round((np.log2(largest[low]) - np.log2(largest[high])) / (high - low)))
 
     @property
     def mirror_in_x(self) -> bool:
@@ -104,19 +105,8 @@ class PolynomialForm:
         return PolynomialForm(tuple((i, j, -c) for (i, j), c in self.slopes[axis].items()))
 
     def find_critical_points(self) -> np.ndarray:
-        """(n, 2) all of them, see `engine.potentials.forms.critical_points`."""
-        slopes = self.slopes
-        points = find_critical_points(*slopes)
-        length = characteristic_length(*slopes)
-        points = np.where(np.abs(points) < _ROUNDING * length, 0.0, points)
-        if not any(slope.get((0, 0), 0.0) for slope in slopes):
-            points[np.hypot(*points.T) < _SAME_POINT * length] = 0.0
-        return points
-
-    def are_complete(self, points: np.ndarray, index_sum: int) -> bool:
-        """Whether the gradient turns as often along a circle around all of them."""
-        outermost = float(np.hypot(*points.T).max())
-        return winding_number(self.gradient, _CIRCLE_RADIUS * (outermost if outermost > 0.0 else self.length)) == index_sum
+        """(n, 3) all of them, see `engine.potentials.forms.critical_points`."""
+        return find_critical_points(self.coefficients)
 
     def downhill(self, length: float, sign: float) -> Velocity:
         """−sign ∇V, slower far away, where a descent takes a finite time to −∞."""

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError, UndecidedError, winding_number
+from engine.potentials.forms.common_roots import UndecidedError
+from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 
 Gradient = Callable[[Any, Any], tuple[Any, Any]]
 Value = Callable[[Any, Any], Any]
@@ -37,17 +38,28 @@ _CONVERGED = 1e-12
 _SAME = 1e-8
 # Coordinates below this, in units of the distance of the nearest point, are rounding errors of zero.
 _ROUNDING = 1e-13
-# Largest ratio of the singular values of a Hessian that counts as singular.
-_SINGULAR_RATIO = 1e-6
+SINGULAR_RATIO = 1e-10
+"""A Hessian is singular if the ratio of its eigenvalues is at most this."""
+
+# The same for points that Newton's method finds along a curve of them, where it converges slowly.
+_SINGULAR_ON_A_CURVE = 1e-6
 
 # Radius of the circles around poles, in units of the distance of the nearest critical point or of another pole.
 _POLE_CIRCLE = 1e-3
 
 _ON_A_CURVE = "the slope vanishes along a curve"
 
+# Sample points of a circle, to start with and at most. A turn of the slope within 1e-9 radians needs some 30 more than the first.
+_SAMPLES, _MOST_SAMPLES = 721, 20_000
+# Largest rotation of a vector, in radians, and largest change of the logarithm of its length between neighbouring sample points
+# of a circle. A vector that turns fast is short there: its length shows a whole turn between two points.
+_LARGEST_ROTATION, _LARGEST_GROWTH = 0.5, 1.0
+
 
 def find_stationary_points(value: Value, gradient: Gradient, hessian: Hessian, poles: np.ndarray = NO_POINTS) -> np.ndarray:
-    """(n, 2) the points with ∇V = 0 in the region, each once; the origin, if it is one, is exactly (0, 0).
+    """(n, 3) the points with ∇V = 0 in the region, each once, with their indices; the origin, if it is one, is exactly (0, 0).
+
+    The index is 1 for a minimum or a maximum, −1 for a saddle and 0 for a point whose Hessian is singular to rounding.
 
     Parameters
     ----------
@@ -68,14 +80,22 @@ def find_stationary_points(value: Value, gradient: Gradient, hessian: Hessian, p
     distance = np.hypot(*near.T)
     nearest = float(distance[distance >= _ZERO].min(initial=np.inf))
     if nearest == np.inf:
-        return np.zeros((1, 2)) if len(near) else np.empty((0, 2))
+        return _with_indices(hessian, np.zeros((min(len(near), 1), 2)))
     problem = ""
     for factor in _FACTORS:
         try:
-            return _find_within(value, gradient, hessian, poles, near, nearest, factor)
+            return _with_indices(hessian, _find_within(value, gradient, hessian, poles, near, nearest, factor))
         except UndecidedError as error:
             problem = problem or str(error)
     raise UndecidedError(problem)
+
+
+def _with_indices(hessian: Hessian, points: np.ndarray) -> np.ndarray:
+    """(n, 3) points (n, 2) with their indices."""
+    vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(*points.T))
+    eigenvalues = np.abs(np.linalg.eigvalsh(np.nan_to_num(np.array([[vxx, vxy], [vxy, vyy]])).transpose(2, 0, 1)))
+    is_singular = eigenvalues.min(axis=1) <= SINGULAR_RATIO * eigenvalues.max(axis=1)
+    return np.column_stack([points, np.where(is_singular, 0.0, np.sign(vxx * vyy - vxy * vxy))])
 
 
 def _find_within(
@@ -150,7 +170,7 @@ def _are_degenerate(hessian: Hessian, points: np.ndarray) -> bool:
     """Whether most of the Hessians are singular."""
     vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(*points.T))
     largest, smallest = np.linalg.svd(np.array([[vxx, vxy], [vxy, vyy]]).transpose(2, 0, 1), compute_uv=False).T
-    return bool(np.mean(smallest <= _SINGULAR_RATIO * largest) > 0.5)
+    return bool(np.mean(smallest <= _SINGULAR_ON_A_CURVE * largest) > 0.5)
 
 
 def _index_sum_of_poles(gradient: Gradient, poles: np.ndarray, nearest: float) -> int:
@@ -172,3 +192,33 @@ def _index_sum(hessian: Hessian, points: np.ndarray) -> int:
     """The number of minima and maxima without that of saddles."""
     vxx, vxy, vyy = (np.broadcast_to(entry, len(points)) for entry in hessian(*points.T))
     return int(np.sign(vxx * vyy - vxy * vxy).sum())
+
+
+def winding_number(vector: Callable[[np.ndarray, np.ndarray], tuple[Any, Any]], radius: float) -> int:
+    """Number of counterclockwise turns of a vector, as a function of x and y, along a circle about the origin.
+
+    By the Poincaré–Hopf theorem it is the sum of the indices of the vector's zeros inside the circle. For the gradient of a
+    potential the index is +1 at a minimum or maximum and −1 at a saddle. If the indices of a list of critical points have
+    another sum, the list is incomplete or includes a degenerate point.
+
+    Raises
+    ------
+    UndecidedError
+        If the vector is not defined somewhere on the circle, or turns too often along it.
+    """
+    angle = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
+    while angle.size <= _MOST_SAMPLES:
+        x, y = radius * np.cos(angle), radius * np.sin(angle)
+        first, second = vector(x, y)
+        second, first, _ = np.broadcast_arrays(second, first, x)
+        if not np.isfinite([first, second]).all():
+            raise UndecidedError("The slope of V is not defined everywhere on a circle around critical points or around a pole.")
+        rotation = np.diff(np.arctan2(second, first))
+        rotation = (rotation + np.pi) % (2.0 * np.pi) - np.pi
+        with np.errstate(divide="ignore", invalid="ignore"):
+            growth = np.abs(np.diff(np.log(np.hypot(first, second))))
+        too_large = np.flatnonzero((np.abs(rotation) > _LARGEST_ROTATION) | (growth > _LARGEST_GROWTH))
+        if not too_large.size:
+            return round(float(rotation.sum()) / (2.0 * np.pi))
+        angle = np.insert(angle, too_large + 1, 0.5 * (angle[too_large] + angle[too_large + 1]))
+    raise UndecidedError("The slope of V turns too often on a circle around critical points or around a pole.")

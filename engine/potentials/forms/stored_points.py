@@ -55,4 +55,4 @@ def _versions() -> tuple[str, ...]:
         *sorted(Path(__file__).parent.glob("*.py")),
     ]
     sources = (hashlib.sha256(file.read_bytes()).hexdigest() for file in files)
-    return (*sources, *(metadata.version(package) for package in ("numpy", "scipy")))
+    return (*sources, *(metadata.version(package) for package in ("numpy", "scipy", "python-flint")))

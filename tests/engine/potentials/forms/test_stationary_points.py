@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from engine import CASES, parse_formula, review_potential
-from engine.potentials.forms.critical_points import NotIsolatedError, UndecidedError
-from engine.potentials.forms.stationary_points import MOST_POINTS, find_stationary_points
+from engine.potentials.forms.common_roots import UndecidedError
+from engine.potentials.forms.critical_points import NotIsolatedError
+from engine.potentials.forms.stationary_points import MOST_POINTS, find_stationary_points, winding_number
 from engine.potentials.potential import Potential
 
 
 def points_of(potential: Potential) -> np.ndarray:
-    points = find_stationary_points(potential.value, potential.gradient, potential.hessian)
+    points = find_stationary_points(potential.value, potential.gradient, potential.hessian)[:, :2]
     return points[np.lexsort(points.round(9).T)]
 
 
@@ -82,3 +83,15 @@ def test_points_on_an_axis_are_on_it_exactly() -> None:
     points = points_of(parse_formula("−1/√(r² + 0.36) − 0.1 x²y exp(−y²) − 0.05 y³"))
     assert np.count_nonzero(points[:, 0] == 0.0) == 2
     assert len(points) == 6
+
+
+def test_turns_too_many_to_be_counted_are_refused() -> None:
+    counts = []
+
+    def noise(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        counts.append(x.size)
+        return np.sin(1e15 * x), np.cos(1e15 * y)
+
+    with pytest.raises(UndecidedError, match="turns too often"):
+        winding_number(noise, 1.0)
+    assert max(counts) <= 20_000
