@@ -15,6 +15,8 @@ from typing import Any
 
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly
 
+from engine.polynomials import ExactTerms
+
 RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 """The polynomials in x and y with rational coefficients."""
 
@@ -37,6 +39,11 @@ class CommonRoot:
     x: arb
     y: arb
     multiplicity: int
+
+
+def exact_polynomial(terms: ExactTerms) -> fmpq_mpoly:
+    """Σ c x^i y^j."""
+    return RING.from_dict({powers: fmpq(c.numerator, c.denominator) for powers, c in terms.items()})
 
 
 def find_common_roots(p: fmpq_mpoly, q: fmpq_mpoly) -> list[CommonRoot]:

@@ -16,13 +16,11 @@ import numpy as np
 from flint import arb, ctx, fmpq, fmpq_mpoly
 
 from engine.polynomials import Terms
-from engine.potentials.forms.common_roots import RING, CommonRoot, find_common_roots
+from engine.potentials.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
 from engine.results.arrays import read_only
 
 NO_POINTS = read_only(np.empty((0, 2)))
 """(0, 2) an empty list of points."""
-
-_ON_A_CURVE = "the slope vanishes along a curve"
 
 # Denominators of fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
@@ -38,6 +36,9 @@ _LOCK = threading.Lock()
 
 class NotIsolatedError(ValueError):
     """The critical points form a curve, so they cannot be listed."""
+
+    def __init__(self, message: str = "the force vanishes along a curve instead of at isolated points") -> None:
+        super().__init__(message)
 
 
 def find_critical_points(terms: Terms) -> np.ndarray:
@@ -61,23 +62,22 @@ def find_critical_points(terms: Terms) -> np.ndarray:
         If the points are too close together to be told apart.
     """
     with _LOCK:
-        potential = RING.from_dict({powers: _rational(c) for powers, c in terms.items() if c})
+        potential = exact_polynomial({powers: _rational(c) for powers, c in terms.items() if c})
         first, second = potential.derivative("x"), potential.derivative("y")
         common = first.gcd(second)
         if common.is_zero():
-            raise NotIsolatedError(_ON_A_CURVE)
+            raise NotIsolatedError
         degenerate = _isolated_zeros(common)
         others = [root for root in find_common_roots(first / common, second / common) if not _is_among(root, degenerate)]
         rows = [(root, 0) for root in degenerate] + [(root, _index(potential, root)) for root in others]
         return np.array([(float(root.x), float(root.y), index) for root, index in rows], float).reshape(-1, 3)
 
 
-def _rational(c: float) -> fmpq:
+def _rational(c: float) -> Fraction:
     """The number that a coefficient stands for."""
     decimal = Fraction(repr(float(c)))
     simple = decimal.limit_denominator(_LARGEST_DENOMINATOR)
-    chosen = simple if float(simple) == c else decimal
-    return fmpq(chosen.numerator, chosen.denominator)
+    return simple if float(simple) == c else decimal
 
 
 def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
@@ -91,11 +91,11 @@ def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
         along_x, along_y = factor.derivative("x"), factor.derivative("y")
         across = (x - _ARBITRARY[0]) * along_y - (y - _ARBITRARY[1]) * along_x
         if not factor.gcd(across).is_constant():
-            raise NotIsolatedError(_ON_A_CURVE)
+            raise NotIsolatedError
         for zero in find_common_roots(factor, across):
             is_singular = _value(along_x, zero).contains(0) and _value(along_y, zero).contains(0)
             if not (is_singular and _Hessian(factor, zero).determinant > 0):
-                raise NotIsolatedError(_ON_A_CURVE)
+                raise NotIsolatedError
             zeros.append(zero)
     return zeros
 

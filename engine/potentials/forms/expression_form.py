@@ -181,10 +181,9 @@ class ExpressionForm:
         return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
 
     def moved(self, x: float, y: float) -> ExpressionForm | None:
-        """V(x + x₀, y + y₀) − V(x₀, y₀)."""
+        """V(x + x₀, y + y₀)."""
         axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
-        moved = substitute(self.expression, *axes)
-        return ExpressionForm(linear_combination([(1.0, moved), (-float(self.value(x, y)), number(1.0))]))
+        return ExpressionForm(substitute(self.expression, *axes))
 
     def count_rotations(self) -> int:
         """From values of V on circles."""

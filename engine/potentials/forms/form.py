@@ -79,7 +79,7 @@ class Form(Protocol):
         """See `Potential.with_parameters`."""
 
     def moved(self, x: float, y: float) -> Form | None:
-        """V about its critical point (x, y), without the constant; None if no formula is known that is worth showing."""
+        """V about its critical point (x, y), with the same energies; None if no formula is known that is worth showing."""
 
     def count_rotations(self) -> int:
         """See `PotentialReview.rotations`."""

@@ -150,12 +150,12 @@ class PolynomialForm:
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
     def moved(self, x: float, y: float) -> PolynomialForm | None:
-        """The terms of the expansion about (x, y), without the constant and linear ones; None if one is too large."""
+        """The terms of the expansion about (x, y), without the linear ones; None if one is too large."""
         terms: dict[Powers, float] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
                 for m in range(j + 1):
-                    if k + m > 1:
+                    if k + m != 1:
                         part = c * comb(i, k) * comb(j, m) * x ** (i - k) * y ** (j - m)
                         terms[k, m] = terms.get((k, m), 0.0) + part
         largest = max(map(abs, terms.values()), default=0.0)

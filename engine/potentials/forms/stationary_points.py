@@ -47,8 +47,6 @@ _SINGULAR_ON_A_CURVE = 1e-6
 # Radius of the circles around poles, in units of the distance of the nearest critical point or of another pole.
 _POLE_CIRCLE = 1e-3
 
-_ON_A_CURVE = "the slope vanishes along a curve"
-
 # Sample points of a circle, to start with and at most. A turn of the slope within 1e-9 radians needs some 30 more than the first.
 _SAMPLES, _MOST_SAMPLES = 721, 20_000
 # Largest rotation of a vector, in radians, and largest change of the logarithm of its length between neighbouring sample points
@@ -121,7 +119,7 @@ def _find_within(
         points = _distinct(_newton(gradient, hessian, np.concatenate([near, grid, rings]), radius), nearest)
         if len(points) > MOST_POINTS:
             if _are_degenerate(hessian, points):
-                raise NotIsolatedError(_ON_A_CURVE)
+                raise NotIsolatedError
             raise UndecidedError(f"V has more than {MOST_POINTS} critical points {region}.")
         if winding_number(gradient, radius) == _index_sum(hessian, points) + at_poles:
             return points

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 
+from flint import fmpq
+
 from engine.expressions.nodes import (
     FUNCTIONS,
     Expression,
@@ -18,9 +20,11 @@ from engine.expressions.nodes import (
     from_terms,
     linear_combination,
     multiply,
+    number,
     power,
 )
 from engine.polynomials import ExactTerms, exact_negative, exact_power, exact_product, exact_sum
+from engine.potentials.forms.common_roots import exact_polynomial
 
 FormulaValue = ExactTerms | Expression
 
@@ -52,14 +56,34 @@ def quotient(one: FormulaValue, other: FormulaValue) -> FormulaValue:
     divisor = constant_of(other)
     if divisor is not None and not isinstance(other, Expression):
         return product(one, {(0, 0): 1 / divisor})
-    return product(one, power(_rounded(other), -1.0))
+    return product(one, raised(other, Fraction(-1)))
 
 
 def raised(base: FormulaValue, exponent: Fraction) -> FormulaValue:
     """A power; ArithmeticError or ValueError for one of a number that is not a finite real number."""
     if exponent.denominator == 1 and exponent >= 0 and not isinstance(base, Expression):
         return exact_power(base, int(exponent))
+    if exponent.denominator == 1 and base and not isinstance(base, Expression):
+        return _simplified(_power_of_factors(base, int(exponent)))
     return _simplified(power(_rounded(base), float(exponent)))
+
+
+def _power_of_factors(base: ExactTerms, exponent: int) -> Expression:
+    """A power of a polynomial; of its factors if one of them is repeated, so that 1/(x² + 2x + 1) is (x + 1)^−2."""
+    constant, factors = exact_polynomial(base).factor_squarefree()
+    if all(n == 1 for _, n in factors):
+        return power(_rounded(base), float(exponent))
+    raised_factors = []
+    for factor, n in factors:
+        leading = factor.leading_coefficient()
+        constant *= leading**n
+        terms = {(i, j): _fraction(c / leading) for (i, j), c in factor.to_dict().items()}
+        raised_factors.append(power(_rounded(terms), float(n * exponent)))
+    return multiply(number(float(_fraction(constant) ** exponent)), *raised_factors)
+
+
+def _fraction(value: fmpq) -> Fraction:
+    return Fraction(int(value.p), int(value.q))
 
 
 def applied(name: str, argument: FormulaValue) -> FormulaValue:

@@ -3,7 +3,9 @@ from __future__ import annotations
 import math
 import re
 import time
+from collections.abc import Callable
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,6 +14,7 @@ from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_tokens import FormulaError
 from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import CASES, Potential
+from engine.potentials.validation_report import review_potential
 from tests.fuzz.test_random_expressions import random_formula
 
 III = CASES["III"].terms
@@ -249,3 +252,28 @@ def test_written_formulas_with_functions_parse_to_equal_potentials(seed: int) ->
     text, values = random_formula(seed)
     potential = parse_formula(text, parameters=values)
     assert parse_formula(write_formula(potential)) == potential
+
+
+@pytest.mark.parametrize(
+    ("text", "written", "function"),
+    [
+        (
+            "½r² + 0.01/(y − x + 0.8)^6",
+            "x²/2 + y²/2 + 0.01 (x − y − 4/5)⁻⁶",
+            lambda x, y: 0.5 * (x**2 + y**2) + 0.01 / (y - x + 0.8) ** 6,
+        ),
+        ("½y² + 1/(4x² + 4x + 1)", "y²/2 + 1/4 (x + 1/2)⁻²", lambda x, y: 0.5 * y**2 + 1 / (2 * x + 1) ** 2),
+        ("xy + 3/((x + 1)^4 (y − 2)²)", "xy + 3 (x + 1)⁻⁴(y − 2)⁻²", lambda x, y: x * y + 3 / ((x + 1) ** 4 * (y - 2) ** 2)),
+        ("xy + 1/(x² + 2)", "xy + (x² + 2)⁻¹", lambda x, y: x * y + 1 / (x**2 + 2)),
+    ],
+)
+def test_a_divisor_that_is_a_power_stays_one(text: str, written: str, function: Callable[..., np.ndarray]) -> None:
+    potential, places = parse_formula(text), (np.array([0.3, -0.2]), np.array([0.1, 0.4]))
+    assert potential.name == written
+    np.testing.assert_allclose(potential.value(*places), function(*places), rtol=1e-13)
+
+
+@pytest.mark.parametrize("power", [4, 5, 6, 12])
+def test_high_powers_of_a_wall_are_reviewed(power: int) -> None:
+    found = review_potential(parse_formula(f"x² + y² − x⁴ + 0.01/(y − x + 0.8)^{power}"))
+    assert "The only minimum is at" in str(found.refusal)
