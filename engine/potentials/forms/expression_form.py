@@ -20,7 +20,7 @@ from engine.potentials.forms.common_roots import UndecidedError
 from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 from engine.potentials.forms.form import Velocity
 from engine.potentials.forms.polynomial_form import PolynomialForm
-from engine.potentials.forms.stationary_points import find_stationary_points
+from engine.potentials.forms.stationary_points import Derivatives, find_stationary_points
 from engine.potentials.well_units import nearest_power_of_two
 from engine.results.arrays import read_only
 
@@ -129,7 +129,7 @@ class ExpressionForm:
 
     def find_critical_points(self) -> np.ndarray:
         """(n, 3) those of a region, see `engine.potentials.forms.stationary_points`."""
-        return find_stationary_points(self.value, self.gradient, self.hessian, self.singular_points)
+        return find_stationary_points(Derivatives(self.slopes_graph, make_graph(self._curvatures)))
 
     def downhill(self, length: float, sign: float) -> Velocity:
         """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`, or V on average around a centre."""

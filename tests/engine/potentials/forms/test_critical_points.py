@@ -9,7 +9,6 @@ import sympy
 from engine import Potential, channel_family, parse_formula, review_potential
 from engine.polynomials import Terms
 from engine.potentials.forms.critical_points import NotIsolatedError, find_critical_points
-from engine.potentials.forms.stationary_points import winding_number
 from tests.fuzz.test_random_wells import random_well
 
 X, Y = sympy.symbols("x y")
@@ -26,6 +25,14 @@ def sorted_rows(points: np.ndarray) -> np.ndarray:
 def random_terms(seed: int, degree: int) -> dict[tuple[int, int], float]:
     rng = np.random.default_rng(seed)
     return {(i, j): rng.normal() for i in range(degree + 1) for j in range(degree + 1 - i) if i + j > 0}
+
+
+def count_turns(potential: Potential, radius: float) -> int:
+    """Turns of the gradient along a circle about the origin."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 200_001)
+    along_x, along_y = potential.gradient(radius * np.cos(angle), radius * np.sin(angle))
+    direction = np.unwrap(np.arctan2(along_y, along_x))
+    return round((direction[-1] - direction[0]) / (2.0 * np.pi))
 
 
 def as_potential(terms: Terms) -> Potential:
@@ -61,12 +68,7 @@ def test_sum_of_indices_is_the_winding_number(seed: int, degree: int) -> None:
     points = find_critical_points(terms)
     for radius in (3.0, 300.0):
         inside = points[np.hypot(*points[:, :2].T) < radius]
-        assert inside[:, 2].sum() == winding_number(as_potential(terms).gradient, radius)
-
-
-def test_a_turn_within_a_narrow_angle_is_counted() -> None:
-    # Far out on the x axis the gradient turns once within 0.001 radians.
-    assert winding_number(random_well(34, 10).gradient, 533.0) == -3
+        assert inside[:, 2].sum() == count_turns(as_potential(terms), radius)
 
 
 @pytest.mark.parametrize("n", [3, 5, 8, 9, 10, 12])

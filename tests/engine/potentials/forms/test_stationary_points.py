@@ -6,14 +6,20 @@ import numpy as np
 import pytest
 
 from engine import CASES, parse_formula, review_potential
+from engine.expressions.nodes import from_terms
 from engine.potentials.forms.common_roots import UndecidedError
 from engine.potentials.forms.critical_points import NotIsolatedError
-from engine.potentials.forms.stationary_points import MOST_POINTS, find_stationary_points, winding_number
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.polynomial_form import PolynomialForm
+from engine.potentials.forms.stationary_points import MOST_POINTS
 from engine.potentials.potential import Potential
 
 
 def points_of(potential: Potential) -> np.ndarray:
-    points = find_stationary_points(potential.value, potential.gradient, potential.hessian)[:, :2]
+    """Those of the potential as an expression, also if it is a polynomial."""
+    form = potential.form
+    expression = ExpressionForm(from_terms(form.coefficients)) if isinstance(form, PolynomialForm) else form
+    points = expression.find_critical_points()[:, :2]
     return points[np.lexsort(points.round(9).T)]
 
 
@@ -59,7 +65,7 @@ def test_a_region_in_which_v_is_not_defined_is_refused() -> None:
         ("log(x² + y²)", "not defined at the origin"),
         ("½r² + x exp(y)", "There is no well at the origin"),
         # A dipole, singular on its axis.
-        ("½(1/(x + 1) − (x + 1)/((x + 1)² + y²)^1.5)² + 0.02r²", "not defined everywhere on a circle"),
+        ("½(1/(x + 1) − (x + 1)/((x + 1)² + y²)^1.5)² + 0.02r²", "is not decided within the limit on the work"),
         ("cos(x) cos(y)", "V has a maximum there"),
         ("exp(x) + exp(−x) + y²", "No saddle leads out"),
         ("−1/√(r² + 1)", "open without a saddle"),
@@ -85,13 +91,61 @@ def test_points_on_an_axis_are_on_it_exactly() -> None:
     assert len(points) == 6
 
 
-def test_turns_too_many_to_be_counted_are_refused() -> None:
-    counts = []
+GAUSSIANS = (
+    "0.1((x + 0.020641305600625937)² + y²) − exp(−4(x + 0.020641305600625937)² − 4y²) − exp(−4(x − 0.979358694399374)² − 4y²)"
+)
+MUELLER_BROWN = (
+    "−200exp(−(x + a − 1)² − 10(y + b)²) − 100exp(−(x + a)² − 10(y + b − 0.5)²)"
+    "− 170exp(−6.5(x + a + 0.5)² + 11(x + a + 0.5)(y + b − 1.5) − 6.5(y + b − 1.5)²)"
+    "+ 15exp(0.7(x + a + 1)² + 0.6(x + a + 1)(y + b − 1) + 0.7(y + b − 1)²)"
+)
 
-    def noise(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        counts.append(x.size)
-        return np.sin(1e15 * x), np.cos(1e15 * y)
 
-    with pytest.raises(UndecidedError, match="turns too often"):
-        winding_number(noise, 1.0)
-    assert max(counts) <= 20_000
+def test_two_gaussians_in_a_bowl_have_one_exit() -> None:
+    review = review_potential(parse_formula(GAUSSIANS))
+    assert (review.refusal, review.channels) == (None, 1)
+    assert review.escape_energy == pytest.approx(-0.709878598, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "energies"),
+    [
+        # Müller & Brown (1979, Theor. Chim. Acta 53, 75): minima −146.70, −108.17, −80.77, saddles −40.66 and −72.25.
+        (-0.558223634633024, 1.441725841804669, [-40.664843508657]),
+        (0.6234994049308, 0.0280377585286, [-72.248940103]),
+        (-0.0500108229982, 0.4666941048659, [-72.248940103, -40.664843508657]),
+    ],
+)
+def test_the_surface_of_mueller_and_brown_has_the_saddles_that_its_authors_state(
+    x: float, y: float, energies: list[float]
+) -> None:
+    potential = parse_formula(MUELLER_BROWN, parameters={"a": x, "b": y})
+    assert len(potential.critical_points) == 5
+    assert review_potential(potential).refusal is None
+    np.testing.assert_allclose(sorted(potential.saddle_energies), energies, rtol=1e-6)
+
+
+def test_walls_at_which_v_is_not_defined_are_left_out() -> None:
+    review = review_potential(parse_formula("x² + y² − x⁴ + 0.01/(y − x + 0.8)^6 + a x + b y", parameters={"a": 1e-3, "b": 0}))
+    kinds = [point.kind.value for point in review.critical_points]
+    assert sorted(kinds) == ["minimum", "saddle", "saddle"]
+    for point in review.critical_points:
+        np.testing.assert_allclose(review.potential.gradient(point.x, point.y), 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_points_are_those_of_newtons_method_from_many_starts(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    bumps = [(*chance.uniform(-2.0, 2.0, 2), chance.uniform(0.5, 3.0), chance.uniform(-1.0, 1.0)) for _ in range(3)]
+    text = "½(x² + y²)" + "".join(f"{h:+.3f}exp(−{w:.3f}((x − {a:.3f})² + (y − {b:.3f})²))" for a, b, w, h in bumps)
+    potential = parse_formula(text.replace("− -", "+ "))
+    found = potential.critical_points
+    points = chance.uniform(-3.0, 3.0, (4000, 2))
+    for _ in range(60):
+        (gx, gy), (vxx, vxy, vyy) = potential.gradient(*points.T), potential.hessian(*points.T)
+        points = points - np.column_stack([vyy * gx - vxy * gy, vxx * gy - vxy * gx]) / (vxx * vyy - vxy**2)[:, None]
+        points = points[np.isfinite(points).all(axis=1) & (np.hypot(*points.T) < 10.0)]
+    at_rest = points[np.hypot(*potential.gradient(*points.T)) < 1e-13]
+    distances = np.hypot(*np.moveaxis(at_rest[:, None] - found, -1, 0))
+    assert distances.min(axis=1).max() < 1e-9
+    np.testing.assert_allclose(potential.gradient(*found.T), 0.0, atol=1e-13)
