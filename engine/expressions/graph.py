@@ -6,6 +6,7 @@ share compiled code. It is made for few products and powers, as the series of ea
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import MappingProxyType
@@ -14,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.expressions.common_factors import factor_out
-from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
+from engine.expressions.nodes import FUNCTIONS, Coordinate, Expression, Function, Product, Sum
 
 # Cached graphs, some kB each.
 _GRAPHS = 256
@@ -144,6 +145,37 @@ class _Builder:
     def _append(self, node: Node) -> int:
         self.nodes.append(node)
         return len(self.nodes) - 1
+
+
+def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> list[float]:
+    """The values at one point, as `evaluate` computes them to rounding, in a tenth of the time."""
+    values: list[float] = []
+    try:
+        for node in graph.nodes:
+            values.append(_number_at(node, values, numbers, x, y))
+    except (ArithmeticError, ValueError):
+        # Infinite, or not defined.
+        return [float(value) for value in evaluate(graph, numbers, x, y)]
+    return [values[index] for index in graph.results]
+
+
+def _number_at(node: Node, values: list[float], numbers: Sequence[float], x: float, y: float) -> float:
+    match node.kind:
+        case "product":
+            left, right = node.operands
+            return values[left] * values[right]
+        case "sum":
+            total = numbers[node.numbers[-1]] if len(node.numbers) > len(node.operands) else 0.0
+            for operand, place in zip(node.operands, node.numbers, strict=False):
+                total += numbers[place] * values[operand]
+            return total
+        case "shift":
+            return values[node.operands[0]] + numbers[node.numbers[0]]
+        case "power":
+            return math.pow(values[node.operands[0]], node.exponent)
+        case "x" | "y":
+            return x if node.kind == "x" else y
+    return FUNCTIONS[node.kind](values[node.operands[0]])
 
 
 _UNARY: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(

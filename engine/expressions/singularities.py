@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.expressions.nodes import Expression, Function, Product, Sum
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
+from engine.polynomials import degree
 
 
 def singular_bases(expression: Expression) -> tuple[Expression, ...]:
@@ -19,4 +20,23 @@ def _bases(expression: Expression) -> list[Expression]:
         case Product(factors):
             singular = [base for base, exponent in factors if exponent < 0.0 or exponent != int(exponent)]
             return [*singular, *(inner for base, _ in factors for inner in _bases(base))]
+    return []
+
+
+def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:
+    """(a, b) of each linear a x + b y + c, with a and b not 0, of which there is a power or a function; each once."""
+    found = (as_terms(part) for part in dict.fromkeys(_inner_parts(expression)))
+    gradients = ((terms.get((1, 0), 0.0), terms.get((0, 1), 0.0)) for terms in found if terms and degree(terms) == 1)
+    return tuple(dict.fromkeys((a, b) for a, b in gradients if a and b))
+
+
+def _inner_parts(expression: Expression) -> list[Expression]:
+    """What powers and functions are taken of, at all depths."""
+    match expression:
+        case Sum(_, terms):
+            return [inner for part, _ in terms for inner in _inner_parts(part)]
+        case Function(_, argument):
+            return [argument, *_inner_parts(argument)]
+        case Product(factors):
+            return [part for base, _ in factors if not isinstance(base, Coordinate) for part in (base, *_inner_parts(base))]
     return []

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from engine.expressions.calculus import derivative, replace_parts, substitute
-from engine.expressions.graph import Graph, evaluate, make_graph
+from engine.expressions.graph import Graph, evaluate, evaluate_at, make_graph
 from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
 from engine.expressions.parity import EVEN, parity
 from engine.expressions.singularities import singular_bases
@@ -129,7 +129,11 @@ class ExpressionForm:
 
     def find_critical_points(self) -> np.ndarray:
         """(n, 3) those of a region, see `engine.potentials.forms.stationary_points`."""
-        return find_stationary_points(Derivatives(self.slopes_graph, make_graph(self._curvatures)))
+        return self._critical_points
+
+    @cached_property
+    def _critical_points(self) -> np.ndarray:
+        return find_stationary_points(Derivatives.of(self.expression))
 
     def downhill(self, length: float, sign: float) -> Velocity:
         """−sign ∇V, no faster than the slope that the well's quadratic part has at `length`, or V on average around a centre."""
@@ -137,10 +141,12 @@ class ExpressionForm:
         around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
         steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
 
+        graph, numbers = make_graph(self._slopes)
+
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
-            slope = np.array(self.gradient(*place))
-            slower: np.ndarray = -sign * slope / (1.0 + np.hypot(*slope) / steep)
-            return slower
+            along_x, along_y = evaluate_at(graph, numbers, *place.tolist())
+            speed = -sign / (1.0 + math.hypot(along_x, along_y) / steep)
+            return np.array([speed * along_x, speed * along_y])
 
         return velocity
 

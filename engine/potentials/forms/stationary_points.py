@@ -13,8 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.expressions.graph import Graph, evaluate
+from engine.expressions.calculus import derivative
+from engine.expressions.graph import Graph, evaluate, make_graph
 from engine.expressions.intervals import Enclosure, Interval, enclose
+from engine.expressions.nodes import Expression, linear_combination
+from engine.expressions.singularities import oblique_gradients
 from engine.potentials.forms.common_roots import UndecidedError
 from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 
@@ -46,7 +49,7 @@ _SIDE = 32
 # Operations on boxes, for each of the factors: at most a second. Most potentials need less than a tenth of them.
 _MOST_WORK = 40_000_000
 # Half the side of the smallest boxes, in units of the distance of the nearest point: where V is not defined, and elsewhere.
-_SMALLEST_UNDEFINED, _SMALLEST = 2.0**-9, 2.0**-26
+_SMALLEST_UNDEFINED, _SMALLEST = 2.0**-9, 2.0**-34
 # Points that Newton's method finds are proved in boxes this much larger than those in which they were looked for.
 _ENLARGED = 1.3
 _QUARTERS = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])
@@ -62,28 +65,54 @@ _MOST_LEFT = 4_000
 
 @dataclass(frozen=True)
 class Derivatives:
-    """V and its derivatives as programs.
+    """V and derivatives of it as programs.
 
     Attributes
     ----------
     slopes
-        V, V_x and V_y.
+        V, the derivatives along two directions, which vanish together at critical points only, and those along others.
+    jacobian
+        The x and y derivatives of the first and of the second of these two.
     curvatures
         V_xx, V_xy and V_yy.
     """
 
     slopes: Program
+    jacobian: Program
     curvatures: Program
+
+    @classmethod
+    def of(cls, expression: Expression) -> Derivatives:
+        """Those of an expression.
+
+        Along a straight wall or valley the derivative is small, though those along x and y are large, so that it is the second.
+        """
+        along_x, along_y = derivative(expression, 0), derivative(expression, 1)
+        oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
+        first, second, *others = [along_x, *oblique, along_y]
+        return cls(
+            make_graph((expression, first, second, *others)),
+            make_graph(tuple(derivative(each, axis) for each in (first, second) for axis in (0, 1))),
+            make_graph((derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1))),
+        )
 
     @property
     def operations(self) -> int:
-        """Number of operations of both programs."""
-        return len(self.slopes[0].nodes) + len(self.curvatures[0].nodes)
+        """Number of operations of the programs for a box."""
+        return len(self.slopes[0].nodes) + len(self.jacobian[0].nodes)
 
-    def at(self, points: np.ndarray) -> tuple[np.ndarray, ...]:
-        """V_x, V_y, V_xx, V_xy and V_yy, each (n,), at points (n, 2)."""
-        _, *slopes = evaluate(*self.slopes, *points.T)
-        return (*slopes, *evaluate(*self.curvatures, *points.T))
+    def slopes_at(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2) the two derivatives at points (n, 2)."""
+        return np.column_stack(evaluate(*self.slopes, *points.T)[1:3])
+
+    def jacobian_at(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) their Jacobian matrix at points (n, 2)."""
+        return np.column_stack(evaluate(*self.jacobian, *points.T)).reshape(-1, 2, 2)
+
+    def hessian_at(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) the Hessian matrix of V at points (n, 2)."""
+        vxx, vxy, vyy = evaluate(*self.curvatures, *points.T)
+        return np.column_stack([vxx, vxy, vxy, vyy]).reshape(-1, 2, 2)
 
 
 def find_stationary_points(derivatives: Derivatives) -> np.ndarray:
@@ -101,13 +130,13 @@ def find_stationary_points(derivatives: Derivatives) -> np.ndarray:
     rings = _rings(2.0 ** np.linspace(-_OCTAVES, _OCTAVES, 2 * _OCTAVES * _PER_OCTAVE + 1))
     found = _newton(derivatives, rings)
     # Where V is flat its slopes are subnormal numbers, without digits.
-    found = found[np.abs(derivatives.at(found)[2:]).max(axis=0) > _SUBNORMAL]
+    found = found[np.abs(derivatives.hessian_at(found)).max(axis=(1, 2)) > _SUBNORMAL]
     distance = np.hypot(*found.T)
     nearest = float(distance[(distance >= _ZERO) & (distance <= 2.0**_OCTAVES)].min(initial=np.inf))
     if nearest == np.inf:
         origin = np.zeros((1, 2))
-        slope = derivatives.at(origin)[:2]
-        return _with_indices(derivatives, origin[[not np.any(slope)]] if not len(found) else origin)
+        is_one = len(found) or not derivatives.slopes_at(origin).any()
+        return _with_indices(derivatives, origin if is_one else NO_POINTS)
     problem = ""
     for factor in _FACTORS:
         try:
@@ -153,8 +182,7 @@ def _lies_on_curve(derivatives: Derivatives, centres: np.ndarray, half: float) -
     """Whether most of many boxes contain a point at which the Hessian is singular."""
     points = _refined(derivatives, centres)
     near = (np.abs(points - centres) <= _NEAR_BOX * half).all(axis=1)
-    _, _, vxx, vxy, vyy = derivatives.at(points[near])
-    eigenvalues = np.abs(np.linalg.eigvalsh(np.array([[vxx, vxy], [vxy, vyy]]).transpose(2, 0, 1)))
+    eigenvalues = np.abs(np.linalg.eigvalsh(derivatives.hessian_at(points[near])))
     flat = eigenvalues.min(axis=1) <= _SINGULAR_ON_A_CURVE * eigenvalues.max(axis=1)
     return bool(2 * np.count_nonzero(flat) > len(centres))
 
@@ -165,41 +193,46 @@ def _box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
 
 
 def _excludes_zero(slopes: Enclosure) -> np.ndarray:
-    """(n,) whether V_x or V_y vanishes nowhere in a box."""
-    _, along_x, along_y = slopes.values
-    excluded: np.ndarray = along_x.excludes_zero() | along_y.excludes_zero()
+    """(n,) whether a derivative vanishes nowhere in a box."""
+    excluded: np.ndarray = np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
     return excluded
 
 
 def _solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
     """(m, 2) the points that lie in boxes with one point each, and (n,) whether it is proved that a box has one or none.
 
-    The operator of Krawczyk maps a box c ± h to K = c − Y g + (I − Y H)(± h), with the gradient g at c, the Hessian H on the box
-    and Y the inverse of the Hessian at c. All points of the box lie in K; if K lies inside of it, it has exactly one.
+    The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h), with the two derivatives f at c, their Jacobian
+    matrix J on the box and Y its inverse at c. All points of the box lie in K; if K lies inside of it, it has exactly one.
     """
-    curvatures = enclose(*derivatives.curvatures, *_box(centres, _ENLARGED * half))
+    jacobian = enclose(*derivatives.jacobian, *_box(centres, _ENLARGED * half))
     slopes = enclose(*derivatives.slopes, *_box(centres, 0.0))
     with np.errstate(all="ignore"):
-        middle, spread = (
-            np.moveaxis(np.array([[xx, xy], [xy, yy]]), -1, 0)
-            for xx, xy, yy in (
-                [0.5 * (each.low + each.high) for each in curvatures.values],
-                [0.5 * (each.high - each.low) for each in curvatures.values],
-            )
-        )
-        _, _, vxx, vxy, vyy = derivatives.at(centres)
-        adjugate = np.moveaxis(np.array([[vyy, -vxy], [-vxy, vxx]]), -1, 0)
-        inverse = adjugate / (vxx * vyy - vxy * vxy)[:, None, None]
-        gradient = np.column_stack([0.5 * (each.low + each.high) for each in slopes.values[1:]])
-        error = np.column_stack([0.5 * (each.high - each.low) for each in slopes.values[1:]])
-        step = -np.einsum("nij,nj->ni", inverse, gradient)
+        middle, spread = (each.reshape(-1, 2, 2) for each in _middle_and_spread(jacobian.values))
+        slope, error = _middle_and_spread(slopes.values[1:3])
+        inverse = _inverse(derivatives.jacobian_at(centres))
+        step = -np.einsum("nij,nj->ni", inverse, slope)
         rest = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
         reach = _ENLARGED * half * rest.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
         reach = reach * (1.0 + _MARGIN) + _MARGIN * half
-        known = curvatures.defined & slopes.defined & np.isfinite(step).all(axis=1) & np.isfinite(reach).all(axis=1)
+        known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
         single = known & (np.abs(step) + reach < _ENLARGED * half).all(axis=1)
         empty = known & (np.abs(step) - reach > half).any(axis=1)
     return _refined(derivatives, (centres + step)[single]), single | empty
+
+
+def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
+    """(n, k) the middles of k intervals, and half their lengths."""
+    low, high = np.column_stack([each.low for each in values]), np.column_stack([each.high for each in values])
+    return 0.5 * (low + high), 0.5 * (high - low)
+
+
+def _inverse(matrices: np.ndarray) -> np.ndarray:
+    """(n, 2, 2) inverse matrices; products of small entries do not underflow."""
+    size = np.abs(matrices).max(axis=(1, 2))[:, None, None]
+    (a, b), (c, d) = np.moveaxis(matrices / size, 0, -1)
+    adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
+    inverse: np.ndarray = adjugate / (a * d - b * c)[:, None, None] / size
+    return inverse
 
 
 def _rings(radii: np.ndarray) -> np.ndarray:
@@ -230,11 +263,8 @@ def _refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
 
 def _newton_step(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
     """(n, 2) to subtract."""
-    values = np.array(derivatives.at(points))
     with np.errstate(all="ignore"):
-        # Products of small derivatives would underflow.
-        gx, gy, vxx, vxy, vyy = values / np.abs(values[2:]).max(axis=0)
-        step: np.ndarray = np.column_stack([vyy * gx - vxy * gy, vxx * gy - vxy * gx]) / (vxx * vyy - vxy * vxy)[:, None]
+        step: np.ndarray = np.einsum("nij,nj->ni", _inverse(derivatives.jacobian_at(points)), derivatives.slopes_at(points))
     return step
 
 
@@ -252,7 +282,8 @@ def _distinct(points: np.ndarray, nearest: float, same: float) -> np.ndarray:
 
 def _with_indices(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
     """(n, 3) points (n, 2) with their indices."""
-    _, _, vxx, vxy, vyy = derivatives.at(points)
-    eigenvalues = np.abs(np.linalg.eigvalsh(np.nan_to_num(np.array([[vxx, vxy], [vxy, vyy]])).transpose(2, 0, 1)))
-    is_singular = eigenvalues.min(axis=1) <= SINGULAR_RATIO * eigenvalues.max(axis=1)
-    return np.column_stack([points, np.where(is_singular, 0.0, np.sign(vxx * vyy - vxy * vxy))])
+    hessians = np.nan_to_num(derivatives.hessian_at(points))
+    eigenvalues = np.linalg.eigvalsh(hessians)
+    sizes = np.abs(eigenvalues)
+    is_singular = sizes.min(axis=1) <= SINGULAR_RATIO * sizes.max(axis=1)
+    return np.column_stack([points, np.where(is_singular, 0.0, np.sign(eigenvalues).prod(axis=1))])

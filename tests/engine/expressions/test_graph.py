@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from engine.expressions.calculus import derivative
-from engine.expressions.graph import Graph, Node, evaluate, make_graph
+from engine.expressions.graph import Graph, Node, evaluate, evaluate_at, make_graph
 from engine.expressions.nodes import Expression
 from engine.potentials.formulas.formula_parser import parse_formula
 
@@ -65,3 +65,12 @@ def test_other_slopes_of_logarithms_of_roots_are_quotients() -> None:
     graph, numbers = make_graph((derivative(definition_of("log(x + √(2x² + y² + 1))"), 0),))
     root = np.sqrt(2.0 * 0.49 + 1.09)
     assert evaluate(graph, numbers, 0.7, 0.3)[0] == pytest.approx((1.0 + 1.4 / root) / (0.7 + root), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "text", ["x² − 3x y + 2", "exp(x y) + sin(3x) cos(y) − log(2 + x)", "(x − y)^−3 + √(x + 5)", "√(x − 9)", "1/(x − 0.3)"]
+)
+def test_the_values_at_one_point_are_those_of_arrays(text: str) -> None:
+    potential = parse_formula(f"{text} + exp(x)")
+    graph, numbers = make_graph((potential.form.definition, derivative(potential.form.definition, 0)))
+    np.testing.assert_allclose(evaluate_at(graph, numbers, 0.3, -0.7), evaluate(graph, numbers, 0.3, -0.7), rtol=1e-14)
