@@ -73,6 +73,8 @@ class Potential(Result):
         Bodies with which orbits collide.
     escape_radius
         Distance from the origin beyond which orbits have escaped, 1e-6 to 1e6, dimensionless; None for exits over saddles.
+    origin
+        (x, y) of the origin of the axes in the coordinates of the formula, see `at_minimum`; it has no influence on any result.
 
     Raises
     ------
@@ -96,6 +98,7 @@ class Potential(Result):
     rotation: float = 0.0
     centres: tuple[Centre, ...] = ()
     escape_radius: float | None = None
+    origin: tuple[float, float] = field(default=(0.0, 0.0), compare=False)
 
     def __init__(
         self,
@@ -105,6 +108,7 @@ class Potential(Result):
         rotation: float = 0.0,
         centres: Sequence[Centre] = (),
         escape_radius: float | None = None,
+        origin: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         check_type("name", name, str)
         if isinstance(form, Expression):
@@ -121,6 +125,7 @@ class Potential(Result):
             "rotation": checked_number("rotation", rotation),
             "centres": tuple(centres),
             "escape_radius": None if escape_radius is None else checked_radius("escape_radius", escape_radius),
+            "origin": origin,
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)
@@ -142,6 +147,38 @@ class Potential(Result):
             raise ValueError(f"potential={self.name}: must be one of a frame that does not rotate")
         half = -0.5 * checked_number("rotation", rotation) ** 2
         return replace(self, form=self.form.plus({(2, 0): half, (0, 2): half}), rotation=rotation) if rotation else self
+
+    def at_minimum(self, x: float = 0.0, y: float = 0.0) -> Potential:
+        """The potential with its axes moved to the minimum nearest to a place, so that orbits leave the well there.
+
+        Energies are unchanged. A frame that rotates turns about the new origin.
+
+        Parameters
+        ----------
+        x, y
+            The place, dimensionless.
+
+        Raises
+        ------
+        ValueError
+            If V has no minimum, or it is not known.
+
+        Examples
+        --------
+        >>> from escape_explorer import parse_formula
+        >>> moved = parse_formula("5(x² + y²) + 3y + 0.3(x⁴ + y⁴ − 6x²y²)").at_minimum()
+        >>> [round(coordinate, 6) for coordinate in moved.origin], round(max(moved.saddle_energies), 4)
+        ([0.0, -0.296861], 27.0123)
+        """
+        place = np.array([checked_number("x", x), checked_number("y", y)])
+        along_x, _, along_y = self.hessian(*self.critical_points.T)
+        minima = self.critical_points[(self.critical_indices > 0.0) & (along_x + along_y > 0.0)]
+        if not len(minima):
+            raise ValueError(f"potential={self.name}: V must have a minimum to which its axes can be moved")
+        nearest = minima[np.argmin(np.hypot(*(minima - place).T))].tolist()
+        centres = tuple(replace(each, x=each.x - nearest[0], y=each.y - nearest[1]) for each in self.centres)
+        origin = self.origin[0] + nearest[0], self.origin[1] + nearest[1]
+        return replace(self, form=self.form.moved(*nearest), centres=centres, origin=origin)
 
     def with_outcomes(self, centres: Sequence[Centre] = (), escape_radius: float | None = None) -> Potential:
         """The potential with other centres and another escape radius; parameters as of the potential."""
@@ -378,6 +415,7 @@ class Potential(Result):
             "rotation": self.rotation * units.time,
             "centres": tuple(centre.scaled(1.0 / units.length) for centre in self.centres),
             "escape_radius": None if self.escape_radius is None else self.escape_radius / units.length,
+            "origin": self.origin,
         }
         for attribute, value in values.items():
             object.__setattr__(scaled, attribute, value)

@@ -16,13 +16,14 @@ _TERM = re.compile(r"(\S+) x\^(\d+) y\^(\d+)")
 
 
 def describe_potential(potential: Potential) -> dict[str, Any]:
-    """Name, formula with all digits, rotation, centres and escape radius, 0 for none."""
+    """Name, formula with all digits, rotation, centres, escape radius, 0 for none, and the origin of the axes."""
     return {
         "potential": potential.name,
         "terms": potential.form.text,
         "rotation": potential.rotation,
         "centres": json.dumps([asdict(centre) for centre in potential.centres]),
         "escape_radius": potential.escape_radius or 0.0,
+        "origin": json.dumps(potential.origin),
     }
 
 
@@ -37,4 +38,5 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     centres = [Centre(**centre) for centre in json.loads(attributes.get("centres", "[]"))]
     escape_radius = float(attributes.get("escape_radius", 0.0)) or None
     # The terms are those of the effective potential.
-    return Potential(name, potential.form, "", float(attributes.get("rotation", 0.0)), centres, escape_radius)
+    x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
+    return Potential(name, potential.form, "", float(attributes.get("rotation", 0.0)), centres, escape_radius, (x, y))

@@ -14,8 +14,6 @@ import numpy as np
 from engine.potentials.forms.common_roots import UndecidedError
 from engine.potentials.forms.critical_points import NotIsolatedError
 from engine.potentials.forms.exit_saddles import DescentError
-from engine.potentials.formulas.formula_parser import LONGEST_TEXT
-from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.hill_region import is_open_below, is_open_without_saddle
 from engine.potentials.merged_channels import name_channels
 from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
@@ -27,8 +25,7 @@ MOST_CHANNELS = 16
 """Largest number of exit channels that the kernels of the Lyapunov orbit search support."""
 
 _CACHE_SIZE = 256
-# Significant digits of coefficients after a shift of the origin.
-_MOVED_DIGITS = 12
+_MOVED = "x and y count from the well at ({:.6g}, {:.6g}) of the formula."
 
 
 class PointKind(Enum):
@@ -76,9 +73,8 @@ class PotentialReview(Result):
         A sentence that says why the potential cannot be used; None if it can.
     remarks
         Unusual properties, one sentence each.
-    moved_formula
-        If there is no well at the origin, V with the origin moved to the nearest minimum, as text with coefficients of 12 digits;
-        None if there is no minimum, or if the text would be longer than `LONGEST_TEXT`.
+    well
+        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is none.
     """
 
     potential: Potential
@@ -91,7 +87,7 @@ class PotentialReview(Result):
     rotations: int
     refusal: str | None
     remarks: tuple[str, ...]
-    moved_formula: str | None
+    well: tuple[float, float] | None
     row_dimension: ClassVar = "point"
 
     def columns(self) -> Mapping[str, np.ndarray]:
@@ -143,7 +139,7 @@ def review_potential(potential: Potential) -> PotentialReview:
         rotations=potential.form.count_rotations(),
         refusal=refusal,
         remarks=() if refusal else _remarks(potential, points),
-        moved_formula=_moved_to_well(potential, points),
+        well=_other_well(potential, points),
     )
 
 
@@ -213,9 +209,7 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
         return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
     place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
     which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
-    moved = _moved_to_well(potential, points)
-    hint = f"; with the origin moved there, V is {moved}" if moved is not None else ""
-    return f"{problem} {which} at {place}{hint}."
+    return f"{problem} {which} at {place}: with “; well {place}” after the formula, x and y count from there."
 
 
 def _point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:
@@ -227,15 +221,11 @@ def _minima(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
     return [point for point in points if point.kind is PointKind.MINIMUM]
 
 
-def _moved_to_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
+def _other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
     nearest = next(iter(_minima(points)), None)
     if nearest is None or nearest is _point_at_origin(points) or potential.rotation or potential.escape_radius is not None:
         return None
-    form = potential.form.moved(nearest.x, nearest.y)
-    if form is None:
-        return None
-    formula = write_formula(Potential("", form), _MOVED_DIGITS)
-    return formula if len(formula) <= LONGEST_TEXT else None
+    return nearest.x, nearest.y
 
 
 def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:
@@ -265,9 +255,9 @@ def _no_exit_refusal(potential: Potential) -> str:
 
 
 def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[str, ...]:
-    remarks: list[str] = []
+    remarks = [_MOVED.format(*potential.origin)] if any(potential.origin) else []
     if potential.escape_radius is not None:
-        return ()
+        return tuple(remarks)
     energies = potential.saddle_energies
     if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
         order = np.argsort(energies, kind="stable")

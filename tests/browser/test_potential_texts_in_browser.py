@@ -36,8 +36,8 @@ def test_a_refused_potential_stays_in_the_box_and_its_well_can_be_used(open_expl
     expect(explorer.text("the formula ends where")).to_be_visible()
     expect(explorer.page.get_by_role("cell", name="(1, 0)", exact=True)).to_have_count(0)
     box.fill(WELL_ELSEWHERE)
-    explorer.press("Use this well, moved to the origin")
-    expect(box).to_have_value("x²/2 + y²/2 − xy²")
+    explorer.press("Use this well")
+    expect(box).to_have_value(f"{WELL_ELSEWHERE}; well (1, 0)")
     expect(explorer.text("The maps still show")).to_have_count(0)
     explorer.page.wait_for_url(re.compile("case=typed"))
 

@@ -66,7 +66,7 @@ class PotentialPanel:
 
     def __init__(self, used: SystemReview, propose: Propose) -> None:
         self._propose = propose
-        self._moved: str | None = None
+        self._well: tuple[float, float] | None = None
         self.used = used
         """The system of the maps."""
         self.shown = used.system
@@ -80,7 +80,7 @@ class PotentialPanel:
         )
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
-        self.move = button("Use this well, moved to the origin", self._move, visible=False, margin=(8, 0))
+        self.move = button("Use this well", self._move, visible=False, margin=(8, 0))
         self.sliders = {name: self._make_slider(name) for name in PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
@@ -145,7 +145,7 @@ class PotentialPanel:
         self.typeset.object = potential_formula(review.potential)
         passed = f"<p>{_channels(review)}</p><p class='quiet'>{escape(note)}</p>"
         self._write(_alert(reviewed.problem) if reviewed.problem else passed)
-        self._offer(review.moved_formula if reviewed.problem else None)
+        self._offer(review.well if reviewed.problem else None)
         self.facts.object = _points(review) + _remarks(review)
 
     def wait(self) -> None:
@@ -165,8 +165,8 @@ class PotentialPanel:
         draft = f"<p class='quiet'>{escape(shows)}</p>" if self.shown != used.system else ""
         self.message.object = message + draft
 
-    def _offer(self, moved: str | None) -> None:
-        self._moved, self.move.visible = moved, moved is not None
+    def _offer(self, well: tuple[float, float] | None) -> None:
+        self._well, self.move.visible = well, well is not None
 
     def _choose(self, system: System) -> None:
         """Show a system in all widgets, and use it."""
@@ -205,8 +205,10 @@ class PotentialPanel:
         self._propose(self.shown, done=done)
 
     def _move(self) -> None:
-        if self._moved is not None:
-            self._choose(System(TYPED, self._moved))
+        if self._well is not None:
+            x, y = self._well
+            typed = self.shown.as_typed
+            self._choose(replace(typed, formula=f"{typed.formula}; well ({x:.6g}, {y:.6g})"))
 
     def _slide(self, name: str, number: float, done: bool) -> None:
         """Propose the number of a slider."""

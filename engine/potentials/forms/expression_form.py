@@ -186,7 +186,7 @@ class ExpressionForm:
         }
         return ExpressionForm(linear_combination([(epsilon, self.expression), (1.0, from_terms(changes))]))
 
-    def moved(self, x: float, y: float) -> ExpressionForm | None:
+    def moved(self, x: float, y: float) -> ExpressionForm:
         """V(x + x₀, y + y₀)."""
         axes = (linear_combination([(1.0, axis), (place, number(1.0))]) for axis, place in ((X, x), (Y, y)))
         return ExpressionForm(substitute(self.expression, *axes))

@@ -78,8 +78,8 @@ class Form(Protocol):
     def with_parameters(self, omega_1: float, omega_2: float, epsilon: float) -> Form:
         """See `Potential.with_parameters`."""
 
-    def moved(self, x: float, y: float) -> Form | None:
-        """V about its critical point (x, y), with the same energies; None if no formula is known that is worth showing."""
+    def moved(self, x: float, y: float) -> Form:
+        """V with the origin moved to its critical point (x, y), where its slope is exactly 0 if it is a polynomial."""
 
     def count_rotations(self) -> int:
         """See `PotentialReview.rotations`."""

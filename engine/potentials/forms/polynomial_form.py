@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 from math import comb
 from typing import Any
@@ -149,19 +150,18 @@ class PolynomialForm:
         """Each term with its factor."""
         return checked_form(tuple((i, j, c * _parameter_factor(i, j, omega_1, omega_2, epsilon)) for i, j, c in self.terms))
 
-    def moved(self, x: float, y: float) -> PolynomialForm | None:
-        """The terms of the expansion about (x, y), without the linear ones; None if one is too large."""
-        terms: dict[Powers, float] = {}
+    def moved(self, x: float, y: float) -> PolynomialForm:
+        """The terms of the expansion about (x, y), each rounded once, without the linear ones."""
+        terms: dict[Powers, Fraction] = {}
         for i, j, c in self.terms:
             for k in range(i + 1):
                 for m in range(j + 1):
-                    if k + m != 1:
-                        part = c * comb(i, k) * comb(j, m) * x ** (i - k) * y ** (j - m)
-                        terms[k, m] = terms.get((k, m), 0.0) + part
-        largest = max(map(abs, terms.values()), default=0.0)
-        if largest > COEFFICIENT_RANGE[1]:
-            return None
-        return PolynomialForm(tuple((k, m, c) for (k, m), c in terms.items() if abs(c) > _ZERO_COEFFICIENT * largest))
+                    part = Fraction(c) * comb(i, k) * comb(j, m) * Fraction(x) ** (i - k) * Fraction(y) ** (j - m)
+                    terms[k, m] = terms.get((k, m), Fraction(0)) + part
+        rounded = {powers: float(c) for powers, c in terms.items() if sum(powers) != 1}
+        sizes = {powers: abs(c) * self.length ** sum(powers) for powers, c in rounded.items()}
+        kept = {powers: c for powers, c in rounded.items() if sizes[powers] > _ZERO_COEFFICIENT * max(sizes.values())}
+        return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
 
     def count_rotations(self) -> int:
         """From V = Σ c z^a z̄^b with z = x + iy, where a rotation by φ multiplies each term by exp(i (a − b) φ)."""

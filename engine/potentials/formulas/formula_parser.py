@@ -78,7 +78,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         in front is ignored. "1/2 x" is half of x. Exponents are numbers from −12 to 12. Other letters, Latin but e, E and V, or
         Greek, with or without one digit, are parameters: "a", "k1", "α"; at most 8 different ones. "px", "py",
         "vx" and "vy" are refused. After it there may be what orbits end at: "; centre the Moon (0, 0) 0.0045", a body with a
-        name, its place and its radius of collision, and "; escape 10", an escape radius.
+        name, its place and its radius of collision, "; escape 10", an escape radius, and "; well (1, 0)", a place near a minimum
+        to which the axes are moved, see `Potential.at_minimum`.
     name
         Name of the potential; by default the formula as written by `write_formula`.
     parameters
@@ -95,7 +96,8 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
         50 nested brackets, neither x nor y, a function of a number outside its domain, as a polynomial a degree above 12, more
         than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and functions
-        with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula or its value is not legal.
+        with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula, its value is not legal,
+        or V has no minimum to which the axes could be moved.
 
     Examples
     --------
@@ -121,8 +123,10 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
         _check_expanded(expanded)
         terms = tuple((i, j, float(expanded[i, j])) for i, j in sorted(expanded, key=by_degree))
         potential = Potential(name or "", terms)
-    centres, escape_radius = clauses.evaluate(partial(_number_of, values=values))
-    return Potential(name or write_formula(potential), potential.form, centres=centres, escape_radius=escape_radius)
+    number_of = partial(_number_of, values=values)
+    centres, escape_radius = clauses.evaluate(number_of)
+    found = Potential(name or write_formula(potential), potential.form, centres=centres, escape_radius=escape_radius)
+    return found if clauses.well is None else found.at_minimum(*map(number_of, clauses.well))
 
 
 def formula_letters(text: str) -> tuple[str, ...]:

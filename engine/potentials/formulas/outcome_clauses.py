@@ -1,7 +1,8 @@
-"""Clauses after a formula that say at what orbits end: "−1/r − x² + ½y²; centre the planet (0, 0) 0.001; escape 10".
+"""Clauses after a formula: "−1/r − x² + ½y²; centre the planet (0, 0) 0.001; escape 10", "x + x² + y² + x³; well (−0.2, 0)".
 
-A clause is ``centre``, a name, which can be left out, the place of a body in brackets and its radius of collision, or ``escape``
-and a radius. Places and radii are formulas without x and y, with the letters of the potential.
+A clause is ``centre``, a name, which can be left out, the place of a body in brackets and its radius of collision; ``escape``
+and a radius; or ``well`` and a place: the axes are moved to the minimum nearest to it. Places and radii are formulas without x
+and y, with the letters of the potential.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from engine.potentials.outcomes import Centre
 
 SEPARATOR = ";"
 _CENTRE = re.compile(r"\s*centre\s*(?P<name>[\w ]{0,40}?)\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)(?P<radius>[^();]*)$")
+_WELL = re.compile(r"\s*well\s*\((?P<x>[^,;]*),(?P<y>[^,;]*)\)\s*$")
 _ESCAPE = re.compile(r"\s*escape(?P<radius>[^;]*)$")
 MOST_CENTRES = 8
 """Largest number of centres of a formula."""
@@ -28,16 +30,18 @@ class Part(NamedTuple):
 
 
 class Clauses(NamedTuple):
-    """The formula of V, and the clauses: (name, x, y, radius) of each centre, and the escape radius if there is one."""
+    """The formula of V, and the clauses: (name, x, y, radius) of each centre, and the escape radius and a place if there are."""
 
     formula: str
     centres: tuple[tuple[str, Part, Part, Part], ...]
     escape: Part | None
+    well: tuple[Part, Part] | None
 
     @property
     def numbers(self) -> tuple[Part, ...]:
         """All places and radii."""
-        return (*(part for _, *parts in self.centres for part in parts), *([] if self.escape is None else [self.escape]))
+        of_centres = (part for _, *parts in self.centres for part in parts)
+        return (*of_centres, *([] if self.escape is None else [self.escape]), *(self.well or ()))
 
     def evaluate(self, value_of: Callable[[Part], float]) -> tuple[tuple[Centre, ...], float | None]:
         """The centres and the escape radius; FormulaError for a number that is out of range."""
@@ -57,21 +61,23 @@ def split_clauses(text: str) -> Clauses:
     position = len(formula) + 1
     centres: list[tuple[str, Part, Part, Part]] = []
     escapes: list[Part] = []
+    wells: list[tuple[Part, Part]] = []
     for clause in rest:
-        centre, escape = _CENTRE.match(clause), _ESCAPE.match(clause)
+        centre, escape, well = _CENTRE.match(clause), _ESCAPE.match(clause), _WELL.match(clause)
         if centre:
             x, y, radius = (Part(centre[key], position + centre.start(key)) for key in ("x", "y", "radius"))
             centres.append((centre["name"], x, y, radius))
         elif escape and not escapes:
             escapes.append(Part(escape["radius"], position + escape.start("radius")))
+        elif well and not wells:
+            wells.append((Part(well["x"], position + well.start("x")), Part(well["y"], position + well.start("y"))))
         else:
-            raise FormulaError(
-                position, f"{clause.strip()!r} is not understood; allowed are centre (x, y) radius, and one escape radius"
-            )
+            allowed = "centre (x, y) radius, one escape radius, and one well (x, y)"
+            raise FormulaError(position, f"{clause.strip()!r} is not understood; allowed are {allowed}")
         position += len(clause) + 1
     if len(centres) > MOST_CENTRES:
         raise FormulaError(len(formula), f"the formula has {len(centres)} centres; at most {MOST_CENTRES} are allowed")
-    return Clauses(formula, tuple(centres), escapes[0] if escapes else None)
+    return Clauses(formula, tuple(centres), escapes[0] if escapes else None, wells[0] if wells else None)
 
 
 def write_clauses(centres: Sequence[Centre], escape_radius: float | None) -> str:

@@ -148,17 +148,18 @@ def test_a_refused_text_stays_with_its_reason_and_its_points(choice: PotentialPr
     assert (choice.panel.known.value, state_of(choice).case) == (TYPED, "I")
 
 
-def test_a_well_elsewhere_can_be_moved_to_the_origin(choice: PotentialPresenter) -> None:
+def test_a_well_elsewhere_can_be_used(choice: PotentialPresenter) -> None:
     assert not choice.panel.move.visible
     type_in(choice.panel, WELL_ELSEWHERE, enter=True)
     wait_for(lambda: choice.panel.move.visible)
     choice.panel.move.clicks += 1
     state = state_of(choice)
     wait_for(lambda: state.case == TYPED)
-    assert choice.panel.formula.text == "x²/2 + y²/2 − xy²"
+    assert choice.panel.formula.text == f"{WELL_ELSEWHERE}; well (1, 0)"
     assert sorted(state.potential.terms) == sorted(CASES["I"].terms)
     wait_for(lambda: not choice.panel.move.visible)
     assert "alert" not in choice.panel.message.object
+    assert "x and y count from the well at (1, 0)" in choice.panel.facts.object
 
 
 def test_a_syntax_error_removes_the_table(choice: PotentialPresenter) -> None:

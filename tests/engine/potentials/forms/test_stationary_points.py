@@ -79,12 +79,6 @@ def test_reasons_for_refusal(text: str, reason: str) -> None:
     assert reason in str(review_potential(parse_formula(text)).refusal)
 
 
-def test_a_formula_with_its_minimum_elsewhere_is_moved() -> None:
-    found = review_potential(parse_formula("½(x − 1)² + ½y² − 2(x − 1)²y exp(−y²)"))
-    assert found.moved_formula is not None
-    assert review_potential(parse_formula(found.moved_formula)).channels == 2
-
-
 def test_points_on_an_axis_are_on_it_exactly() -> None:
     points = points_of(parse_formula("−1/√(r² + 0.36) − 0.1 x²y exp(−y²) − 0.05 y³"))
     assert np.count_nonzero(points[:, 0] == 0.0) == 2
@@ -94,35 +88,12 @@ def test_points_on_an_axis_are_on_it_exactly() -> None:
 GAUSSIANS = (
     "0.1((x + 0.020641305600625937)² + y²) − exp(−4(x + 0.020641305600625937)² − 4y²) − exp(−4(x − 0.979358694399374)² − 4y²)"
 )
-MUELLER_BROWN = (
-    "−200exp(−(x + a − 1)² − 10(y + b)²) − 100exp(−(x + a)² − 10(y + b − 0.5)²)"
-    "− 170exp(−6.5(x + a + 0.5)² + 11(x + a + 0.5)(y + b − 1.5) − 6.5(y + b − 1.5)²)"
-    "+ 15exp(0.7(x + a + 1)² + 0.6(x + a + 1)(y + b − 1) + 0.7(y + b − 1)²)"
-)
 
 
 def test_two_gaussians_in_a_bowl_have_one_exit() -> None:
     review = review_potential(parse_formula(GAUSSIANS))
     assert (review.refusal, review.channels) == (None, 1)
     assert review.escape_energy == pytest.approx(-0.709878598, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("x", "y", "energies"),
-    [
-        # Müller & Brown (1979, Theor. Chim. Acta 53, 75): minima −146.70, −108.17, −80.77, saddles −40.66 and −72.25.
-        (-0.558223634633024, 1.441725841804669, [-40.664843508657]),
-        (0.6234994049308, 0.0280377585286, [-72.248940103]),
-        (-0.0500108229982, 0.4666941048659, [-72.248940103, -40.664843508657]),
-    ],
-)
-def test_the_surface_of_mueller_and_brown_has_the_saddles_that_its_authors_state(
-    x: float, y: float, energies: list[float]
-) -> None:
-    potential = parse_formula(MUELLER_BROWN, parameters={"a": x, "b": y})
-    assert len(potential.critical_points) == 5
-    assert review_potential(potential).refusal is None
-    np.testing.assert_allclose(sorted(potential.saddle_energies), energies, rtol=1e-6)
 
 
 def test_walls_at_which_v_is_not_defined_are_left_out() -> None:
