@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine import Orbit, Potential, Window, default_window, find_section_crossings
+from engine import Orbit, Potential, Window, default_window
 from engine.service import SPACE
 from plots.histories import History, reduce_history
 
@@ -73,7 +73,7 @@ def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
     """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
     window = find_well_window(potential, orbit.energy)
     everything = slice(None)
-    section = find_section_crossings(potential, orbit)
+    section = orbit.find_section_crossings()
     return OrbitCurves(orbit, window, *_histories(orbit, everything), section, _visits(orbit, window, everything))
 
 

@@ -21,7 +21,7 @@ from engine.potentials.potential import Potential
 from engine.potentials.stored_potential import describe_potential
 from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
-from engine.taylor.kernels.dense_output import sample_deviations, sample_path
+from engine.taylor.kernels.dense_output import find_crossings, sample_deviations, sample_path
 from engine.validation import checked_state, checked_t_max, checks_types
 
 if TYPE_CHECKING:
@@ -96,6 +96,19 @@ class Orbit(OrbitResult):
     def digits_of_halves(self) -> float:
         """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree: many on a torus."""
         return compare_halves(self.x, self.y)
+
+    def find_section_crossings(self) -> np.ndarray:
+        """(n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
+
+        The start is not counted. Between two samples on either side of y = 0 the Taylor series of the first is used. Raises
+        ValueError if the orbit has no potential.
+        """
+        if self.potential is None:
+            raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
+        units = self.potential.units
+        path = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
+        points = find_crossings(kernels_of(self.potential.in_well_units), path, self.t / units.time)
+        return points * [units.length, units.momentum]
 
     def to_xarray(self) -> xr.Dataset:
         """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""

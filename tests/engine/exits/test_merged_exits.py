@@ -13,7 +13,6 @@ from engine import (
     classify_orbits,
     compute_map,
     find_lyapunov_orbits,
-    find_multipliers,
     integrate_orbit,
 )
 from engine.exits.exit_rows import exit_curves, exit_gates
@@ -72,7 +71,7 @@ def test_the_orbit_leads_from_rest_to_rest_and_its_ends_enclose_the_saddles(pote
     start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
     end = solve_ivp(equations(potential), (0.0, 0.5 * orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
     np.testing.assert_allclose(end, [orbit.x[100], orbit.y[100], 0.0, 0.0], rtol=0, atol=1e-9)
-    assert abs(find_multipliers(potential, orbit)[0]) > 10.0
+    assert abs(orbit.find_multipliers()[0]) > 10.0
     ends, saddles = orbit.half_path[[0, -1]], potential.saddles[np.array([orbit.channel, *orbit.others]) - 1]
     share = (saddles - ends[0]) @ (ends[1] - ends[0]) / np.sum((ends[1] - ends[0]) ** 2)
     assert np.all((share > 0.0) & (share < 1.0))
