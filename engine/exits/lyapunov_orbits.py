@@ -36,6 +36,17 @@ from engine.validation import checked_number, checks_types, warn_of_method
 _SAME_END = 1e-6
 
 
+class UndefinedExitsError(ValueError):
+    """The exits of a potential are not defined at an energy above the escape energy, for a `reason`."""
+
+    def __init__(self, message: str, reason: str) -> None:
+        super().__init__(message, reason)
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class LyapunovOrbit(Result):
     """One Lyapunov orbit; lengths and times are dimensionless. The arrays are read-only.
@@ -165,8 +176,16 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
         orbits = _find_orbits(potential.in_well_units, scaled)
     except _SearchError as error:
         stated = scaled * potential.in_well_units.stated_units.energy
-        raise ValueError(f"energy={stated}: {error} (potential {potential.name})") from None
+        raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
     return tuple(replace(_restored(orbit, units), potential=potential) for orbit in orbits)
+
+
+def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """As `find_lyapunov_orbits`; none where the exits are not defined at the energy."""
+    try:
+        return find_lyapunov_orbits(potential, energy)
+    except UndefinedExitsError:
+        return ()
 
 
 @checks_types(potential=Potential, orbit=LyapunovOrbit)

@@ -13,7 +13,7 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate, OrbitResult
 from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_rows import exits_of_orbit
 from engine.invariant_sets.birkhoff_averages import compare_halves
 from engine.potentials.compiled import kernels_of
 from engine.potentials.outcomes import Outcome
@@ -67,6 +67,9 @@ class Orbit(OrbitResult):
         Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
     potential
         The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
+    exits_unknown
+        Why the exits over saddles are not known at its energy; empty if they are. Without them no fate is an exit, and
+        `Fate.BOUNDED` says only that the orbit has not ended otherwise by t_max.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -85,6 +88,7 @@ class Orbit(OrbitResult):
     certificate: Certificate
     time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
+    exits_unknown: str = ""
     codes: ClassVar = {"fate": Fate, "certificate": Certificate}
 
     @property
@@ -96,6 +100,10 @@ class Orbit(OrbitResult):
     def digits_of_halves(self) -> float:
         """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree: many on a torus."""
         return compare_halves(self.x, self.y)
+
+    def numbers(self) -> dict[str, Any]:
+        """The scalars by name; why exits are unknown where they are."""
+        return {name: value for name, value in super().numbers().items() if name != "exits_unknown" or value}
 
     def find_section_crossings(self) -> np.ndarray:
         """(n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
@@ -130,7 +138,8 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4 of
     Zotos (2014), and SALI is its eq. 9. The growth of the first vector gives the finite-time Lyapunov exponent (Benettin,
     Galgani, Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no
-    influence on the integration steps.
+    influence on the integration steps. Where the exits are not defined at its energy, see `find_lyapunov_orbits`, the orbit is
+    followed without them, and `Orbit.exits_unknown` says why.
 
     Parameters
     ----------
@@ -167,14 +176,16 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
     """`integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
-    recorded = record_orbit(potential, start, exit_curves(potential, energy), t_max, execution)
+    curves, exits_unknown = exits_of_orbit(potential, energy)
+    recorded = record_orbit(potential, start, curves, t_max, execution)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         read_only(array)
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     certificate = _certificate(potential, energy, fate)
-    return Orbit(*arrays, fate, escape_time, crossings, energy_error, energy, certificate, potential.exact_time_unit)
+    numbers = fate, escape_time, crossings, energy_error, energy, certificate, potential.exact_time_unit
+    return Orbit(*arrays, *numbers, exits_unknown=exits_unknown)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
