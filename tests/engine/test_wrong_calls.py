@@ -140,6 +140,14 @@ WRONG_CALLS = (
     ("find_stable_manifolds(III, 0.45, images=0)", "images=0: must be an integer from 1 to 6"),
     ("find_stable_manifolds(III, 0.45, window=3)", "window=3: must be (x_low, x_high, ordinate_low, ordinate_high)"),
     ('default_window("III", Plane.X_PX, 0.45)', "potential='III': must be a Potential"),
+    (
+        'default_window(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1)',
+        "px=100: no start on (x, y), px = 100 has a real py at energy=0.1; must be at most 0.447",
+    ),
+    (
+        "default_window(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3))",
+        "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
+    ),
     ("default_window(well, Plane.X_PX, -1.0)", "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov"),
     ('start_states("III", Plane.X_PX, 0.45, np.zeros(1), np.zeros(1))', "potential='III': must be a Potential"),
     ('start_states(III, Plane.X_PX, 0.45, "a", "b")', "x='a': must be an array of numbers with rows of equal length"),
