@@ -40,6 +40,8 @@ _MAX_SAMPLES = 500_000
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
 
+    An orbit at rest on a saddle at exactly its energy is bounded; it ends where rounding carries it off the saddle.
+
     Attributes
     ----------
     t, x, y, px, py

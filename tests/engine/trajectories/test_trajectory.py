@@ -297,3 +297,14 @@ def test_an_orbit_of_a_far_too_high_energy_is_followed_without_exits() -> None:
     orbit = integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 100.0], 10.0)
     assert "no Lyapunov orbit was found" in orbit.exits_unknown
     assert orbit.fate < 1
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("side", [-1.0, 0.0, 1.0])
+def test_an_orbit_at_rest_on_a_saddle_is_bounded_and_does_not_run_away(name: str, side: float) -> None:
+    saddle = CASES[name].saddles[0]
+    x, y = np.nextafter(saddle, saddle + side * saddle) if side else saddle
+    orbit = integrate_orbit(CASES[name], (x, y, 0.0, 0.0), 100.0)
+    assert orbit.energy == pytest.approx(CASES[name].escape_energy, abs=1e-16)
+    assert (orbit.fate, orbit.certificate) == (Fate.BOUNDED, Certificate.CLOSED)
+    assert np.hypot(orbit.x, orbit.y).max() < 1.01 * np.hypot(*saddle)
