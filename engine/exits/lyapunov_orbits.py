@@ -34,6 +34,13 @@ from engine.validation import checked_number, checks_types, warn_of_method
 
 # Ends of two orbits closer than this, in units of the well, are the same.
 _SAME_END = 1e-6
+# What an exit of several channels has not, from what its search finds first.
+_NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
+_MISSING = {
+    _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
+    _SHARP_BEND: "the orbit between its outer walls has too sharp a bend for a smooth curve; choose a higher energy",
+    _RETURNS: "orbits that leave across the orbit between its outer walls come back; choose another energy",
+}
 
 
 class UndefinedExitsError(ValueError):
@@ -271,16 +278,17 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
     if merged.closes_ring:
         raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
+    missing = _NO_ORBIT
     for orbit in find_merged_orbits(potential, energy, merged.channels):
         curve = curve_along(axes, saddle, orbit.path)
-        if curve is not None:
-            found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
-            if not has_returns(potential, energy, orbit, found.curve):
-                return replace(found, others=merged.channels[1:])
-    raise _SearchError(
-        f"{_describe(potential, merged)}, and no Lyapunov orbit was found across it that is a smooth graph and that orbits cross "
-        "only once; choose another energy"
-    )
+        if curve is None:
+            missing = max(missing, _SHARP_BEND)
+            continue
+        found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
+        if not has_returns(potential, energy, orbit, found.curve):
+            return replace(found, others=merged.channels[1:])
+        missing = _RETURNS
+    raise _SearchError(f"{_describe(potential, merged)}, and {_MISSING[missing]}")
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:

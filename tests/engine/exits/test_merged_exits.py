@@ -176,8 +176,15 @@ def test_along_a_parameter_an_exit_has_the_lowest_of_its_numbers() -> None:
 
 def test_an_exit_without_an_orbit_between_its_outer_walls_is_refused() -> None:
     # The motion along the maximum is above its barrier and comes to rest only once.
-    with pytest.raises(ValueError, match=r"channels 1\+2 are one exit above V = 0\.166667, .* no Lyapunov orbit .*Separable"):
+    with pytest.raises(
+        ValueError, match=r"channels 1\+2 are one exit above V = 0\.166667, .* no orbit at rest .*Separable"
+    ):
         find_lyapunov_orbits(POTENTIALS["Separable"], 1.01 / 6)
+
+
+def test_a_sharp_bend_just_above_the_maximum_is_named() -> None:
+    with pytest.raises(ValueError, match="has too sharp a bend for a smooth curve; choose a higher energy"):
+        find_lyapunov_orbits(SYMMETRIC, 1.0001 * MAXIMUM)
 
 
 def test_an_exit_all_around_the_well_is_refused() -> None:
