@@ -176,9 +176,7 @@ def test_along_a_parameter_an_exit_has_the_lowest_of_its_numbers() -> None:
 
 def test_an_exit_without_an_orbit_between_its_outer_walls_is_refused() -> None:
     # The motion along the maximum is above its barrier and comes to rest only once.
-    with pytest.raises(
-        ValueError, match=r"channels 1\+2 are one exit above V = 0\.166667, .* no orbit at rest .*Separable"
-    ):
+    with pytest.raises(ValueError, match=r"channels 1\+2 are one exit above V = 0\.166667, .* no orbit at rest .*Separable"):
         find_lyapunov_orbits(POTENTIALS["Separable"], 1.01 / 6)
 
 
