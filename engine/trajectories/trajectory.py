@@ -205,8 +205,11 @@ def _sample_orbit(
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = kernels_of(potential)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
-    path = sample_path(kernels, steps, times, execution)
-    sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, execution)
+    every_time = np.union1d(times, _starts_of_short_steps(times, steps[:, 4]))
+    path = sample_path(kernels, steps, every_time, execution)
+    sali, growth = sample_deviations(kernels, path, every_time, DEVIATION_VECTORS, execution)
+    sampled = np.searchsorted(every_time, times)
+    path, sali, growth = np.ascontiguousarray(path[:, sampled]), sali[sampled], growth[sampled]
     exponent = np.full_like(times, np.nan)
     with np.errstate(over="ignore"):
         # The reciprocal of a very short time can overflow.
@@ -214,6 +217,16 @@ def _sample_orbit(
     return times, path, sali, exponent
 
 
+def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """The starts (m,) of the steps in those intervals between samples that contain whole steps, as near a body.
+
+    Deviation vectors are carried over each interval by one series, which is valid for about one step.
+    """
+    interval = np.searchsorted(times, starts, side="right") - 1
+    contains_step = np.bincount(interval, minlength=times.size) > 1
+    return starts[contains_step[interval]]
+
+
 def _sample_count(t_end: float, steps: int) -> int:
-    """Number of samples: at least one per integration step, which the tangent flow needs, and more for short orbits."""
+    """Number of samples: at least one per integration step, and more for short orbits."""
     return max(int(np.clip(t_end / _SAMPLE_INTERVAL, _MIN_SAMPLES, _MAX_SAMPLES)), steps) + 1
