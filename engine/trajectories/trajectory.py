@@ -21,7 +21,7 @@ from engine.potentials.potential import Potential
 from engine.potentials.stored_potential import describe_potential
 from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
-from engine.taylor.kernels.dense_output import find_crossings, sample_deviations, sample_path
+from engine.taylor.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max, checks_types
 
 if TYPE_CHECKING:
@@ -110,15 +110,20 @@ class Orbit(OrbitResult):
     def find_section_crossings(self) -> np.ndarray:
         """(n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
 
-        The start is not counted. Between two samples on either side of y = 0 the Taylor series of the first is used. Raises
-        ValueError if the orbit has no potential.
+        The start is not counted. Between two samples on either side of y = 0 the Taylor series of the first is used; where steps
+        are shorter than the distance of the samples, as near a body, that of the step. Raises ValueError if the orbit has no
+        potential.
         """
         if self.potential is None:
             raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
-        units = self.potential.units
-        path = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
-        points = find_crossings(kernels_of(self.potential.in_well_units), path, self.t / units.time)
-        return points * [units.length, units.momentum]
+        units, kernels = self.potential.units, kernels_of(self.potential.in_well_units)
+        samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
+        times = self.t / units.time
+        steps = trace_steps(kernels, samples[:, 0], times[-1], len(self.potential.outcomes))
+        short = steps[np.isin(steps[:, 4], _starts_of_short_steps(times, steps[:, 4]))]
+        every_time, first = np.unique(np.concatenate([times, short[:, 4]]), return_index=True)
+        path = np.concatenate([samples, short[:, :4].T], axis=1)[:, first]
+        return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
 
     def to_xarray(self) -> xr.Dataset:
         """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""

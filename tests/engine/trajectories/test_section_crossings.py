@@ -7,6 +7,7 @@ import pytest
 
 from engine import (
     CASES,
+    POTENTIALS,
     Fate,
     Plane,
     Potential,
@@ -14,6 +15,7 @@ from engine import (
     classify_orbits,
     integrate_orbit,
     judge_orbit,
+    sample_starts,
     start_states,
 )
 from engine.dynamics.section_points import find_section_points
@@ -77,3 +79,15 @@ def test_an_outside_start_has_no_points() -> None:
     orbit = integrate_orbit(POTENTIAL, (1.2, 1.2, 0.0, 1.2), 10.0)
     assert orbit.fate == Fate.OUTSIDE
     assert orbit.find_section_crossings().shape == (0, 2)
+
+
+def test_points_of_orbits_past_a_body_are_all_found_and_allowed() -> None:
+    # Some pass the planet between two samples.
+    potential, energy = POTENTIALS["Hill"], -2.2
+    orbits = [integrate_orbit(potential, start, 300.0) for start in sample_starts(potential, energy, 8, seed=1)]
+    bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
+    assert len(bounded) > 2
+    for orbit in bounded:
+        x, px = orbit.find_section_crossings().T
+        assert x.size == orbit.crossings
+        assert np.all(potential.value(x, 0.0) + 0.5 * px**2 <= energy + 1e-8)
