@@ -78,14 +78,13 @@ def _print_result(
     orbit: Orbit, verdict: OrbitVerdict, indicators: Sequence[IndicatorVerdict], files: list[str], as_json: bool
 ) -> None:
     from cli.output import print_json, print_sentences
-    from engine.service import name_fate
 
     if not as_json:
         lines = [f"{one.name} {one.value:.3g}: {one.sentence}" for one in indicators]
         print_sentences(verdict.describe(), *lines, *([f"Written: {', '.join(files)}"] if files else []))
         return
-    names = ("energy", "escape_time", "crossings", "energy_error")
-    answer: dict[str, Any] = {"verdict": verdict.describe(), "outcome": name_fate(orbit.fate, orbit.outcomes), "fate": orbit.fate}
+    names = ("energy", "escape_time", "crossings", "energy_error", "exits_unknown")
+    answer: dict[str, Any] = {"verdict": verdict.describe(), "outcome": verdict.outcome, "fate": orbit.fate}
     answer |= {"character": verdict.character, "bounded_for_ever": verdict.is_bounded_for_ever}
     answer |= {name: getattr(orbit, name) for name in names}
     answer["start"] = [float(getattr(orbit, name)[0]) for name in ("x", "y", "px", "py")]

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import CASES, Orbit, Window, find_section_crossings
+from engine import CASES, Orbit, Window
 from plots.figure_axes import new_figure
 from plots.figure_style import FigureStyle
 
@@ -30,8 +30,7 @@ def new_panels(count: int, height: float, *, width: float = STYLE.width, sharey:
 
 def mark_section(axes: Axes, orbit: Orbit, window: Window, colour: str) -> None:
     """Mark the upward crossings of y = 0."""
-    assert orbit.potential is not None
-    axes.scatter(*window_shares(find_section_crossings(orbit.potential, orbit), window), s=2.0, color=colour, linewidths=0.0)
+    axes.scatter(*window_shares(orbit.find_section_crossings(), window), s=2.0, color=colour, linewidths=0.0)
 
 
 def window_shares(points: np.ndarray, window: Window) -> np.ndarray:

@@ -7,8 +7,8 @@ These are the public names of the library. All results show themselves in notebo
   `review_potential`
 - starts: `Plane`, `Slice`, `Coordinate`, `Direction`, `ParameterAxis`, `Window`, `default_window`, `start_states`,
   `sample_starts`, `trace_zero_velocity_curve`
-- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `find_multipliers`, `find_section_crossings`,
-  `compute_birkhoff_digits`, `judge_orbit`, `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
+- orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `compute_birkhoff_digits`, `judge_orbit`,
+  `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
 - maps of escapes: `MapSpec`, `compute_map`, `compute_deep_map`, `compute_regularity`, `compute_trust`,
   `compute_origin_fates`, `find_stable_manifolds`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,

@@ -7,6 +7,7 @@ from engine.dynamics.certificates import describe_certificate
 from engine.dynamics.fates import UNRESOLVED, describe_fate, is_chaotic, name_fate, outcome_of
 from engine.dynamics.portable_system import PortableSystem, make_portable_system
 from engine.execution import DEFAULT_EXECUTION, count_cores
+from engine.exits.lyapunov_orbits import find_known_exits
 from engine.expressions.nodes import Coordinate as CoordinateNode
 from engine.expressions.nodes import Expression, Function, Product, Sum
 from engine.invariant_sets.stable_manifolds import MOST_IMAGES, ManifoldArc
@@ -144,6 +145,7 @@ __all__ = [
     "describe_codes",
     "describe_fate",
     "exit_labels",
+    "find_known_exits",
     "find_super_sticky_orbits",
     "finest_pixel",
     "fit_uncertainty",

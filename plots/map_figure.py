@@ -34,10 +34,9 @@ from engine import (
     Slice,
     StableManifolds,
     Window,
-    find_lyapunov_orbits,
     trace_zero_velocity_curve,
 )
-from engine.service import common_energy
+from engine.service import common_energy, find_known_exits
 from plots.axis_labels import label_axis
 from plots.figure_axes import (
     add_legend_below,
@@ -271,14 +270,14 @@ def draw_limits(
     shown: Window,
     channel_colours: Sequence[str] | None = None,
 ) -> None:
-    """Draw the limiting curve of a slice and, on (x, y), the Lyapunov orbits.
+    """Draw the limiting curve of a slice and, on (x, y), the Lyapunov orbits, where they are known.
 
     The orbits have the colours of their channels; without colours they are black and dashed.
     """
     limit: dict[str, Any] = {"colors": LIGHT.limiting_curve, "linewidths": 1.0}
     draw_curve(axes, trace_zero_velocity_curve(potential, plane, energy, shown), shown, "limiting curve", **limit)
     h = common_energy(energy)
-    orbits = find_lyapunov_orbits(potential, h) if plane.shows_positions and h is not None else ()
+    orbits = find_known_exits(potential, h) if plane.shows_positions and h is not None else ()
     if channel_colours is None:
         paths = [orbit.half_path for orbit in orbits]
         draw_curve(axes, paths, shown, "Lyapunov orbits", linestyles=[_EXIT_DASHES], **limit)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine import Orbit, Potential, Window, default_window, find_section_crossings
+from engine import Orbit, Potential, Window, default_window
 from engine.service import SPACE
 from plots.histories import History, reduce_history
 
@@ -25,6 +25,8 @@ TRAIL = 25.0
 # Twice the pixels of the plot, for high-density screens.
 _SHADED_PIXELS = 600
 _FAINTEST = 50
+# Half the side of the window of a path: in units of its reach, and at most in units of the distance of the farthest saddle.
+_AROUND_PATH, _FARTHEST_SHOWN = 1.1, 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,9 +73,9 @@ class OrbitCurves:
 
 def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
     """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
-    window = find_well_window(potential, orbit.energy)
+    window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
     everything = slice(None)
-    section = find_section_crossings(potential, orbit)
+    section = orbit.find_section_crossings()
     return OrbitCurves(orbit, window, *_histories(orbit, everything), section, _visits(orbit, window, everything))
 
 
@@ -85,6 +87,13 @@ def find_well_window(potential: Potential, energy: float) -> Window:
         if not potential.channels:
             raise
         return default_window(potential, SPACE, potential.escape_energy)
+
+
+def _path_window(potential: Potential, orbit: Orbit) -> Window:
+    """A square around the origin and the path near it, for an orbit without known exits, which need not stay in a well."""
+    reach = float(max(np.abs(orbit.x).max(), np.abs(orbit.y).max()))
+    half = min(_AROUND_PATH * reach, _FARTHEST_SHOWN * float(np.hypot(*potential.saddles.T).max()))
+    return Window(-half, half, -half, half)
 
 
 def restrict_curves(curves: OrbitCurves, begin: float, end: float) -> OrbitCurves:

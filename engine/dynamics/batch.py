@@ -172,7 +172,10 @@ class OrbitBatch:
 def _find_outside(potential: Potential, states: np.ndarray, curves: np.ndarray, curve_row: np.ndarray) -> np.ndarray:
     """(n,) int8: the channel beyond which each start (n, 4) lies, 0 for none; runs in a worker."""
     x, y = np.ascontiguousarray(states[:, :2].T)
-    return find_outside_starts(potential, x, y, potential.energy(states), curves, curve_row)
+    with np.errstate(invalid="ignore"):
+        # At the centre of a body V = −∞: a start of any energy has an infinite momentum.
+        energy = np.where(np.isinf(states[:, 2:]).any(axis=1), np.inf, potential.energy(states))
+    return find_outside_starts(potential, x, y, energy, curves, curve_row)
 
 
 @dataclass

@@ -73,7 +73,7 @@ _SENTENCES = {
     Fate.FORBIDDEN: "Forbidden: no orbit of this energy can start here because its kinetic energy would be negative.",
     Fate.OUTSIDE: "Outside: the start lies beyond an exit.",
     Fate.NOT_COMPUTED: "Not computed yet.",
-    Fate.FAILED: "Unresolved: the steps became too short, as near a singularity of V.",
+    Fate.FAILED: "Unresolved: the steps became too short, as near a singularity of V or on the way to infinity in a finite time.",
 }
 
 

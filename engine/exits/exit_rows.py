@@ -9,7 +9,7 @@ from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel, disc, escape_circle
-from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.exits.lyapunov_orbits import UndefinedExitsError, find_lyapunov_orbits
 from engine.potentials.hill_region import check_closed_well
 from engine.potentials.potential import Potential
 from engine.potentials.singularity_check import check_defined
@@ -49,6 +49,20 @@ def exit_curves(potential: Potential, energy: float) -> np.ndarray:
         for channel in orbit.others:
             curves[channel - 1] = absent_channel(saddle_axes(potential, channel), potential.saddles[channel - 1])
     return curves
+
+
+def exits_of_orbit(potential: Potential, energy: float) -> tuple[np.ndarray, str]:
+    """The `exit_curves` for one orbit, which can be followed without exits, too, and why these are not known; "" if they are.
+
+    Where they are not defined at the energy no orbit crosses one and no start lies beyond one; discs and the escape circle stay.
+    """
+    try:
+        return exit_curves(potential, energy), ""
+    except UndefinedExitsError as error:
+        curves = closed_exits(potential)
+        for channel, saddle in enumerate(potential.saddles, start=1):
+            curves[channel - 1] = absent_channel(saddle_axes(potential, channel), saddle)
+        return curves, error.reason
 
 
 def exit_gates(curves: np.ndarray) -> np.ndarray:

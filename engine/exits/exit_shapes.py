@@ -16,6 +16,8 @@ _LARGEST_FIT_ERROR = 1e-9
 _FIRST_BEYOND, _FARTHEST_BEYOND, _SAMPLES_BEYOND = 1e-3, 2.0, 400
 # Half the length of the line across a closed saddle, in units of the saddle's distance from the origin.
 _CLOSED_HALF_WIDTH = 1e-3
+# How far it lies beyond the saddle, in the same unit: an orbit at rest on the saddle starts inside, wherever rounding puts it.
+_CLOSED_OFFSET = 1e-9
 # Walls are followed from the saddle to the line in this many steps. A wall is searched up to this multiple of the distance of the
 # saddle from the origin, at this many points.
 _WALL_STEPS = 32
@@ -27,12 +29,13 @@ _LARGEST_WALL_STEP = 0.25
 
 
 def closed_channel(axes: Axes, saddle: np.ndarray) -> np.ndarray:
-    """(columns,) the exit of a closed channel: a short straight line through the origin of the axes."""
+    """(columns,) the exit of a closed channel: a short straight line just beyond the origin of the axes."""
     curve = np.zeros(events.CURVE_COLUMNS)
     curve[events.ORIGIN_X : events.OUTWARD_Y + 1] = *axes.origin, *axes.outward
     curve[events.BEARING_X : events.BEARING_Y + 1] = saddle / np.hypot(*saddle)
     curve[events.HALF_WIDTH] = _CLOSED_HALF_WIDTH * np.hypot(*saddle)
     curve[events.REACH] = 1.0
+    curve[events.COEFFICIENTS] = _CLOSED_OFFSET * np.hypot(*saddle)
     return curve
 
 

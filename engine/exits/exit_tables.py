@@ -105,7 +105,7 @@ def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
     """The exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
     curves = {}
     for orbit in find_lyapunov_orbits(potential, energy):
-        curve = exit_curve_over_chord(potential, orbit)
+        curve = exit_curve_over_chord(orbit)
         if curve is None:
             raise ValueError(f"energy={energy}: exit {orbit.channel} is no smooth graph over its chord")
         curves[orbit.channel] = curve

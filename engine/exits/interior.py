@@ -18,7 +18,7 @@ from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
-from engine.taylor.kernels import interior
+from engine.taylor.kernels import events, interior
 
 
 def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -44,13 +44,13 @@ def find_outside_starts(
     x, y, energy
         (n,) each.
     curves
-        (rows, outcomes, columns) exits, see `exit_curves`.
+        (rows, outcomes, columns) exits, see `exit_curves`. Where all are absent, no point is beyond one.
     curve_row
         (n,) the row of `curves` for each point.
     """
     outside = np.zeros(x.size, np.int8)
-    if potential.escape_radius is None:
-        over_saddles = np.ascontiguousarray(curves[:, : potential.channels])
+    over_saddles = np.ascontiguousarray(curves[:, : potential.channels])
+    if (over_saddles[..., events.REACH] >= 0.0).any():
         nearest = _finder(potential.form, potential)(x, y, energy, over_saddles, curve_row)
         outside = np.take_along_axis(potential.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
     if potential.escape_radius is None and not potential.centres:

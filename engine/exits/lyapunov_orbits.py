@@ -30,10 +30,28 @@ from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME, WellUni
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels import events
-from engine.validation import checked_number, checks_types
+from engine.validation import checked_number, checks_types, warn_of_method
 
 # Ends of two orbits closer than this, in units of the well, are the same.
 _SAME_END = 1e-6
+# What an exit of several channels has not, from what its search finds first.
+_NO_ORBIT, _SHARP_BEND, _RETURNS = range(3)
+_MISSING = {
+    _NO_ORBIT: "no orbit at rest on both of its outer walls was found with all its saddles between; choose another energy",
+    _SHARP_BEND: "the orbit between its outer walls has too sharp a bend for a smooth curve; choose a higher energy",
+    _RETURNS: "orbits that leave across the orbit between its outer walls come back; choose another energy",
+}
+
+
+class UndefinedExitsError(ValueError):
+    """The exits of a potential are not defined at an energy above the escape energy, for a `reason`."""
+
+    def __init__(self, message: str, reason: str) -> None:
+        super().__init__(message, reason)
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,6 +75,8 @@ class LyapunovOrbit(Result):
         (2,) px and py at the first point: at rest, unless the frame rotates.
     others
         Other channels that are part of the same exit, above the maxima between them; `channel` is the lowest number.
+    potential
+        The `Potential`.
     """
 
     channel: int
@@ -67,10 +87,28 @@ class LyapunovOrbit(Result):
     curve: np.ndarray
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(2), metadata=MOMENTUM)
     others: tuple[int, ...] = ()
+    potential: Potential = field(kw_only=True, repr=False)
 
     def __post_init__(self) -> None:
         for array in (self.x, self.y, self.curve, self.velocity):
             read_only(array)
+
+    def find_multipliers(self) -> np.ndarray:
+        """The stability of the orbit: the eigenvalues of the flow linearised along one period, the largest modulus first.
+
+        (4,) complex. Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. As
+        there is only one eigenvector for the eigenvalue 1, rounding changes this pair by the square root of the error of the
+        matrix, 1e-8 to 1e-6.
+        """
+        units = self.potential.units
+        return read_only(
+            multipliers_of(monodromy_matrix(self.potential.in_well_units, self.start / units.state, self.period / units.time))
+        )
+
+    @property
+    def start(self) -> np.ndarray:
+        """(4,) x, y, px and py at the first point."""
+        return np.array([self.x[0], self.y[0], *self.velocity])
 
     def columns(self) -> Mapping[str, np.ndarray]:
         """The path and its times."""
@@ -145,38 +183,37 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
         orbits = _find_orbits(potential.in_well_units, scaled)
     except _SearchError as error:
         stated = scaled * potential.in_well_units.stated_units.energy
-        raise ValueError(f"energy={stated}: {error} (potential {potential.name})") from None
-    return orbits if units == WellUnits() else tuple(_restored(orbit, units) for orbit in orbits)
+        raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
+    return tuple(replace(_restored(orbit, units), potential=potential) for orbit in orbits)
+
+
+def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """As `find_lyapunov_orbits`; none where the exits are not defined at the energy."""
+    try:
+        return find_lyapunov_orbits(potential, energy)
+    except UndefinedExitsError:
+        return ()
 
 
 @checks_types(potential=Potential, orbit=LyapunovOrbit)
 def find_multipliers(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray:
-    """The stability of a Lyapunov orbit: the eigenvalues of the flow linearised along one period.
+    """Deprecated: `LyapunovOrbit.find_multipliers`, for the orbit knows its potential.
 
-    Two of them are 1, and the others are λ and 1/λ: if the modulus of λ is not 1, the orbit is unstable. As there is only one
-    eigenvector for the eigenvalue 1, rounding changes this pair by the square root of the error of the matrix, 1e-8 to 1e-6.
-
-    Parameters
-    ----------
-    potential
-        The potential of the orbit.
-    orbit
-        One of `find_lyapunov_orbits`.
-
-    Returns
-    -------
-    (4,) complex multipliers, the one of largest modulus first.
+    Raises
+    ------
+    ValueError
+        If the potential is not that of the orbit.
 
     Examples
     --------
-    >>> from escape_explorer import CASES, find_lyapunov_orbits, find_multipliers
+    >>> from escape_explorer import CASES, find_lyapunov_orbits
     >>> orbit = find_lyapunov_orbits(CASES["I"], 0.19)[0]
-    >>> round(float(abs(find_multipliers(CASES["I"], orbit)[0])), 2)
+    >>> round(float(abs(orbit.find_multipliers()[0])), 2)
     93.85
     """
-    units = potential.units
-    start = np.array([orbit.x[0], orbit.y[0], *orbit.velocity]) / units.state
-    return read_only(multipliers_of(monodromy_matrix(potential.in_well_units, start, orbit.period / units.time)))
+    potential.check_same_motion(orbit.potential, "orbit")
+    warn_of_method("find_multipliers(potential, orbit)", "orbit.find_multipliers()")
+    return orbit.find_multipliers()
 
 
 class _SearchError(Exception):
@@ -241,20 +278,23 @@ def _find_merged(potential: Potential, energy: float, merged: MergedExit) -> Lya
     if merged.closes_ring:
         raise _SearchError(f"{_describe(potential, merged)}, and it leads all around the well; choose a lower energy")
     axes, saddle = axes_between(potential, merged.channels), potential.saddles[merged.channels[0] - 1]
+    missing = _NO_ORBIT
     for orbit in find_merged_orbits(potential, energy, merged.channels):
         curve = curve_along(axes, saddle, orbit.path)
-        if curve is not None:
-            found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
-            if not has_returns(potential, energy, orbit, found.curve):
-                return replace(found, others=merged.channels[1:])
-    raise _SearchError(
-        f"{_describe(potential, merged)}, and no Lyapunov orbit was found across it that is a smooth graph and that orbits cross "
-        "only once; choose another energy"
-    )
+        if curve is None:
+            missing = max(missing, _SHARP_BEND)
+            continue
+        found = _exit_over(potential, energy, merged.channels[0], orbit, curve)
+        if not has_returns(potential, energy, orbit, found.curve):
+            return replace(found, others=merged.channels[1:])
+        missing = _RETURNS
+    raise _SearchError(f"{_describe(potential, merged)}, and {_MISSING[missing]}")
 
 
 def _restored(orbit: LyapunovOrbit, units: WellUnits) -> LyapunovOrbit:
     """An orbit in units of the well, in the units of its potential; in its exit curve, directions have no unit."""
+    if units == WellUnits():
+        return orbit
     curve = orbit.curve * units.length
     directions = slice(events.OUTWARD_X, events.SHAPE + 1)
     curve[directions] = orbit.curve[directions]
@@ -289,7 +329,7 @@ def _paths_cross(one: np.ndarray, other: np.ndarray) -> bool:
 
 def _mirrored(orbit: LyapunovOrbit, channel: int) -> LyapunovOrbit:
     """The exact image under x → −x, so that mirror images of orbits escape at exactly the same time."""
-    return LyapunovOrbit(channel, orbit.energy, orbit.period, -orbit.x, orbit.y, mirrored_curve(orbit.curve))
+    return replace(orbit, channel=channel, x=-orbit.x, curve=mirrored_curve(orbit.curve))
 
 
 def _symmetrized(orbit: LyapunovOrbit) -> LyapunovOrbit:
@@ -309,7 +349,7 @@ def _find_closed_orbit(potential: Potential, energy: float, channel: int) -> Lya
             "choose a lower energy"
         )
     x, y = orbit.path[:2].copy()
-    return LyapunovOrbit(channel, energy, orbit.period, x, y, curve, orbit.path[2:, 0].copy())
+    return LyapunovOrbit(channel, energy, orbit.period, x, y, curve, orbit.path[2:, 0].copy(), potential=potential)
 
 
 def _find_orbit(potential: Potential, energy: float, channel: int, follow: bool) -> LyapunovOrbit:
@@ -329,14 +369,16 @@ def _exit_over(potential: Potential, energy: float, channel: int, orbit: BrakeOr
     curve[events.REACH] = find_reach(potential, energy, curve)
     x, y = orbit.path
     there_and_back = np.concatenate([np.arange(x.size), np.arange(x.size - 1)[::-1]])
-    return LyapunovOrbit(channel, energy, 2.0 * orbit.half_period, x[there_and_back], y[there_and_back], curve)
+    path = x[there_and_back], y[there_and_back]
+    return LyapunovOrbit(channel, energy, 2.0 * orbit.half_period, *path, curve, potential=potential)
 
 
-def exit_curve_over_chord(potential: Potential, orbit: LyapunovOrbit) -> np.ndarray | None:
+def exit_curve_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
     """(columns,) the exit of an orbit in units of the well, in axes which depend smoothly on the energy: those of its chord.
 
     None if the path is not a smooth graph over the chord. The line of a rotating system keeps its own axes, those of the saddle.
     """
+    potential = orbit.potential
     if potential.rotation:
         return orbit.curve
     path = orbit.half_path.T

@@ -177,7 +177,7 @@ def find_stable_manifolds(
     firsts = [channel for channel in orbits if channel <= image[channel]]
     # Each thread waits for the tiles of its channel most of the time.
     with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
-        found = threads.map(lambda channel: _find_arcs(potential, orbits[channel], images, spacing, execution), firsts)
+        found = threads.map(lambda channel: _find_arcs(orbits[channel], images, spacing, execution), firsts)
         arcs = dict(zip(firsts, found, strict=True))
     truncated = any(unfinished for _, unfinished in arcs.values())
     restored = tuple(units.restore(arc) for channel in orbits for arc in _arcs_of(channel, arcs, int(image[channel])))
@@ -196,18 +196,12 @@ def _mirrored(arc: ManifoldArc, channel: int) -> ManifoldArc:
     return ManifoldArc(channel, arc.image, read_only(-arc.x), read_only(-arc.px))
 
 
-def _find_arcs(
-    potential: Potential,
-    orbit: LyapunovOrbit,
-    images: int,
-    spacing: _PointSpacing,
-    execution: Execution,
-) -> tuple[list[ManifoldArc], bool]:
+def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: _PointSpacing, execution: Execution) -> tuple[list[ManifoldArc], bool]:
     """The arcs of one channel, and whether any of them is incomplete."""
     try:
-        tube = UnstableManifold.from_orbit(potential, orbit)
+        tube = UnstableManifold.from_orbit(orbit)
     except ValueError as error:
-        raise ValueError(f"energy={orbit.energy * potential.stated_units.energy}: {error}") from None
+        raise ValueError(f"energy={orbit.energy * orbit.potential.stated_units.energy}: {error}") from None
     count = tube.near_passages + images
     passages = _refine(lambda phases: tube.find_passages(phases, count, execution), count, spacing, images * ORBITS_PER_IMAGE)
     arcs = []

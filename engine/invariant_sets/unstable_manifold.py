@@ -42,8 +42,8 @@ class UnstableManifold:
 
     Attributes
     ----------
-    potential, orbit
-        The `Potential` in units of its well, and its Lyapunov orbit.
+    orbit
+        The Lyapunov orbit of a potential in units of its well.
     direction
         (4,) unit vector in phase space at the orbit's first point, where it is at rest: the unstable direction, inward.
     multiplier
@@ -54,7 +54,6 @@ class UnstableManifold:
         Number of initial passages of y = 0 near the Lyapunov orbit; 0 if that orbit does not cross y = 0.
     """
 
-    potential: Potential
     orbit: LyapunovOrbit
     direction: np.ndarray
     multiplier: float
@@ -63,7 +62,7 @@ class UnstableManifold:
     near_passages: int
 
     @classmethod
-    def from_orbit(cls, potential: Potential, orbit: LyapunovOrbit) -> UnstableManifold:
+    def from_orbit(cls, orbit: LyapunovOrbit) -> UnstableManifold:
         """Build the manifold of a Lyapunov orbit.
 
         Raises
@@ -71,8 +70,8 @@ class UnstableManifold:
         ValueError
             When the orbit is not unstable, or the frame rotates.
         """
-        potential.check_at_rest("manifolds of Lyapunov orbits")
-        monodromy = monodromy_matrix(potential, np.array([orbit.x[0], orbit.y[0], 0.0, 0.0]), orbit.period)
+        orbit.potential.check_at_rest("manifolds of Lyapunov orbits")
+        monodromy = monodromy_matrix(orbit.potential, orbit.start, orbit.period)
         multiplier, direction = _leading_eigenvector(monodromy)
         if not multiplier > _MIN_MULTIPLIER:
             raise ValueError(
@@ -83,12 +82,17 @@ class UnstableManifold:
             direction = -direction
         largest, near_passages = _MAX_DISPLACEMENT, 0
         if orbit.y[0] * orbit.y[orbit.y.size // 2] <= 0.0:
-            end = _FIRST_IMAGE_END * float(np.hypot(*potential.saddles[orbit.channel - 1]))
+            end = _FIRST_IMAGE_END * float(np.hypot(*orbit.potential.saddles[orbit.channel - 1]))
             periods = math.ceil(math.log(end / _MAX_DISPLACEMENT) / math.log(multiplier))
             largest, near_passages = end * multiplier**-periods, periods - 1
-        manifold = cls(potential, orbit, read_only(direction), multiplier, largest / multiplier, largest, near_passages)
+        manifold = cls(orbit, read_only(direction), multiplier, largest / multiplier, largest, near_passages)
         left_eigenvector = _leading_eigenvector(monodromy.T)[1]
         return replace(manifold, max_displacement=manifold._displacement_after_period(left_eigenvector))
+
+    @property
+    def potential(self) -> Potential:
+        """The potential in units of its well."""
+        return self.orbit.potential
 
     def _displacement_after_period(self, left_eigenvector: np.ndarray) -> float:
         """The displacement that the orbit of phase 0 has after one period; nonlinear terms make it differ from the linear one.
@@ -147,7 +151,7 @@ class UnstableManifold:
 
     def start_states(self, displacements: np.ndarray) -> np.ndarray:
         """(n, 4) states displaced by (n,) from the Lyapunov orbit's point of rest, projected back onto its energy."""
-        states: np.ndarray = np.array([self.orbit.x[0], self.orbit.y[0], 0.0, 0.0]) + displacements[:, None] * self.direction
+        states: np.ndarray = self.orbit.start + displacements[:, None] * self.direction
         for _ in range(3):
             gradient = np.column_stack([*self.potential.gradient(states[:, 0], states[:, 1]), states[:, 2:]])
             excess = self.potential.energy(states) - self.orbit.energy

@@ -147,21 +147,21 @@ def compute_trust(
     escape_map.check_complete("escape_map")
     unlike = find_unlike_neighbours(escape_map.fate, escape_map.crossings)
     if escape_map.spec.plane.parameter is None:
-        return _test_trust(escape_map, unlike, on_frame, execution)
+        return _test_trust(escape_map, unlike, on_frame, execution, _SHIFTED_STARTS)
 
     def test_line(place: Place, line: EscapeMap, alone: Execution) -> TrustMap:
-        return _test_trust(line, unlike[place], None, alone)
+        return _test_trust(line, unlike[place], None, alone, _SHIFTED_STARTS)
 
     codes = np.full(unlike.shape, Trust.NOT_APPLICABLE, np.int8)
     return analyse_lines(escape_map, test_line, TrustMap, {"trust": codes}, on_frame, execution)
 
 
 def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT_EXECUTION) -> float:
-    """Estimate which share of the pixels of a complete map double precision does not support.
+    """Estimate for which share of the pixels of a complete map double precision gives another fate or number of crossings.
 
-    Some `SAMPLED_SIDE`² pixels, evenly spread, are tested as by `compute_trust`, but with a shift of `FINEST_PIXEL`, a few units
-    in the last place of the start, however large a pixel is. So what decides is how much rounding errors grow along these orbits,
-    and how near they start to the boundaries of the basins.
+    Some `SAMPLED_SIDE`² pixels, evenly spread, are integrated again from the same starts with `SECOND_TOLERANCE`, so that only
+    errors of the integration differ. Where the outcome changes, one of the two is wrong: the share is at most the sum of both
+    shares of wrong pixels, and at least their difference.
 
     Parameters
     ----------
@@ -172,11 +172,11 @@ def estimate_rounded_share(escape_map: EscapeMap, execution: Execution = DEFAULT
 
     Returns
     -------
-    The share of the sampled interior pixels whose outcome changes, 0 to 1; NaN if none is interior.
+    The share of the sampled interior pixels whose fate or number of crossings changes, 0 to 1; NaN if none is interior.
     """
     thinned = _thinned(escape_map)
     unlike = find_unlike_neighbours(thinned.fate, thinned.crossings)
-    return _test_trust(thinned, unlike, None, execution, shift=FINEST_PIXEL).doubtful_share
+    return _test_trust(thinned, unlike, None, execution, _SAME_STARTS).doubtful_share
 
 
 def _thinned(escape_map: EscapeMap) -> EscapeMap:
@@ -192,12 +192,12 @@ def _test_trust(
     unlike: np.ndarray,
     on_frame: Callable[[TrustMap], None] | None,
     execution: Execution,
-    shift: float = SHIFT,
+    perturbation: _Perturbation,
 ) -> TrustMap:
     """Test a map of one potential, or a line of a map along a parameter; unlike: as `find_unlike_neighbours` says."""
     given_spec, reached = escape_map.spec, 0.0
     publish = None if on_frame is None else lambda found: on_frame(replace(found, spec=given_spec))
-    test = _TrustTest(escape_map.in_well_units(), unlike, publish, execution, shift)
+    test = _TrustTest(escape_map.in_well_units(), unlike, publish, execution, perturbation)
     spec = test.spec
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
@@ -235,12 +235,10 @@ def find_unlike_neighbours(fate: np.ndarray, crossings: np.ndarray) -> np.ndarra
     return unlike & interior
 
 
-def shifted_starts(
-    spec: MapSpec, x: np.ndarray, ordinate: np.ndarray, shift: float = SHIFT
-) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+def shifted_starts(spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
     """Shift points of the plane in two directions, so that mirror images stay mirror images.
 
-    The shift is `shift`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
+    The shift is `SHIFT`, but at most a hundredth of a pixel, and at least `FINEST_PIXEL` so that it exceeds rounding errors. The
     first direction is towards 0 in both coordinates, so that the points stay inside, and the second in the abscissa alone. An
     axis h is not shifted, so that the energy and its exits do not change: the other one is shifted towards 0, then away from it.
 
@@ -250,8 +248,6 @@ def shifted_starts(
         The map in units of its well.
     x, ordinate
         (n,) coordinates of the points.
-    shift
-        In units of the well.
 
     Returns
     -------
@@ -262,18 +258,36 @@ def shifted_starts(
     is_free = spec.plane.free_axes
     points = x, ordinate
     axes = zip(points, sides, is_free, strict=True)
-    nearer = tuple(_shifted_towards_zero(along, side, shift) if free else along for along, side, free in axes)
+    nearer = tuple(_shifted_towards_zero(along, side) if free else along for along, side, free in axes)
     if all(is_free):
         return (nearer[0], nearer[1]), (nearer[0], ordinate)
     away = tuple(along + (along - shifted) for along, shifted in zip(points, nearer, strict=True))
     return (nearer[0], nearer[1]), (away[0], away[1])
 
 
-def _shifted_towards_zero(coordinate: np.ndarray, pixel: float, shift: float) -> np.ndarray:
-    distance = np.maximum(min(shift, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
+def _shifted_towards_zero(coordinate: np.ndarray, pixel: float) -> np.ndarray:
+    distance = np.maximum(min(SHIFT, LARGEST_SHARE_OF_PIXEL * pixel), FINEST_PIXEL * np.maximum(1.0, np.abs(coordinate)))
     # A start on y = 0 is shifted up: from below it would cross y = 0 once more.
     shifted: np.ndarray = np.where(coordinate > 0.0, coordinate - distance, coordinate + distance)
     return shifted
+
+
+def _same_starts(_spec: MapSpec, x: np.ndarray, ordinate: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """The points themselves."""
+    return ((x, ordinate),)
+
+
+@dataclass(frozen=True)
+class _Perturbation:
+    """How orbits are integrated again: the starts and the tolerance of each rerun, and the largest change of escape times."""
+
+    starts: Callable[[MapSpec, np.ndarray, np.ndarray], tuple[tuple[np.ndarray, np.ndarray], ...]]
+    tolerances: tuple[float, ...]
+    largest_delay: float
+
+
+_SHIFTED_STARTS = _Perturbation(shifted_starts, (TOLERANCE, SECOND_TOLERANCE), LARGEST_DELAY)
+_SAME_STARTS = _Perturbation(_same_starts, (SECOND_TOLERANCE,), np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -282,6 +296,7 @@ class _Rerun:
 
     batch: OrbitBatch
     tolerance: float
+    largest_delay: float
     fate: np.ndarray
     crossings: np.ndarray
     escape_time: np.ndarray
@@ -296,7 +311,7 @@ class _Rerun:
         batch, escaped = self.batch, self.fate >= 1
         other_fate = self.is_decided() & (batch.fate != self.fate)
         other_crossings = (batch.fate == self.fate) & (batch.crossings != self.crossings)
-        delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > LARGEST_DELAY)
+        delayed = (batch.fate == self.fate) & (np.abs(batch.t - self.escape_time) > self.largest_delay)
         changed: np.ndarray = other_fate | escaped & (other_crossings | delayed | (batch.crossings > self.crossings))
         return changed
 
@@ -318,7 +333,7 @@ class _TrustTest:
         unlike: np.ndarray,
         on_frame: Callable[[TrustMap], None] | None,
         execution: Execution,
-        shift: float,
+        perturbation: _Perturbation,
     ) -> None:
         self.spec, self._on_frame, self._execution = escape_map.spec, on_frame, execution
         codes = np.where(escape_map.fate >= Fate.BOUNDED, Trust.LIKE_NEIGHBOURS, Trust.NOT_APPLICABLE)
@@ -332,9 +347,9 @@ class _TrustTest:
         self._compared = 0.0
         # Positions in the arrays of the reruns whose pixels are undecided.
         self._undecided = np.arange(self._codes.pixels.size)
-        self._curves, self._reruns = self._prepare_reruns(escape_map, shift)
+        self._curves, self._reruns = self._prepare_reruns(escape_map, perturbation)
 
-    def _prepare_reruns(self, escape_map: EscapeMap, shift: float) -> tuple[np.ndarray, list[_Rerun]]:
+    def _prepare_reruns(self, escape_map: EscapeMap, perturbation: _Perturbation) -> tuple[np.ndarray, list[_Rerun]]:
         """The exit curves of each energy, and the reruns at t = 0."""
         spec, potential, pixels = self.spec, self.spec.potential, self._codes.pixels
         x, ordinate = escape_map.coordinates(pixels)
@@ -347,11 +362,11 @@ class _TrustTest:
             curves[k] = exit_curves(potential, float(energy))
         closed = np.flatnonzero(potential.is_closed_at(energies[curve_row]))
         reruns = []
-        for start, tolerance in zip(shifted_starts(spec, x, ordinate, shift), (TOLERANCE, SECOND_TOLERANCE), strict=True):
+        for start, tolerance in zip(perturbation.starts(spec, x, ordinate), perturbation.tolerances, strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)
             batch.mark_outside(potential, self._undecided, curves)
             batch.mark_bounded(closed[batch.fate[closed] == Fate.NOT_COMPUTED], Certificate.CLOSED)
-            reruns.append(_Rerun(batch, tolerance, fate, crossings, escape_time))
+            reruns.append(_Rerun(batch, tolerance, perturbation.largest_delay, fate, crossings, escape_time))
         return curves, reruns
 
     def is_finished(self) -> bool:
@@ -359,7 +374,7 @@ class _TrustTest:
         return not self._undecided.size or self._execution.is_cancelled
 
     def propagate(self, horizon: float) -> None:
-        """Integrate both reruns of all undecided pixels to the horizon."""
+        """Integrate the reruns of all undecided pixels to the horizon."""
         # Together, as there may be too few orbits to keep all workers busy; each thread waits for its tiles most of the time.
         with ThreadPoolExecutor(len(self._reruns)) as threads:
             list(threads.map(partial(self._propagate_rerun, horizon), self._reruns))
@@ -375,12 +390,12 @@ class _TrustTest:
         )  # fmt: skip
 
     def _find_chaotic(self, time: float) -> None:
-        """Find the pixels bounded without a certificate whose reruns, both integrated to `time`, are `APART`."""
+        """Find the pixels bounded without a certificate whose reruns, all integrated to `time`, are `APART`."""
         tested = self._undecided[self._uncertified[self._undecided]]
         kernels = kernels_of(self.spec.potential)
         batches = [rerun.batch for rerun in self._reruns]
-        first, second = (advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches)
-        self._chaotic[tested] = np.linalg.norm(first - second, axis=1) > APART
+        states = np.array([advance_states(kernels, batch.state[tested], time - batch.t[tested]) for batch in batches])
+        self._chaotic[tested] = np.linalg.norm(states[0] - states[-1], axis=1) > APART
         self._compared = time
 
     def certify(self, reached: float) -> None:

@@ -200,6 +200,11 @@ class Potential(Result):
         """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
         return outcomes_of(self.channels, self.centres, self.escape_radius is not None)
 
+    def check_same_motion(self, other: Potential, what: str) -> None:
+        """Raise ValueError if the equations of motion are not those of another potential, of which a result is."""
+        if (self.form, self.rotation) != (other.form, other.rotation):
+            raise ValueError(f"potential={self.name}: must be that of the {what}, {other.name}")
+
     def check_at_rest(self, what: str) -> None:
         """Raise ValueError in a rotating frame, for what rests on the symmetry of time reversal."""
         if self.rotation:

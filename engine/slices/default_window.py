@@ -11,7 +11,7 @@ from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
 from engine.potentials.validation_report import review_potential
 from engine.potentials.well_units import WellUnits
-from engine.slices.axes import ANGLES, Axis, Coordinate, Direction, ParameterAxis
+from engine.slices.axes import ANGLES, MOMENTA, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
@@ -167,6 +167,7 @@ def _axis_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[lis
     else:
         positions = _position_ranges(well, scaled, level)
         momenta = _momentum_range(well, level, positions)
+        _check_fixed_momentum(potential, energy, plane, positions)
         found = [positions.get(axis, momenta) if isinstance(axis, Coordinate) else momenta for axis in scaled.axes]
     if any(not low < high for low, high in found):
         return []
@@ -221,6 +222,19 @@ def _position_ranges(potential: Potential, plane: Slice, energy: float) -> dict[
         else (held[coordinate], held[coordinate])
         for coordinate in (Coordinate.X, Coordinate.Y)
     }
+
+
+def _check_fixed_momentum(potential: Potential, energy: Energy, plane: Slice, ranges: dict[Coordinate, Range]) -> None:
+    """Raise ValueError if a fixed momentum takes more than all kinetic energy between these positions, in units of the well."""
+    units, level = potential.units, highest_energy(energy) / potential.units.energy
+    x, y = np.meshgrid(*(np.linspace(*ranges[coordinate], _SCAN_SIDE) for coordinate in (Coordinate.X, Coordinate.Y)))
+    largest = units.momentum * float(np.sqrt(2.0 * max(level - np.nanmin(potential.in_well_units.value(x, y)), 0.0)))
+    for coordinate, value in plane.fixed:
+        if coordinate in MOMENTA and abs(value) > largest:
+            raise ValueError(
+                f"{coordinate.key}={value:.6g}: no start on {plane.title} has a real {plane.decided.key} at "
+                f"energy={highest_energy(energy):.6g}; must be at most {largest:.4g} in magnitude"
+            )
 
 
 def _momentum_range(potential: Potential, energy: float, ranges: dict[Coordinate, Range]) -> Range:

@@ -222,7 +222,9 @@ class Slice:
             doubled = 2.0 * left - self._square_of_others(start)
         found = self.sign * np.sqrt(np.where(doubled >= 0, doubled, np.nan))
         if self.decided is Coordinate.SPEED:
-            start[Coordinate.PX], start[Coordinate.PY] = _velocity(start, found)
+            with np.errstate(invalid="ignore"):
+                # At the centre of a body the speed is infinite.
+                start[Coordinate.PX], start[Coordinate.PY] = _velocity(start, found)
         else:
             start[self.decided] = found
         return np.column_stack([start[coordinate] for coordinate in STATE])

@@ -21,7 +21,7 @@ import numpy as np
 from engine.dynamics.batch import OrbitBatch, propagate_batch
 from engine.dynamics.fates import CHAOS_THRESHOLD, MIN_REGULAR_TIME, Fate, describe_fate, is_chaotic, outcome_of
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_rows import exits_of_orbit
 from engine.invariant_sets.birkhoff_averages import CERTIFIED_DIGITS, REGULAR_DIGITS, WINDOWS, count_agreeing_digits
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import TIME
@@ -160,7 +160,7 @@ def compute_birkhoff_digits(
 
 def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> BirkhoffDigits:
     """`compute_birkhoff_digits` of a state (1, 4) in units of the well."""
-    curves = exit_curves(potential, float(potential.energy(start)[0]))[None]
+    curves = exits_of_orbit(potential, float(potential.energy(start)[0]))[0][None]
     orbit = OrbitBatch.from_starts(start, np.zeros(1, np.int64))
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
@@ -218,7 +218,7 @@ def evaluate_indicators(orbit: Orbit, digits: BirkhoffDigits | None = None) -> t
     judged: list[tuple[Verdict | None, str]]
     if orbit.fate == Fate.BOUNDED:
         judged = [_judge_sali(orbit), _judge_exponent(orbit), _judge_halves(orbit)]
-        judged += [_judge_digits(digits)] if digits is not None else []
+        judged += [_judge_digits(orbit, digits)] if digits is not None else []
     elif orbit.fate >= 1:
         judged = [_judge_sali_inside(orbit), _judge_growth_inside(orbit), (None, _describe_escape(orbit))][: len(values)]
     else:
@@ -338,9 +338,9 @@ def _judge_halves(orbit: Orbit) -> tuple[Verdict, str]:
     return verdict, f"Averages over both halves of the orbit agree to {value:.1f} digits, {reason}."
 
 
-def _judge_digits(digits: BirkhoffDigits) -> tuple[Verdict, str]:
+def _judge_digits(orbit: Orbit, digits: BirkhoffDigits) -> tuple[Verdict, str]:
     if not digits.digits.size:
-        return Verdict.UNDECIDED, "No windows to compare: the orbit is too short or runs along an axis."
+        return Verdict.UNDECIDED, f"No windows to compare: {_reason_without_windows(orbit)}."
     window, value = float(digits.windows[-1]), float(digits.digits[-1])
     chaotic = CHAOTIC_DIGITS[min(WINDOWS, key=lambda known: abs(known - window / digits.time_unit))]
     if value >= CERTIFIED_DIGITS:
@@ -350,3 +350,13 @@ def _judge_digits(digits: BirkhoffDigits) -> tuple[Verdict, str]:
     else:
         verdict, reason = Verdict.UNDECIDED, f"neither below {chaotic:g}, as in chaos, nor {CERTIFIED_DIGITS:g}, as on a torus"
     return verdict, f"Averages over two windows of T = {format_time(window)} agree to {value:.1f} digits, {reason}."
+
+
+def _reason_without_windows(orbit: Orbit) -> str:
+    """Why a bounded orbit has no Birkhoff digits, see `compute_birkhoff_digits`."""
+    if orbit.potential is not None and orbit.potential.centres:
+        return "the fixed steps of these averages cannot pass close to a body"
+    shortest = 2.0 * WINDOWS[0] * orbit.time_unit
+    if orbit.t[-1] < shortest:
+        return f"t = {format_time(float(orbit.t[-1]))} is too short; the shortest two take t = {format_time(shortest)}"
+    return "the orbit runs along an axis"

@@ -37,6 +37,8 @@ class OrbitVerdict(OrbitResult):
         The indicators that decide on the character, with their values; empty if none does.
     outcomes
         Those of the potential, see `Potential.outcomes`; empty if they are not known.
+    exits_unknown
+        Why the exits over saddles are not known at its energy, see `Orbit`; empty if they are.
     """
 
     fate: int
@@ -46,6 +48,7 @@ class OrbitVerdict(OrbitResult):
     character: Verdict | None
     evidence: str
     outcomes: tuple[Outcome, ...] = field(default=(), repr=False)
+    exits_unknown: str = ""
     codes: ClassVar = {"fate": Fate, "certificate": Certificate}
 
     @property
@@ -53,8 +56,17 @@ class OrbitVerdict(OrbitResult):
         """Whether the orbit can never escape, which its energy proves."""
         return self.certificate is Certificate.CLOSED
 
+    @property
+    def outcome(self) -> str:
+        """The fate in a word or two."""
+        return "not known" if self._may_have_left else name_fate(self.fate, self.outcomes)
+
     def describe(self) -> str:
-        """The verdict in one sentence."""
+        """The verdict in one sentence, and in a second one why exits are not known, where they are not."""
+        unknown = f" Exits are not known at this energy: {self.exits_unknown}." if self.exits_unknown else ""
+        return self._describe_fate() + unknown
+
+    def _describe_fate(self) -> str:
         crossings, time = f"{format_count(self.crossings, 'upward crossing')} of y = 0", format_time(self.t_end)
         if self.fate >= 1:
             kind = f"after {crossings}" if self.crossings else "directly, without crossing y = 0 upward"
@@ -68,7 +80,7 @@ class OrbitVerdict(OrbitResult):
             case Certificate.QUASI_PERIODIC:
                 return f"Bounded until t = {time} and probably for ever ({reason}){self._decided}, with {crossings}."
             case _:
-                return f"Bounded until t = {time}{self._decided}, with {crossings}."
+                return f"{self._stays.capitalize()} until t = {time}{self._decided}, with {crossings}."
 
     def summarize(self) -> str:
         """The verdict in a few words, for lists."""
@@ -76,7 +88,17 @@ class OrbitVerdict(OrbitResult):
             return f"{name_fate(self.fate, self.outcomes)} at t = {format_time(self.t_end, digits=5)}{self._inside}"
         if self.character is None:
             return name_fate(self.fate, self.outcomes)
-        return f"bounded {'for ever' if self.is_bounded_for_ever else f'until t = {format_time(self.t_end)}'}, {self.character}"
+        until = "for ever" if self.is_bounded_for_ever else f"until t = {format_time(self.t_end)}"
+        return f"{self._stays} {until}, {self.character}"
+
+    @property
+    def _may_have_left(self) -> bool:
+        """Whether it has not ended, but may have passed an exit that is not known."""
+        return self.fate == Fate.BOUNDED and bool(self.exits_unknown)
+
+    @property
+    def _stays(self) -> str:
+        return "followed" if self._may_have_left else "bounded"
 
     @property
     def _decided(self) -> str:
@@ -125,7 +147,8 @@ def judge_orbit(orbit: Orbit, digits: BirkhoffDigits | None = None) -> OrbitVerd
     character = _combine(conclusions) if orbit.fate == Fate.BOUNDED else _character_inside(conclusions)
     certificate = _certificate(orbit, digits, Verdict.CHAOTIC in conclusions)
     evidence = _evidence(indicators, character)
-    return OrbitVerdict(orbit.fate, float(orbit.t[-1]), orbit.crossings, certificate, character, evidence, orbit.outcomes)
+    t_end, known = float(orbit.t[-1]), (orbit.outcomes, orbit.exits_unknown)
+    return OrbitVerdict(orbit.fate, t_end, orbit.crossings, certificate, character, evidence, *known)
 
 
 def _combine(conclusions: Sequence[Verdict | None]) -> Verdict:

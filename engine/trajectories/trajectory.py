@@ -13,7 +13,7 @@ from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from engine.dynamics.fates import Fate, OrbitResult
 from engine.dynamics.orbit_steps import OrbitSteps, record_orbit
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.exit_rows import exit_curves
+from engine.exits.exit_rows import exits_of_orbit
 from engine.invariant_sets.birkhoff_averages import compare_halves
 from engine.potentials.compiled import kernels_of
 from engine.potentials.outcomes import Outcome
@@ -21,7 +21,7 @@ from engine.potentials.potential import Potential
 from engine.potentials.stored_potential import describe_potential
 from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
-from engine.taylor.kernels.dense_output import sample_deviations, sample_path
+from engine.taylor.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
 from engine.validation import checked_state, checked_t_max, checks_types
 
 if TYPE_CHECKING:
@@ -39,6 +39,8 @@ _MAX_SAMPLES = 500_000
 @dataclass(frozen=True, eq=False, repr=False)
 class Orbit(OrbitResult):
     """One orbit, dimensionless, sampled at n evenly spaced times from 0 to the escape or t_max; arrays are read-only.
+
+    An orbit at rest on a saddle at exactly its energy is bounded; it ends where rounding carries it off the saddle.
 
     Attributes
     ----------
@@ -67,6 +69,9 @@ class Orbit(OrbitResult):
         Unit of time of the well before rounding, 1/ω, in which the chaos indicators measure the length of an orbit.
     potential
         The `Potential`; None for an orbit that was not integrated here, which has no picture of its path.
+    exits_unknown
+        Why the exits over saddles are not known at its energy; empty if they are. Without them no fate is an exit, and
+        `Fate.BOUNDED` says only that the orbit has not ended otherwise by t_max.
     """
 
     t: np.ndarray = field(metadata=TIME)
@@ -85,6 +90,7 @@ class Orbit(OrbitResult):
     certificate: Certificate
     time_unit: float = field(default=1.0, metadata=TIME)
     potential: Potential | None = field(default=None, repr=False)
+    exits_unknown: str = ""
     codes: ClassVar = {"fate": Fate, "certificate": Certificate}
 
     @property
@@ -96,6 +102,28 @@ class Orbit(OrbitResult):
     def digits_of_halves(self) -> float:
         """The digits, 0 to 16, to which Birkhoff averages over both halves of the orbit agree: many on a torus."""
         return compare_halves(self.x, self.y)
+
+    def numbers(self) -> dict[str, Any]:
+        """The scalars by name; why exits are unknown where they are."""
+        return {name: value for name, value in super().numbers().items() if name != "exits_unknown" or value}
+
+    def find_section_crossings(self) -> np.ndarray:
+        """(n, 2) x and px at the upward crossings of y = 0, dimensionless, in order of time; n equals `crossings`.
+
+        The start is not counted. Between two samples on either side of y = 0 the Taylor series of the first is used; where steps
+        are shorter than the distance of the samples, as near a body, that of the step. Raises ValueError if the orbit has no
+        potential.
+        """
+        if self.potential is None:
+            raise ValueError("this orbit has no potential; must be one of `integrate_orbit`")
+        units, kernels = self.potential.units, kernels_of(self.potential.in_well_units)
+        samples = np.stack([self.x, self.y, self.px, self.py]) / units.state[:, None]
+        times = self.t / units.time
+        steps = trace_steps(kernels, samples[:, 0], times[-1], len(self.potential.outcomes))
+        short = steps[np.isin(steps[:, 4], _starts_of_short_steps(times, steps[:, 4]))]
+        every_time, first = np.unique(np.concatenate([times, short[:, 4]]), return_index=True)
+        path = np.concatenate([samples, short[:, :4].T], axis=1)[:, first]
+        return find_crossings(kernels, path, every_time) * [units.length, units.momentum]
 
     def to_xarray(self) -> xr.Dataset:
         """The samples along t, with the outcome and the potential as attributes; it can be written as NetCDF and Zarr."""
@@ -117,7 +145,8 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     Fate, escape time and crossings are identical to those of a map pixel with the same start. The deviation vectors obey eq. 4 of
     Zotos (2014), and SALI is its eq. 9. The growth of the first vector gives the finite-time Lyapunov exponent (Benettin,
     Galgani, Giorgilli & Strelcyn 1980, Meccanica 15, 9; Skokos 2010, Lect. Notes Phys. 790, 63). The deviation vectors have no
-    influence on the integration steps.
+    influence on the integration steps. Where the exits are not defined at its energy, see `find_lyapunov_orbits`, the orbit is
+    followed without them, and `Orbit.exits_unknown` says why.
 
     Parameters
     ----------
@@ -154,14 +183,16 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
 def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution: Execution) -> Orbit:
     """`integrate_orbit` in units of the well."""
     energy = float(potential.energy(start))
-    recorded = record_orbit(potential, start, exit_curves(potential, energy), t_max, execution)
+    curves, exits_unknown = exits_of_orbit(potential, energy)
+    recorded = record_orbit(potential, start, curves, t_max, execution)
     times, (x, y, px, py), sali, exponent = _sample_orbit(potential, start, recorded, execution)
     arrays = (times, x, y, px, py, sali, exponent, x * x + y * y)
     for array in arrays:
         read_only(array)
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     certificate = _certificate(potential, energy, fate)
-    return Orbit(*arrays, fate, escape_time, crossings, energy_error, energy, certificate, potential.exact_time_unit)
+    numbers = fate, escape_time, crossings, energy_error, energy, certificate, potential.exact_time_unit
+    return Orbit(*arrays, *numbers, exits_unknown=exits_unknown)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
@@ -179,8 +210,11 @@ def _sample_orbit(
         return np.zeros(1), start[:, None].copy(), np.full(1, np.sqrt(2.0)), np.full(1, np.nan)
     kernels = kernels_of(potential)
     times = np.linspace(0.0, t_end, _sample_count(t_end, len(steps)))
-    path = sample_path(kernels, steps, times, execution)
-    sali, growth = sample_deviations(kernels, path, times, DEVIATION_VECTORS, execution)
+    every_time = np.union1d(times, _starts_of_short_steps(times, steps[:, 4]))
+    path = sample_path(kernels, steps, every_time, execution)
+    sali, growth = sample_deviations(kernels, path, every_time, DEVIATION_VECTORS, execution)
+    sampled = np.searchsorted(every_time, times)
+    path, sali, growth = np.ascontiguousarray(path[:, sampled]), sali[sampled], growth[sampled]
     exponent = np.full_like(times, np.nan)
     with np.errstate(over="ignore"):
         # The reciprocal of a very short time can overflow.
@@ -188,6 +222,16 @@ def _sample_orbit(
     return times, path, sali, exponent
 
 
+def _starts_of_short_steps(times: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """The starts (m,) of the steps in those intervals between samples that contain whole steps, as near a body.
+
+    Deviation vectors are carried over each interval by one series, which is valid for about one step.
+    """
+    interval = np.searchsorted(times, starts, side="right") - 1
+    contains_step = np.bincount(interval, minlength=times.size) > 1
+    return starts[contains_step[interval]]
+
+
 def _sample_count(t_end: float, steps: int) -> int:
-    """Number of samples: at least one per integration step, which the tangent flow needs, and more for short orbits."""
+    """Number of samples: at least one per integration step, and more for short orbits."""
     return max(int(np.clip(t_end / _SAMPLE_INTERVAL, _MIN_SAMPLES, _MAX_SAMPLES)), steps) + 1

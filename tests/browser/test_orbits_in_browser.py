@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from engine import CASES, Plane, find_section_crossings, integrate_orbit, start_states
+from engine import CASES, Plane, integrate_orbit, start_states
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
@@ -89,7 +89,7 @@ def test_the_section_of_an_orbit_is_drawn_on_its_plane(for_orbits: ExplorerPage)
     drawn = for_orbits.model_data("sections")
     marks = for_orbits.model_data("starts")
     state = start_states(CASES["I"], Plane.X_PX, 0.19, np.array(marks["x"]), np.array(marks["y"]))[0]
-    points = find_section_crossings(CASES["I"], integrate_orbit(CASES["I"], state, 1e5))
+    points = integrate_orbit(CASES["I"], state, 1e5).find_section_crossings()
     np.testing.assert_allclose(drawn["x"], points[: len(drawn["x"]), 0], atol=1e-5)
     np.testing.assert_allclose(drawn["y"], points[: len(drawn["y"]), 1], atol=1e-5)
 

@@ -36,7 +36,6 @@ from engine import (
     evaluate_indicators,
     find_divergent_start,
     find_lyapunov_orbits,
-    find_section_crossings,
     find_stable_manifolds,
     integrate_orbit,
     judge_orbit,
@@ -224,8 +223,8 @@ def test_single_orbits(name: str, scaling: Scaling) -> None:
     for field, factor in factors.items():
         np.testing.assert_array_equal(getattr(scaled, field), factor * getattr(orbit, field), field)
     assert [verdict.conclusion for verdict in verdicts(scaled)] == [verdict.conclusion for verdict in verdicts(orbit)]
-    crossings = find_section_crossings(potential, orbit)
-    scaled_crossings = find_section_crossings(scaling.potential(potential), scaled)
+    crossings = orbit.find_section_crossings()
+    scaled_crossings = scaled.find_section_crossings()
     np.testing.assert_array_equal(scaled_crossings, crossings * [scaling.length, scaling.momentum])
 
 

@@ -24,6 +24,9 @@ from engine import (
     SweepSpec,
     compute_map,
     compute_statistics,
+    find_lyapunov_orbits,
+    find_multipliers,
+    find_section_crossings,
     integrate_orbit,
     open_result,
     parse_formula,
@@ -129,11 +132,22 @@ WRONG_CALLS = (
     ('find_divergent_start("III", Plane.X_PX, 0.45, 0.1, 0.0)', "potential='III': must be a Potential"),
     ('find_lyapunov_orbits("III", 0.45)', "potential='III': must be a Potential"),
     ("find_multipliers(III, orbit)", "orbit=…: must be a LyapunovOrbit"),
+    ('find_multipliers(CASES["I"], find_lyapunov_orbits(III, 0.45)[0])', "potential=I: must be that of the orbit, III"),
+    ('find_section_crossings(CASES["I"], orbit)', "potential=I: must be that of the orbit, III"),
+    ("find_section_crossings(III.in_rotating_frame(0.1), orbit)", "potential=III: must be that of the orbit, III"),
     ('find_lyapunov_orbits(III, "high")', "energy='high': must be a finite number, at most 1e+09 in magnitude"),
     ('find_stable_manifolds("III", 0.45)', "potential='III': must be a Potential"),
     ("find_stable_manifolds(III, 0.45, images=0)", "images=0: must be an integer from 1 to 6"),
     ("find_stable_manifolds(III, 0.45, window=3)", "window=3: must be (x_low, x_high, ordinate_low, ordinate_high)"),
     ('default_window("III", Plane.X_PX, 0.45)', "potential='III': must be a Potential"),
+    (
+        'default_window(POTENTIALS["HH"], Slice(C.X, C.Y, fixed=((C.PX, 100.0),)), 0.1)',
+        "px=100: no start on (x, y), px = 100 has a real py at energy=0.1; must be at most 0.447",
+    ),
+    (
+        "default_window(III, Slice(C.X, C.H, fixed=((C.Y, 0.5), (C.PY, -2.0))), (0.1, 0.3))",
+        "py=-2: no start on (x, h), py = -2, y = 0.5, px > 0 has a real px at energy=0.3; must be at most 0.5916 in magnitude",
+    ),
     ("default_window(well, Plane.X_PX, -1.0)", "energy=-1.0: the interior is empty on (x, px); must be at least about 1e-5 abov"),
     ('start_states("III", Plane.X_PX, 0.45, np.zeros(1), np.zeros(1))', "potential='III': must be a Potential"),
     ('start_states(III, Plane.X_PX, 0.45, "a", "b")', "x='a': must be an array of numbers with rows of equal length"),
@@ -317,6 +331,19 @@ def test_motion_without_a_well_is_not_called_bounded(formula: str) -> None:
 def test_a_misspelt_argument_is_answered_with_the_name_of_the_function() -> None:
     with pytest.raises(TypeError, match=r"^sample_orbits\(\) got an unexpected keyword argument 't_max'$"):
         sample_orbits(CASES["III"], [(0.1, 0.0, 0.0, 0.3)], (0.0, 1.0), t_max=5.0)  # type: ignore[call-arg]
+
+
+def test_functions_of_a_potential_and_its_orbit_are_deprecated_and_agree_with_the_methods() -> None:
+    case = CASES["I"]
+    orbit, exit_orbit = integrate_orbit(case, (0.1, 0.0, 0.05, 0.3), 50.0), find_lyapunov_orbits(case, 0.19)[0]
+    for function, one in ((find_section_crossings, orbit), (find_multipliers, exit_orbit)):
+        name = function.__name__
+        with pytest.warns(
+            DeprecationWarning, match=rf"^{name}\(potential, orbit\) is deprecated: use orbit\.{name}\(\)$"
+        ) as caught:
+            found = function(case, one)
+        assert caught[0].filename == __file__
+        np.testing.assert_array_equal(found, getattr(one, name)())
 
 
 def test_a_file_that_cannot_be_opened_is_named(tmp_path: Path) -> None:

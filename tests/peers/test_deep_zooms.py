@@ -56,13 +56,13 @@ def long_fates(whole: EscapeMap) -> np.ndarray:
 @pytest.mark.skipif(np.finfo(Long).nmant < 63, reason="needs a long double of 80 bits")
 @pytest.mark.parametrize("seed", [1, 2, 4, 5])
 @pytest.mark.parametrize("width", [1e-6, 1e-9, 1e-12, 2e-14])
-def test_the_estimated_share_of_lost_pixels_covers_the_wrong_ones(seed: int, width: float) -> None:
+def test_the_estimated_share_of_lost_pixels_covers_the_wrong_ones_and_is_not_much_larger(seed: int, width: float) -> None:
     whole = zoomed(seed, width)
     escaped = whole.fate > 0
     wrong = float(np.mean((long_fates(whole) != whole.fate)[escaped]))
     assert whole.rounded_share is not None
-    # The estimate also counts crossings and escape times that change; a few wrong pixels may be between those sampled.
-    assert wrong <= whole.rounded_share + 0.02
+    # The estimate also counts crossings that change, and pixels that are right only on the map.
+    assert wrong - 0.02 <= whole.rounded_share <= 4.0 * wrong + 0.04
 
 
 def test_an_ordinary_map_has_no_estimate() -> None:
@@ -72,5 +72,5 @@ def test_an_ordinary_map_has_no_estimate() -> None:
 def test_the_estimate_rises_with_the_depth_of_the_zoom() -> None:
     shares = [zoomed(2, width).rounded_share or 0.0 for width in (1e-6, 1e-9, 2e-14)]
     assert shares == sorted(shares)
-    assert shares[0] < 0.1
-    assert shares[2] > 0.5
+    assert shares[1] < 0.06
+    assert shares[2] > 0.3

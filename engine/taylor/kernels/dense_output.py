@@ -28,13 +28,15 @@ def trace_orbit(
     """Propagate one orbit until it escapes or to `t_max`, and yield its steps in pieces of limited length.
 
     orbits: arrays of length 1, changed in place. Yields (m, 5) x, y, px, py, t at the start of each step of a piece, and the time
-    at which the piece ends. Raises CancelledError when cancelled.
+    at which the piece ends: before `t_max` also for a bounded orbit that rounding carries over the saddle of a closed channel, on
+    which it rests. Raises CancelledError when cancelled.
     """
     while orbits.pending[0]:
         execution.raise_if_cancelled()
         steps = np.empty((_CHUNK, 5))
         count = kernels.propagate(np.zeros(1, np.int64), t_max, True, tolerance, VECTOR * _CHUNK, 0, exits, orbits, steps)
-        yield steps[:count], t_max if orbits.fate[0] == BOUNDED else float(orbits.t[0])
+        goes_on = orbits.fate[0] == BOUNDED and orbits.t[0] == steps[count - 1, 4]
+        yield steps[:count], t_max if goes_on else float(orbits.t[0])
 
 
 def trace_pieces(

@@ -13,7 +13,6 @@ from engine import (
     classify_orbits,
     compute_map,
     find_lyapunov_orbits,
-    find_multipliers,
     integrate_orbit,
 )
 from engine.exits.exit_rows import exit_curves, exit_gates
@@ -72,7 +71,7 @@ def test_the_orbit_leads_from_rest_to_rest_and_its_ends_enclose_the_saddles(pote
     start = [orbit.x[0], orbit.y[0], 0.0, 0.0]
     end = solve_ivp(equations(potential), (0.0, 0.5 * orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
     np.testing.assert_allclose(end, [orbit.x[100], orbit.y[100], 0.0, 0.0], rtol=0, atol=1e-9)
-    assert abs(find_multipliers(potential, orbit)[0]) > 10.0
+    assert abs(orbit.find_multipliers()[0]) > 10.0
     ends, saddles = orbit.half_path[[0, -1]], potential.saddles[np.array([orbit.channel, *orbit.others]) - 1]
     share = (saddles - ends[0]) @ (ends[1] - ends[0]) / np.sum((ends[1] - ends[0]) ** 2)
     assert np.all((share > 0.0) & (share < 1.0))
@@ -177,8 +176,13 @@ def test_along_a_parameter_an_exit_has_the_lowest_of_its_numbers() -> None:
 
 def test_an_exit_without_an_orbit_between_its_outer_walls_is_refused() -> None:
     # The motion along the maximum is above its barrier and comes to rest only once.
-    with pytest.raises(ValueError, match=r"channels 1\+2 are one exit above V = 0\.166667, .* no Lyapunov orbit .*Separable"):
+    with pytest.raises(ValueError, match=r"channels 1\+2 are one exit above V = 0\.166667, .* no orbit at rest .*Separable"):
         find_lyapunov_orbits(POTENTIALS["Separable"], 1.01 / 6)
+
+
+def test_a_sharp_bend_just_above_the_maximum_is_named() -> None:
+    with pytest.raises(ValueError, match="has too sharp a bend for a smooth curve; choose a higher energy"):
+        find_lyapunov_orbits(SYMMETRIC, 1.0001 * MAXIMUM)
 
 
 def test_an_exit_all_around_the_well_is_refused() -> None:

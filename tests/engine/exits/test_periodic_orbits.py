@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, find_multipliers
+from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.lyapunov_orbits import exit_curve_over_chord
 from engine.exits.periodic_orbits import PeriodicOrbit, find_periodic_orbit
 from engine.potentials.catalogue import POTENTIALS
@@ -171,7 +171,7 @@ def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:
 @pytest.mark.parametrize("potential", [hill(), CASES["III"], POTENTIALS["C5"]], ids=lambda potential: potential.name)
 def test_multipliers_of_a_lyapunov_orbit_are_those_of_the_same_orbit_by_continuation(potential: Potential) -> None:
     energy = -2.0 if potential.rotation else 1.5 * potential.escape_energy
-    found = find_multipliers(potential, first_orbit(potential, energy))
+    found = first_orbit(potential, energy).find_multipliers()
     expected = orbit_of(potential, energy, 1).multipliers
     assert found[0] == pytest.approx(expected[0], rel=1e-7)
     assert abs(np.prod(found) - 1.0) < 1e-8
@@ -186,4 +186,4 @@ def test_plots_show_the_whole_closed_path_of_an_orbit_in_a_rotating_frame() -> N
 def test_the_exit_over_a_chord_in_a_rotating_frame_is_the_line() -> None:
     well = hill().in_well_units
     orbit = first_orbit(well, -2.0 / hill().units.energy)
-    assert exit_curve_over_chord(well, orbit) is orbit.curve
+    assert exit_curve_over_chord(orbit) is orbit.curve

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import classify_orbits, find_lyapunov_orbits, parse_formula
+from engine import POTENTIALS, classify_orbits, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.exits.exit_shapes import line_points
 from engine.exits.exit_tables import LARGEST_ERROR, tabulate_exits
@@ -142,3 +142,15 @@ def test_orbits_that_have_crossed_the_line_do_not_return_to_the_well(energy: flo
         far = int(np.argmax(distance > line + 0.3))
         assert far
         assert distance[:far].min() > 0.8 * np.abs(orbit.x).min()
+
+
+# As in the table of docs/exits.md.
+@pytest.mark.parametrize(
+    ("name", "highest"),
+    [("Hill", -0.944), ("Earth-Moon", -1.041), ("Star cluster", -0.837), ("Barred galaxy", -3009.0), ("Logarithmic bar", -0.308)],
+)
+def test_exits_end_where_the_document_says(name: str, highest: float) -> None:
+    step = 1e-3 * abs(highest)
+    assert find_lyapunov_orbits(POTENTIALS[name], highest - step)
+    with pytest.raises(ValueError, match="does not end on the walls"):
+        find_lyapunov_orbits(POTENTIALS[name], highest + step)

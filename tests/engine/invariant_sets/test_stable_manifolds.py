@@ -205,20 +205,20 @@ def test_multiplier_near_the_saddle_follows_from_its_hessian(name: str) -> None:
     unstable, stable = np.linalg.eigvalsh([[vxx, vxy], [vxy, vyy]])
     (orbit, *_) = find_lyapunov_orbits(potential, potential.escape_energy + 1e-7)
     expected = np.exp(2 * np.pi * np.sqrt(-unstable / stable))
-    assert UnstableManifold.from_orbit(potential, orbit).multiplier == pytest.approx(expected, rel=1e-5)
+    assert UnstableManifold.from_orbit(orbit).multiplier == pytest.approx(expected, rel=1e-5)
 
 
 @each
 def test_start_states_have_the_energy_and_lie_inside_the_exit(name: str, energy: float) -> None:
     for orbit in find_lyapunov_orbits(CASES[name], energy):
-        tube = UnstableManifold.from_orbit(CASES[name], orbit)
+        tube = UnstableManifold.from_orbit(orbit)
         states = tube.start_states(np.geomspace(1e-8, 1e-3, 20))
         np.testing.assert_allclose(CASES[name].energy(states), energy, rtol=0, atol=1e-15)
         assert not np.any(classify_orbits(CASES[name], energy, states, 1e-3).fate)
 
 
 def test_passages_agree_with_scipy() -> None:
-    tube = UnstableManifold.from_orbit(CASES["I"], find_lyapunov_orbits(CASES["I"], 0.15)[0])
+    tube = UnstableManifold.from_orbit(find_lyapunov_orbits(CASES["I"], 0.15)[0])
     phases = np.linspace(0.0, 1.0, 21)
     passages = tube.find_passages(phases, 2)
     early = np.flatnonzero(passages[:, 1, 2] < np.nanmedian(passages[:, 1, 2]))[::3]
@@ -235,7 +235,7 @@ def test_passages_agree_with_scipy() -> None:
 
 
 def test_orbits_have_no_passages_after_the_escape() -> None:
-    tube = UnstableManifold.from_orbit(CASES["III"], find_lyapunov_orbits(CASES["III"], 0.45)[0])
+    tube = UnstableManifold.from_orbit(find_lyapunov_orbits(CASES["III"], 0.45)[0])
     phases = np.linspace(0.0, 1.0, 200)
     passages = np.isfinite(tube.find_passages(phases, 5)[:, :, 0]).sum(axis=1)
     starts = tube.start_states(tube.displacements(phases))
@@ -246,7 +246,7 @@ def test_orbits_have_no_passages_after_the_escape() -> None:
 
 
 def test_phases_zero_and_one_are_the_same_orbit() -> None:
-    tube = UnstableManifold.from_orbit(CASES["I"], find_lyapunov_orbits(CASES["I"], 0.15)[0])
+    tube = UnstableManifold.from_orbit(find_lyapunov_orbits(CASES["I"], 0.15)[0])
     np.testing.assert_allclose(*tube.find_passages(np.array([0.0, 1.0]), 1), rtol=0, atol=1e-6)
 
 

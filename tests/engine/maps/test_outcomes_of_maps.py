@@ -9,12 +9,17 @@ import numpy as np
 import pytest
 
 from engine import (
+    POTENTIALS,
+    Coordinate,
     CurvesSpec,
     EscapeMap,
     Fate,
+    MapSpec,
     Plane,
+    Slice,
     classify_orbits,
     compute_curves,
+    compute_map,
     compute_origin_fates,
     compute_statistics,
     open_result,
@@ -87,3 +92,14 @@ def test_outcomes_of_orbits_come_back_from_a_file(tmp_path: Path) -> None:
     opened = open_result(tmp_path / "orbits.nc")
     assert opened.outcomes == found.outcomes == DISC.outcomes
     assert compute_statistics(opened).channel_counts == compute_statistics(found).channel_counts
+
+
+@pytest.mark.parametrize(("name", "x", "energy"), [("Hill", 0.0, -1.9), ("Copenhagen", 0.5, -1.9)])
+@pytest.mark.parametrize(
+    "plane", [Plane.X_Y, Slice(Coordinate.X, Coordinate.Y, fixed=((Coordinate.THETA, 0.0),)), Plane.TANGENTIAL]
+)
+def test_a_start_at_the_centre_of_a_body_is_outside(name: str, x: float, energy: float, plane: Slice) -> None:
+    window = (x - 9e-4, x + 9e-4, -9e-4, 9e-4)
+    found = compute_map(MapSpec(POTENTIALS[name], plane, energy, (3, 3), window, t_max=20.0))
+    assert POTENTIALS[name].value(found.x[1], found.ordinate[1]) == -np.inf
+    assert (found.fate == Fate.OUTSIDE).all()

@@ -7,14 +7,15 @@ import pytest
 
 from engine import (
     CASES,
+    POTENTIALS,
     Fate,
     Plane,
     Potential,
     Verdict,
     classify_orbits,
-    find_section_crossings,
     integrate_orbit,
     judge_orbit,
+    sample_starts,
     start_states,
 )
 from engine.dynamics.section_points import find_section_points
@@ -39,7 +40,7 @@ def test_an_orbit_has_as_many_points_as_crossings(name: str, energy: float, esca
     for start in (escaping if escapes else bounded)[:8]:
         orbit = integrate_orbit(CASES[name], start, 300.0)
         assert orbit.crossings > 0
-        assert find_section_crossings(CASES[name], orbit).shape == (orbit.crossings, 2)
+        assert orbit.find_section_crossings().shape == (orbit.crossings, 2)
 
 
 @pytest.mark.parametrize(("name", "energy"), [("I", 0.12), ("II", 0.15), ("III", 0.24)])
@@ -48,14 +49,14 @@ def test_points_of_a_regular_orbit_agree_with_the_event_finder(name: str, energy
     orbit = integrate_orbit(CASES[name], start[0], 1000.0)
     assert judge_orbit(orbit).character is Verdict.NO_SIGN
     expected = find_section_points(CASES[name], start, orbit.crossings, 1000.0)[0]
-    np.testing.assert_allclose(find_section_crossings(CASES[name], orbit), expected, atol=1e-9)
+    np.testing.assert_allclose(orbit.find_section_crossings(), expected, atol=1e-9)
 
 
 def test_points_between_distant_samples_are_accurate() -> None:
     start = start_states(POTENTIAL, Plane.X_PX, ENERGY, np.array([0.1]), np.array([0.2]))[0]
     orbit = integrate_orbit(POTENTIAL, start, 1000.0)
     sparse = replace(orbit, **{name: getattr(orbit, name)[::10] for name in ("t", "x", "y", "px", "py")})
-    np.testing.assert_allclose(find_section_crossings(POTENTIAL, sparse), find_section_crossings(POTENTIAL, orbit), atol=1e-12)
+    np.testing.assert_allclose(sparse.find_section_crossings(), orbit.find_section_crossings(), atol=1e-12)
 
 
 def test_two_passages_between_samples_are_one_crossing() -> None:
@@ -65,16 +66,28 @@ def test_two_passages_between_samples_are_one_crossing() -> None:
     ends = replace(orbit, **{name: getattr(orbit, name)[[0, -1]] for name in ("t", "x", "y", "px", "py")})
     assert orbit.y[0] > 0.0 < orbit.y[-1]
     assert orbit.crossings == 1
-    np.testing.assert_allclose(find_section_crossings(potential, ends), find_section_crossings(potential, orbit), atol=1e-12)
+    np.testing.assert_allclose(ends.find_section_crossings(), orbit.find_section_crossings(), atol=1e-12)
 
 
 @pytest.mark.parametrize(("state", "crossings"), [((0.0, 0.0, 0.0, 0.5), 0), ((0.0, -1e-9, 0.0, 0.5), 1)])
 def test_a_start_on_the_section_is_not_counted(state: tuple[float, float, float, float], crossings: int) -> None:
     orbit = integrate_orbit(POTENTIAL, state, 1.0)
-    assert len(find_section_crossings(POTENTIAL, orbit)) == orbit.crossings == crossings
+    assert len(orbit.find_section_crossings()) == orbit.crossings == crossings
 
 
 def test_an_outside_start_has_no_points() -> None:
     orbit = integrate_orbit(POTENTIAL, (1.2, 1.2, 0.0, 1.2), 10.0)
     assert orbit.fate == Fate.OUTSIDE
-    assert find_section_crossings(POTENTIAL, orbit).shape == (0, 2)
+    assert orbit.find_section_crossings().shape == (0, 2)
+
+
+def test_points_of_orbits_past_a_body_are_all_found_and_allowed() -> None:
+    # Some pass the planet between two samples.
+    potential, energy = POTENTIALS["Hill"], -2.2
+    orbits = [integrate_orbit(potential, start, 300.0) for start in sample_starts(potential, energy, 8, seed=1)]
+    bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
+    assert len(bounded) > 2
+    for orbit in bounded:
+        x, px = orbit.find_section_crossings().T
+        assert x.size == orbit.crossings
+        assert np.all(potential.value(x, 0.0) + 0.5 * px**2 <= energy + 1e-8)

@@ -6,7 +6,20 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from engine import CASES, Certificate, Fate, Orbit, Plane, Verdict, classify_orbits, integrate_orbit, judge_orbit, start_states
+from engine import (
+    CASES,
+    POTENTIALS,
+    Certificate,
+    Fate,
+    Orbit,
+    Plane,
+    Verdict,
+    classify_orbits,
+    integrate_orbit,
+    judge_orbit,
+    sample_starts,
+    start_states,
+)
 from engine.dynamics.deviation_vectors import DEVIATION_VECTORS
 from tests.peers.dop853 import equations, variational_equations
 from tests.peers.exit_lines import exit_lines
@@ -293,6 +306,36 @@ def test_t_max_out_of_range_raises(t_max: float) -> None:
         integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 0.1], t_max)
 
 
-def test_a_far_too_high_energy_raises() -> None:
-    with pytest.raises(ValueError, match="energy="):
-        integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 100.0], 10.0)
+def test_an_orbit_of_a_far_too_high_energy_is_followed_without_exits() -> None:
+    orbit = integrate_orbit(CASES["I"], [0.0, 0.0, 0.0, 100.0], 10.0)
+    assert "no Lyapunov orbit was found" in orbit.exits_unknown
+    assert orbit.fate < 1
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("side", [-1.0, 0.0, 1.0])
+def test_an_orbit_at_rest_on_a_saddle_is_bounded_and_does_not_run_away(name: str, side: float) -> None:
+    saddle = CASES[name].saddles[0]
+    x, y = np.nextafter(saddle, saddle + side * saddle) if side else saddle
+    orbit = integrate_orbit(CASES[name], (x, y, 0.0, 0.0), 100.0)
+    assert orbit.energy == pytest.approx(CASES[name].escape_energy, abs=1e-16)
+    assert (orbit.fate, orbit.certificate) == (Fate.BOUNDED, Certificate.CLOSED)
+    assert np.hypot(orbit.x, orbit.y).max() < 1.01 * np.hypot(*saddle)
+
+
+def test_deviations_grow_as_the_distance_of_a_neighbour_past_a_body() -> None:
+    # Steps are much shorter there than the distance of the samples; the orbit passes the body at a distance of 0.013 at t = 3.13.
+    potential, start, distance = POTENTIALS["Hill"], np.array([-0.3, 0.0, 0.0, 2.5346]), 1e-9
+    units = potential.units.state
+    orbit = integrate_orbit(potential, start, 3.5)
+    neighbour = integrate_orbit(potential, start + distance * DEVIATION_VECTORS[0] * units, 3.5)
+    apart = (states_of(neighbour) - states_of(orbit))[-1] / units
+    assert orbit.lyapunov_exponent[-1] * 3.5 == pytest.approx(np.log(np.linalg.norm(apart) / distance), abs=1e-3)
+
+
+def test_orbits_around_a_body_are_not_called_chaotic_for_the_steps_past_it() -> None:
+    potential = POTENTIALS["Hill"]
+    orbits = [integrate_orbit(potential, start, 1000.0) for start in sample_starts(potential, -2.2, 6, seed=1)]
+    bounded = [orbit for orbit in orbits if orbit.fate == Fate.BOUNDED]
+    assert len(bounded) > 2
+    assert all(judge_orbit(orbit).character is Verdict.REGULAR for orbit in bounded)
