@@ -158,9 +158,11 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     served.pages = [page for _, page, _ in opened]
     for _, page, headers in opened:
         check_nonce(page, headers["Content-Security-Policy"])
-    status, text, _ = served.get("/app")
+    status, text, headers = served.get("/app")
     assert status == 503
     assert "All 2 places are taken." in text
+    # The page asks again by itself.
+    assert f"http-equiv=refresh content={headers['Retry-After']}>" in text
     assert served.get("/readiness")[0] == 503
     assert served.metric("sessions_open") == 2
     assert served.metric("pages_refused_total") == 1
