@@ -85,7 +85,12 @@ class Explorer:
             self._locked,
         )
         self.comparison = ComparisonPresenter(
-            self.state, jobs, self.maps, lambda sentence: self.analyses.note(compared=sentence), self._locked
+            self.state,
+            jobs,
+            self.maps,
+            lambda sentence: self.analyses.note(compared=sentence),
+            self.links.refuse_comparison,
+            self._locked,
         )
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)
