@@ -146,6 +146,22 @@ def test_routes_that_the_page_does_not_need_are_refused(path: str, served: Serve
     assert served.metric("sessions_created_total") == 0
 
 
+@pytest.mark.parametrize(
+    ("path", "host", "status"),
+    [
+        ("/app", "elsewhere.example:80", 421),
+        ("/", "elsewhere.example", 421),
+        ("/app/picture.png", "127.0.0.1.elsewhere.example", 421),
+        ("/static/js/bokeh.min.js", "localhost:1", 200),
+        # Probes ask for whatever host their network gives them.
+        ("/liveness", "elsewhere.example", 200),
+    ],
+)
+def test_other_hosts_are_refused(path: str, host: str, status: int, served: Served) -> None:
+    assert served.get(path, Host=host)[0] == status
+    assert served.metric("sessions_created_total") == 0
+
+
 def test_token_of_another_server_is_refused(served: Served) -> None:
     token = generate_jwt_token(generate_session_id(), signed=False, extra_payload={"arguments": {"h": ["0" * 2**20]}})
     assert upgrade(served, token, f"http://localhost:{served.port}") == 403
