@@ -6,6 +6,7 @@ import psutil
 
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import variable_name
+from engine.service import compiled_operations
 
 
 def resident_bytes() -> int:
@@ -24,6 +25,9 @@ def not_ready_reason(state: ProcessState) -> str | None:
     ceiling, memory = state.settings.memory_ceiling, resident_bytes()
     if ceiling and memory > ceiling:
         return f"The server holds {memory} bytes, above {variable_name('memory_ceiling')}={ceiling}."
+    if compiled_operations.is_nearly_full():
+        limit = f"{variable_name('compiled_operations')}={state.settings.compiled_operations}"
+        return f"Further typed potentials will soon be refused: {compiled_operations.used} of {limit}. Restart the server."
     return _full_reason(state)
 
 

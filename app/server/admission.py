@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import http.client
-import ipaddress
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,6 +16,7 @@ from tornado.web import HTTPError
 from app.runtime.health import not_ready_reason, refusal_reason
 from app.runtime.process_state import process_state
 from app.runtime.settings import variable_name
+from app.runtime.visitors import network_of
 
 LONGEST_LINK = 8192
 """Most characters of the address of a page."""
@@ -120,15 +120,6 @@ def admitted_picture(network: str) -> Iterator[None]:
         yield
     finally:
         _forget(state.link_pictures, network)
-
-
-def network_of(address: str) -> str:
-    """Return what is limited together: an IPv4 address, or the 64 bits of an IPv6 address that belong to a network."""
-    try:
-        parsed = ipaddress.ip_address(address)
-    except ValueError:
-        return address
-    return address if parsed.version == 4 else str(ipaddress.ip_network((parsed, 64), strict=False))
 
 
 def _forget(counts: Counter[str], network: str) -> None:

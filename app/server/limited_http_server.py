@@ -16,7 +16,8 @@ from tornado.httputil import HTTPConnection, HTTPHeaders, HTTPMessageDelegate, R
 from tornado.iostream import IOStream
 
 from app.runtime.process_state import process_state
-from app.server.admission import LONGEST_LINK, network_of
+from app.runtime.visitors import network_of
+from app.server.admission import LONGEST_LINK
 from app.server.routes import refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {

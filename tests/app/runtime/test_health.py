@@ -9,6 +9,7 @@ import pytest
 from app.runtime.health import not_ready_reason, refusal_reason, resident_bytes
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
+from engine.taylor.jit.compiled_operations import LARGEST_CODE, CompiledOperations
 
 HERE, ELSEWHERE = "192.0.2.1", "192.0.2.2"
 
@@ -68,6 +69,18 @@ def test_not_ready_above_memory_ceiling(state: ProcessState, monkeypatch: pytest
     state.settings = replace(state.settings, memory_ceiling=1000)
     monkeypatch.setattr("app.runtime.health.resident_bytes", lambda: 1001)
     assert not_ready_reason(state) == "The server holds 1001 bytes, above ESCAPE_EXPLORER_MEMORY_CEILING=1000."
+
+
+def test_not_ready_when_little_room_for_compiled_code_is_left(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
+    operations = CompiledOperations()
+    operations.most = state.settings.compiled_operations
+    monkeypatch.setattr("app.runtime.health.compiled_operations", operations)
+    assert not_ready_reason(state) is None
+    for number in range(5):
+        operations.add(f"potential {number}", LARGEST_CODE)
+    assert str(not_ready_reason(state)).endswith("ESCAPE_EXPLORER_COMPILED_OPERATIONS=250000. Restart the server.")
+    # The catalogue is served as before.
+    assert refusal_reason(state, HERE) is None
 
 
 def test_resident_memory_is_plausible() -> None:

@@ -23,7 +23,6 @@ from app.server.admission import (
     check_session,
     count_socket,
     forget_socket,
-    network_of,
     refusal_page,
 )
 
@@ -150,16 +149,3 @@ def test_a_full_server_sends_no_picture(state: ProcessState) -> None:
     with ExitStack() as pictures:
         assert ask_for_picture(pictures, "192.0.2.9") == 503
     assert state.metrics.registry.get_sample_value("escape_explorer_link_pictures_refused_total") == 1
-
-
-@pytest.mark.parametrize(
-    ("one", "other", "same"),
-    [
-        ("192.0.2.1", "192.0.2.2", False),
-        ("2001:db8::1", "2001:db8::ffff:1", True),
-        ("2001:db8::1", "2001:db8:0:1::1", False),
-        ("socket", "socket", True),
-    ],
-)
-def test_addresses_of_an_ipv6_network_are_one(one: str, other: str, same: bool) -> None:
-    assert (network_of(one) == network_of(other)) is same
