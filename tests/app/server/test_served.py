@@ -23,6 +23,7 @@ import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from app.browser.module_files import ADDRESS
+from app.server.log_format import LONGEST_MESSAGE
 from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
 
@@ -160,6 +161,21 @@ def test_routes_that_the_page_does_not_need_are_refused(path: str, served: Serve
 def test_other_hosts_are_refused(path: str, host: str, status: int, served: Served) -> None:
     assert served.get(path, Host=host)[0] == status
     assert served.metric("sessions_created_total") == 0
+
+
+@pytest.mark.parametrize("opening", ["exp(", "√(", "√", "("])
+@pytest.mark.parametrize("more", [{}, {"plane": "x,a=1:2"}], ids=["formula", "formula and plane"])
+def test_a_nested_formula_is_answered_with_few_lines_in_the_log(opening: str, more: dict[str, str], served: Served) -> None:
+    text = opening * 40 + "x" + ")" * 40 * opening.count("(")
+    written = served.log.stat().st_size
+    status, answer, _ = served.get(f"/app/picture.png?{urlencode({'case': 'typed', 'V': text, **more})}")
+    # The line of a request is written before the next one is answered.
+    served.get("/liveness")
+    lines = served.log.read_bytes()[written:].decode().splitlines()
+    assert (status, len(answer) < 300) == (400, True)
+    # Others say how late the event loop was.
+    assert len([line for line in lines if "loop_watch" not in line]) == 1
+    assert all(len(json.loads(line)["message"]) <= LONGEST_MESSAGE for line in lines)
 
 
 def test_token_of_another_server_is_refused(served: Served) -> None:
