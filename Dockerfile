@@ -1,5 +1,5 @@
-# Any Debian or Ubuntu image with Python 3.13 and pip.
-ARG BASE=python:3.13-slim
+# Any Debian or Ubuntu image with Python 3.13 and pip. A tag can be moved, a digest (python@sha256:…) cannot.
+ARG BASE=python:3.13.7-slim-bookworm
 
 FROM ${BASE} AS build
 RUN pip install --no-cache-dir uv

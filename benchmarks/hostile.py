@@ -20,14 +20,13 @@ import time
 from collections.abc import AsyncIterator, Iterator, Sequence
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass
-from ipaddress import IPv4Address
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from benchmarks.attacks import ATTACKS, do_nothing
 from benchmarks.load import CACHE_SENTENCE, Server, resident_megabytes, served, summary
-from benchmarks.simulated_sessions import NO_OPTIONS, Options, Record, SimulatedSession
+from benchmarks.simulated_sessions import NO_OPTIONS, Options, Record, SimulatedSession, visitor_headers
 from tests.deploy.proxy import ADDRESS_HEADER, Proxy, authorization, free_port, nginx, proxied
 
 LONGEST_WAIT_SECONDS = 3.0
@@ -69,7 +68,7 @@ class Effect:
 @asynccontextmanager
 async def visiting(place: Place, seed: int, record: Record) -> AsyncIterator[SimulatedSession]:
     """A session with its page open, of a visitor with an address of its own behind the proxy."""
-    headers = {**place.options.get("headers", {}), ADDRESS_HEADER: str(IPv4Address("10.0.0.0") + seed)}
+    headers = place.options.get("headers", {}) | visitor_headers(ADDRESS_HEADER, seed)
     session = SimulatedSession(place.address, seed, record, {**place.options, "headers": headers})
     await session.open()
     while not session.is_open:

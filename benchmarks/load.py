@@ -31,12 +31,11 @@ REST_SECONDS = 60.0
 """All sessions must end within this time after their sockets are closed."""
 
 SERVER_OPTIONS = (
+    "--use-xheaders",
     "--log-format=%(asctime)s %(levelname)s %(message)s",
     "--unused-session-lifetime=2000",
     "--check-unused-sessions=1000",
 )
-ONE_ADDRESS = {"ESCAPE_EXPLORER_PAGES_PER_ADDRESS": "1000"}
-"""All simulated visitors have the address of this machine."""
 
 CACHE_SENTENCE = "Kernel cache: empty when the first process started, shared by all."
 START_SECONDS = 240.0
@@ -131,7 +130,7 @@ def started(log: Path, **environment: str) -> Iterator[tuple[Server, subprocess.
         host = f"127.0.0.1:{probe.getsockname()[1]}"
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={host.split(':')[1]}"]
     command += [f"--allow-websocket-origin={host}", *SERVER_OPTIONS]
-    variables = {**os.environ, **ONE_ADDRESS, CACHE_VARIABLE: str(log.parent / "kernel cache"), **environment}
+    variables = {**os.environ, CACHE_VARIABLE: str(log.parent / "kernel cache"), **environment}
     with log.open("w") as output:
         process = subprocess.Popen(command, cwd=_ROOT, stdout=output, stderr=subprocess.STDOUT, env=variables)
     try:

@@ -12,6 +12,7 @@ import time
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from ipaddress import IPv4Address
 from typing import Any
 from urllib.parse import parse_qsl, urljoin
 
@@ -137,11 +138,17 @@ class Channel:
         self._socket.close()
 
 
+def visitor_headers(name: str, number: int) -> dict[str, str]:
+    """The header of a proxy that gives a visitor an address of his or her own."""
+    return {name: str(IPv4Address("10.0.0.0") + number)}
+
+
 class SimulatedSession:
-    """One session with random actions."""
+    """One session with random actions, of a visitor with an address of his or her own."""
 
     def __init__(self, address: str, seed: int, record: Record, options: Options = NO_OPTIONS) -> None:
-        self._address, self._options, self._record = address, options, record
+        headers = visitor_headers("X-Forwarded-For", seed) | options.get("headers", {})
+        self._address, self._options, self._record = address, {**options, "headers": headers}, record
         self._random = random.Random(seed)
         self._channel: Channel | None = None
         self._models: dict[str, str] = {}

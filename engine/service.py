@@ -67,6 +67,7 @@ from engine.warmup import (
     prepare_for_certificates,
     prepare_for_maps,
     prepare_kernels,
+    reserve_catalogue,
     seconds_until_ready_for_maps,
 )
 
@@ -170,6 +171,7 @@ __all__ = [
     "read_slice",
     "regularity_job",
     "require_package",
+    "reserve_catalogue",
     "run_map",
     "seconds_until_ready_for_maps",
     "short_fraction",

@@ -23,11 +23,13 @@ from engine.maps.compute import run_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
+from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.compiled import kernels_of
 from engine.potentials.potential import Potential
 from engine.slices.section import SECTION
 from engine.taylor.bound_kernels import is_generated
-from engine.taylor.jit.compiled_operations import CompiledCodeLimitError
+from engine.taylor.jit.compiled_operations import CompiledCodeLimitError, CompiledOperations, compiled_operations
+from engine.taylor.source.recurrence import generate_code
 from engine.trajectories.trajectory import integrate_orbit
 
 # Integration time, in units of the well, of the calls that trigger compilation.
@@ -186,6 +188,18 @@ def prepare_kernels(potential: Potential) -> None:
         _make_in_turn(lambda: compute_regularity(_compute_small_map(potential, potential.energy_at(0.5)), execution=_EXECUTION))
     if potential.channels and not potential.rotation:
         _make_in_turn(lambda: find_stable_manifolds(potential, potential.energy_at(1.01), images=1, execution=_EXECUTION))
+
+
+def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> None:
+    """Let the kernels of the catalogue always be compiled, whatever limit of compiled code others have reached.
+
+    Parameters
+    ----------
+    operations
+        What has the limit; by default that of this process.
+    """
+    wells = [potential.in_well_units for potential in POTENTIALS.values()]
+    operations.reserve(generate_code(well.form.definition, **well.setting._asdict()).digest for well in wells)
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:

@@ -29,8 +29,8 @@ from plots.palette import LIGHT, PATCH_EDGE, Entry
 RENDER_LOCK = threading.Lock()
 """Held by a thread while it draws and saves a figure."""
 
-MOST_PIXELS = 40_000_000
-"""Of a PNG file; at most 160 MB while it is drawn."""
+MOST_PIXELS = 20_000_000
+"""Of a PNG file, as of four maps 16 cm wide at 600 pixels per inch. A single map takes up to 50 bytes each to draw."""
 
 # The STIX fonts are part of Matplotlib; they have Greek letters, fractions and mathematical symbols.
 _FAMILY, _MATHS = ["STIXGeneral", "serif"], "stix"

@@ -6,6 +6,7 @@ import psutil
 
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import variable_name
+from engine.service import compiled_operations
 
 
 def resident_bytes() -> int:
@@ -24,24 +25,34 @@ def not_ready_reason(state: ProcessState) -> str | None:
     ceiling, memory = state.settings.memory_ceiling, resident_bytes()
     if ceiling and memory > ceiling:
         return f"The server holds {memory} bytes, above {variable_name('memory_ceiling')}={ceiling}."
+    if compiled_operations.is_nearly_full():
+        limit = f"{variable_name('compiled_operations')}={state.settings.compiled_operations}"
+        return f"Further typed potentials will soon be refused: {compiled_operations.used} of {limit}. Restart the server."
     return _full_reason(state)
 
 
-def refusal_reason(state: ProcessState) -> str | None:
+def refusal_reason(state: ProcessState, network: str) -> str | None:
     """Return a sentence that says why no session can be created; None when one can.
 
-    Weaker than readiness: sessions are created while the integrators are compiled, and wait on the page.
+    Weaker than readiness: sessions are created while the integrators are compiled, and wait on the page; and the only visitor of
+    an overloaded server may reload the page, whatever delays it.
+
+    Parameters
+    ----------
+    state
+        The state of the process.
+    network
+        Whoever asks for the session, as in `ProcessState.sockets`.
     """
     if state.stopping.is_set():
-        return "The server is stopping. Reload this page in a minute."
-    return _full_reason(state)
+        return "The server is stopping."
+    return _full_reason(state, network)
 
 
-def _full_reason(state: ProcessState) -> str | None:
-    limit, sessions = state.settings.most_sessions, list(state.sessions())
-    if len(sessions) >= limit:
-        return f"All {limit} places are taken. Reload this page in a minute."
-    # The only visitor may reload the page, whatever delays it.
-    if state.overload.is_overloaded() and any(session.connection_count for session in sessions):
-        return "The server is busy with the pages that are open. Reload this page in a minute."
+def _full_reason(state: ProcessState, network: str | None = None) -> str | None:
+    limit = state.settings.most_sessions
+    if sum(1 for _ in state.sessions()) >= limit:
+        return f"All {limit} places are taken."
+    if state.overload.is_overloaded() and state.sockets.keys() - {network}:
+        return "The server is busy with the pages that are open."
     return None

@@ -85,7 +85,8 @@ class Settings:
     link_pictures
         Maximum number of pictures of links under way; 0 for no pictures of links.
     compiled_operations
-        Maximum number of compiled operations of the integrators of all potentials, about 4 kB each; code is never unloaded.
+        Maximum number of compiled operations of the integrators of all potentials but those of the catalogue, about 4 kB
+        each; code is never unloaded.
     cache_bytes
         Size limit of the result cache, in bytes.
     memory_ceiling

@@ -58,7 +58,7 @@ def _job_metrics(state: ProcessState) -> Iterator[Metric]:
         ended.add_metric([outcome], getattr(stats, outcome))
     yield ended
     yield _gauge("cache_bytes", "Size of the result cache", stats.cache_bytes)
-    yield _gauge("compiled_operations", "Compiled operations of integrators", compiled_operations.used)
+    yield _gauge("compiled_operations", "Compiled operations of integrators without the catalogue's", compiled_operations.used)
     yield _gauge("compiled_operations_limit", "Maximum number of compiled operations", state.settings.compiled_operations)
     yield _gauge("cache_limit_bytes", "Size limit of the result cache", stats.cache_limit)
     yield _gauge("orbits_held", "Orbits of large running jobs", stats.orbits_held)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import http.client
-import ipaddress
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
+from html import escape
 from typing import Any
 
 from bokeh.protocol.exceptions import ProtocolError
@@ -16,9 +16,16 @@ from tornado.web import HTTPError
 from app.runtime.health import not_ready_reason, refusal_reason
 from app.runtime.process_state import process_state
 from app.runtime.settings import variable_name
+from app.runtime.visitors import network_of
 
 LONGEST_LINK = 8192
 """Most characters of the address of a page."""
+
+RETRY_SECONDS = 10
+"""Time after which a refused page is asked for again, in seconds."""
+
+RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
+"""Statuses of refused pages that may be served later."""
 
 PICTURES_PER_ADDRESS = 2
 """Most requests for the picture of a link that an address may have under way."""
@@ -37,13 +44,22 @@ def admit(request: Any) -> None:
         return
     if len(request.uri) > LONGEST_LINK:
         raise HTTPError(http.client.REQUEST_URI_TOO_LONG, reason=f"The address is longer than {LONGEST_LINK} characters.")
-    _refuse(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state()))
-    address = network_of(request.remote_ip)
-    pages = sum(network_of(_request_of(session).remote_ip) == address for session in process_state().sessions())
+    network = network_of(request.remote_ip)
+    _refuse(http.client.SERVICE_UNAVAILABLE, refusal_reason(process_state(), network))
+    pages = sum(network_of(_request_of(session).remote_ip) == network for session in process_state().sessions())
     _refuse(http.client.TOO_MANY_REQUESTS, _share_reason(pages))
 
 
-def check_session(token: str, application_context: Any) -> None:
+def refusal_page(sentence: str) -> str:
+    """Return a page that says why a page is refused, and asks for it again after `RETRY_SECONDS`."""
+    head = (
+        f"<meta charset=utf-8><meta name=viewport content='width=device-width'><meta http-equiv=refresh content={RETRY_SECONDS}>"
+    )
+    body = f"<p>{escape(sentence)} This page tries again every {RETRY_SECONDS} s.</p>"
+    return f"<!doctype html><html lang=en><head>{head}<title>Escape Explorer</title></head><body>{body}</body></html>"
+
+
+def check_session(token: str, application_context: Any, address: str) -> None:
     """Return for WebSockets of open sessions, and for others, such as those that reconnect after a pause, while there is room.
 
     Raises
@@ -54,7 +70,7 @@ def check_session(token: str, application_context: Any) -> None:
     session = get_session_id(token)
     if any(each.id == session for each in application_context.sessions):
         return
-    reason = refusal_reason(process_state())
+    reason = refusal_reason(process_state(), network_of(address))
     if reason is not None:
         raise ProtocolError(reason)
 
@@ -70,7 +86,7 @@ def count_socket(address: str) -> None:
     sockets, most = process_state().sockets, process_state().settings.most_sessions
     reason = _share_reason(sockets[network_of(address)])
     if reason is None and sockets.total() >= most:
-        reason = f"There are {most} connections already. Reload this page in a minute."
+        reason = f"There are {most} connections already."
     if reason is not None:
         raise ProtocolError(reason)
     sockets[network_of(address)] += 1
@@ -104,15 +120,6 @@ def admitted_picture(network: str) -> Iterator[None]:
         yield
     finally:
         _forget(state.link_pictures, network)
-
-
-def network_of(address: str) -> str:
-    """Return what is limited together: an IPv4 address, or the 64 bits of an IPv6 address that belong to a network."""
-    try:
-        parsed = ipaddress.ip_address(address)
-    except ValueError:
-        return address
-    return address if parsed.version == 4 else str(ipaddress.ip_network((parsed, 64), strict=False))
 
 
 def _forget(counts: Counter[str], network: str) -> None:

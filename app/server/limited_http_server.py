@@ -7,16 +7,18 @@ application and to the options of the HTTP server of ``panel serve``.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Awaitable, Mapping
 from typing import Any
 
 from bokeh.server.tornado import BokehTornado
 from tornado.httpserver import HTTPServer
+from tornado.httputil import HTTPConnection, HTTPHeaders, HTTPMessageDelegate, RequestStartLine, ResponseStartLine
 from tornado.iostream import IOStream
 
 from app.runtime.process_state import process_state
-from app.server.admission import LONGEST_LINK, network_of
-from app.server.routes import refuse_other_routes
+from app.runtime.visitors import network_of
+from app.server.admission import LONGEST_LINK
+from app.server.routes import refuse_other_hosts, refuse_other_routes
 
 LIMITS: Mapping[str, int] = {
     # Seconds until the next request of a connection, and until the end of its headers.
@@ -28,6 +30,10 @@ LIMITS: Mapping[str, int] = {
     "max_header_size": 4 * LONGEST_LINK,
 }
 """Options of the HTTP server, in seconds and bytes."""
+
+UNTRUSTED = ("X-Real-Ip", "X-Scheme")
+"""Headers that Tornado prefers to ``X-Forwarded-For`` and ``X-Forwarded-Proto`` with ``--use-xheaders``; proxies that set
+those may pass these on from clients."""
 
 CONNECTIONS_PER_PAGE = 6
 """Most connections that a browser opens to a host besides WebSockets."""
@@ -46,6 +52,7 @@ class LimitedHTTPServer(HTTPServer):
         self._open: Counter[str] = Counter()
         if isinstance(self.request_callback, BokehTornado):
             refuse_other_routes(self.request_callback)
+            refuse_other_hosts(self.request_callback)
 
     def handle_stream(self, stream: IOStream, address: Any) -> None:
         """Serve a new connection, or close it."""
@@ -57,6 +64,10 @@ class LimitedHTTPServer(HTTPServer):
         self._open[network] += 1
         super().handle_stream(stream, address)
 
+    def start_request(self, server_conn: object, request_conn: HTTPConnection) -> HTTPMessageDelegate:
+        """Read a request without the headers in `UNTRUSTED`."""
+        return _WithoutUntrusted(super().start_request(server_conn, request_conn))
+
     def on_close(self, server_conn: Any) -> None:
         """Forget a connection that is closed or has become a WebSocket."""
         super().on_close(server_conn)
@@ -66,6 +77,27 @@ class LimitedHTTPServer(HTTPServer):
         settings = process_state().settings
         per_address = CONNECTIONS_PER_PAGE * settings.pages_per_address
         return self._open.total() >= settings.most_connections or (not self.xheaders and self._open[network] >= per_address)
+
+
+class _WithoutUntrusted(HTTPMessageDelegate):
+    """Removes the headers in `UNTRUSTED` before another delegate gets a request."""
+
+    def __init__(self, delegate: HTTPMessageDelegate) -> None:
+        self._delegate = delegate
+
+    def headers_received(self, start_line: RequestStartLine | ResponseStartLine, headers: HTTPHeaders) -> Awaitable[None] | None:
+        for name in UNTRUSTED:
+            headers.pop(name, None)
+        return self._delegate.headers_received(start_line, headers)
+
+    def data_received(self, chunk: bytes) -> Awaitable[None] | None:
+        return self._delegate.data_received(chunk)
+
+    def finish(self) -> None:
+        self._delegate.finish()
+
+    def on_connection_close(self) -> None:
+        self._delegate.on_connection_close()
 
 
 def _network(address: Any) -> str:

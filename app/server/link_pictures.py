@@ -15,7 +15,8 @@ from tornado.web import authenticated
 from app.job_clients.link_picture_jobs import NotCompiledError, PngFile, link_picture_job, result_of
 from app.runtime.page_address import page_address
 from app.runtime.process_state import process_state
-from app.server.admission import admitted_picture, network_of
+from app.runtime.visitors import network_of
+from app.server.admission import admitted_picture
 from app.server.security_headers import SecurityHeaders
 from app.state.link_picture import LinkPicture, picture_of
 from app.state.permalink import PARAMETERS, read_link

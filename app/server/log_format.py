@@ -13,7 +13,12 @@ from tornado.websocket import WebSocketClosedError
 
 from app.runtime.settings import LogFormat
 
+LONGEST_MESSAGE = 400
+"""Most characters of a message, most of which may come from a visitor, as the address of a request."""
+
 _SESSION_CHARACTERS = 8
+# Of a shortened message; an address is followed by who asked for it.
+_LAST_CHARACTERS = 60
 _TRACEBACK_INDENT = "    "
 
 
@@ -31,6 +36,15 @@ def add_session_id(record: logging.LogRecord) -> bool:
     """Add the current session to a record; a filter that passes all records."""
     if session := short_session_id():
         record.session = session
+    return True
+
+
+def shorten_message(record: logging.LogRecord) -> bool:
+    """Leave out the middle of a message that is too long; a filter that passes all records."""
+    message = record.getMessage()
+    if len(message) > LONGEST_MESSAGE:
+        first = message[: LONGEST_MESSAGE - _LAST_CHARACTERS - 3]
+        record.msg, record.args = f"{first} … {message[-_LAST_CHARACTERS:]}", None
     return True
 
 
@@ -93,6 +107,7 @@ def set_up_logs(log_format: LogFormat, counter: logging.Handler, loggers: Iterab
         for handler in logger.handlers:
             handler.setFormatter(JsonLineFormatter() if log_format is LogFormat.JSON else TextFormatter())
             handler.addFilter(add_session_id)
+            handler.addFilter(shorten_message)
             if isinstance(handler, logging.StreamHandler) and handler.stream is sys.stdout:
                 handler.setStream(sys.stderr)
         logger.addHandler(counter)

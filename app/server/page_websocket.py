@@ -68,9 +68,10 @@ class PageWebSocket(SecurityHeaders, WSHandler):
         self._writes: list[Awaitable[None]] = []
         self._told = -PASSING_SECONDS
         try:
-            count_socket(str(self.request.remote_ip))
+            address = str(self.request.remote_ip)
+            count_socket(address)
             self._is_counted = True
-            check_session(self._token, self.application_context)
+            check_session(self._token, self.application_context, address)
             return super().open(*args, **kwargs)
         except Exception as error:
             return self._refuse_connection(error)

@@ -13,9 +13,11 @@ from __future__ import annotations
 from typing import Any
 
 from panel.io.server import DocHandler, RootHandler, WSHandler
+from tornado.web import HTTPError
 
 from app.browser.module_files import ROUTE as MODULES
 from app.runtime.process_state import process_state
+from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
 from app.server.endpoints import ROUTES
 from app.server.link_pictures import ROUTE as PICTURE
 from app.server.link_pictures import LinkPictureHandler, picture_address
@@ -35,6 +37,15 @@ class PageHandler(SecurityHeaders, DocHandler):
         if process_state().settings.link_pictures:
             session.document.template_variables["picture_address"] = picture_address(self.request)
         return session
+
+    def write_error(self, status_code: int, **kwargs: Any) -> None:
+        """Answer with the reason, and let browsers ask again for a page that may be served later."""
+        error = kwargs.get("exc_info", (None, None))[1]
+        if status_code not in RETRIED or not isinstance(error, HTTPError):
+            super().write_error(status_code, **kwargs)
+            return
+        self.set_header("Retry-After", RETRY_SECONDS)
+        self.finish(refusal_page(error.reason or ""))
 
     def write(self, chunk: Any) -> None:
         """Write a response; a page gets the nonce and the matching policy."""

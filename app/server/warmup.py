@@ -11,7 +11,7 @@ from functools import partial
 from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential
-from engine.service import prepare_for_certificates, prepare_for_maps, prepare_kernels
+from engine.service import prepare_for_certificates, prepare_for_maps, prepare_kernels, reserve_catalogue
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")
@@ -29,6 +29,7 @@ STEPS: Mapping[str, Callable[[], None]] = {
         for name, potential in CASES.items()
     },
     "the panes of an orbit": orbit_plots.prepare,
+    "the integrators of the catalogue, to be compiled when they are needed": reserve_catalogue,
 }
 """Functions that compile kernels or load them from the disk cache, by what they prepare, in the order of need."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -19,15 +18,41 @@ from engine.service import Job, JobSubmitter, Queue, is_ready_for_maps, map_job,
 
 
 class ComparisonPresenter:
-    """Follows the view with which the view state is compared; `say(sentence)` receives what is known of the two."""
+    """Follows the view with which the view state is compared.
 
-    def __init__(self, state: ViewState, jobs: JobSubmitter, maps: MapsView, say: Callable[[str], None], locked: Locked) -> None:
-        self._state, self._maps, self._say = state, maps, say
+    Parameters
+    ----------
+    state
+        The view state.
+    jobs
+        Computes the other map.
+    maps
+        Show it.
+    say
+        Called with what is known of the two views.
+    refuse
+        Called with the reason why the other view, that of a link, cannot be shown; then there is no comparison any more.
+    locked
+        Wraps functions that change the page.
+    """
+
+    def __init__(
+        self,
+        state: ViewState,
+        jobs: JobSubmitter,
+        maps: MapsView,
+        say: Callable[[str], None],
+        refuse: Callable[[str], None],
+        locked: Locked,
+    ) -> None:
+        self._state, self._maps, self._say, self._refuse = state, maps, say, refuse
         self._frame: EscapeMap | None = None
         self._other: EscapeMap | None = None
         self._reviewed: SystemReview | None = None
+        self._review = LatestRequest(jobs, self._take_review, self._refuse_system, locked)
         self._request = LatestRequest(jobs, self._take, self._fail, locked)
         state.param.watch(lambda event: self._follow(), "compared")
+        self._continue()
 
     def follow(self, frame: EscapeMap) -> None:
         """Compare this complete map."""
@@ -36,7 +61,8 @@ class ComparisonPresenter:
         self._describe()
 
     def close(self) -> None:
-        """Cancel the request at the end of the session."""
+        """Cancel the requests at the end of the session."""
+        self._review.cancel()
         self._request.cancel()
 
     def _follow(self) -> None:
@@ -44,19 +70,21 @@ class ComparisonPresenter:
         self._maps.show_compared(None)
         self._say("")
         if self._state.compared is None:
-            self._request.cancel()
+            self.close()
         else:
             self._continue()
 
     def _continue(self) -> None:
         """Request the next of what is missing: the review of the other system, its kernels, its map."""
         view = self._state.compared
-        if view is None or self._frame is None:
+        if view is None:
             return
         if self._reviewed is None or self._reviewed.system != view.system:
-            self._request.submit(review_job(view.system))
+            self._review.submit(review_job(view.system))
         elif self._reviewed.problem is not None:
-            self._fail(self._reviewed.problem)
+            self._refuse_system(self._reviewed.problem)
+        elif self._frame is None:
+            return
         elif not is_ready_for_maps(self._reviewed.potential):
             self._request.submit(Job(prepare_for_maps, (self._reviewed.potential,), queue=Queue.COMPILATION))
         else:
@@ -70,15 +98,21 @@ class ComparisonPresenter:
         else:
             self._request.submit(job)
 
-    def _take(self, result: Any) -> None:
-        match result:
-            case EscapeMap():
-                self._show(result)
-            case SystemReview():
-                self._reviewed = result
-                self._continue()
-            case _:
-                self._continue()
+    def _take_review(self, reviewed: SystemReview) -> None:
+        self._reviewed = reviewed
+        self._continue()
+
+    def _take(self, result: EscapeMap | None) -> None:
+        """Show a map, or go on when the kernels are prepared."""
+        if result is None:
+            self._continue()
+        else:
+            self._show(result)
+
+    def _refuse_system(self, problem: str) -> None:
+        """End the comparison with a view whose system is refused."""
+        self._state.compared = None
+        self._refuse(problem)
 
     def _fail(self, sentence: str) -> None:
         self._say(f"There is no other view to compare with: {sentence}")

@@ -21,6 +21,7 @@ from app.runtime.disconnects import on_disconnect
 from app.runtime.page_address import page_address
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
+from app.runtime.visitors import account_of
 from app.session.analysis_presenter import AnalysisPresenter
 from app.session.comparison_presenter import ComparisonPresenter
 from app.session.link_presenter import LinkPresenter
@@ -71,7 +72,7 @@ class Explorer:
         self._locked, self._latest = callbacks.every, callbacks.latest
         self._make_views()
         process = process_state()
-        jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session)
+        jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session, account_of(document))
         on_disconnect(document, self._client.close)
         self.potential = PotentialPresenter(self.state, jobs, self.links.history, self._locked)
         self.analyses = AnalysisPresenter(
@@ -85,7 +86,12 @@ class Explorer:
             self._locked,
         )
         self.comparison = ComparisonPresenter(
-            self.state, jobs, self.maps, lambda sentence: self.analyses.note(compared=sentence), self._locked
+            self.state,
+            jobs,
+            self.maps,
+            lambda sentence: self.analyses.note(compared=sentence),
+            self.links.refuse_comparison,
+            self._locked,
         )
         self.map_requests = MapRequests(self.state, jobs, self, self._latest, self.analyses.follow_ups(), process.is_overloaded)
         self._browser_systems = LatestRequest(jobs, self.engine.show_system, lambda sentence: None, self._locked)

@@ -13,7 +13,17 @@ from bokeh.document import Document
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
 from app.state.link_picture import picture_of
-from app.state.permalink import EMBED, LINKED, fit_to_system, linked_system, read_link, refused_link, without_system, write_link
+from app.state.permalink import (
+    EMBED,
+    LINKED,
+    fit_to_system,
+    linked_system,
+    read_link,
+    refused_comparison,
+    refused_link,
+    without_system,
+    write_link,
+)
 from app.state.system_review import SystemReview, is_known, review_catalogue_entry
 from app.state.view_state import PICTURES, ViewState
 from app.views.components.notice import Notice
@@ -72,10 +82,15 @@ class LinkPresenter:
         """Use a system once it is reviewed, or say why it is refused."""
         self._review(system, use, self._refuse)
 
+    def refuse_comparison(self, problem: str) -> None:
+        """Say why the view of a link with which to compare is refused."""
+        self._problems.append(refused_comparison(problem))
+        self._show_problems()
+
     def navigate(self, link: str, entry: int, steps: int) -> None:
         """Show the state of a link in the browser's history."""
         self._browser.follow_steps(steps)
-        values, _ = read_link(dict(parse_qsl(link.removeprefix("?"))))
+        values, self._problems = read_link(dict(parse_qsl(link.removeprefix("?"))))
         self.history.move_to(entry)
         self.open(linked_system(values), partial(self._return, values))
 

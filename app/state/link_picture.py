@@ -10,7 +10,10 @@ from app.state.permalink import fit_to_system, linked_system, refused_link
 from app.state.system_review import SystemReview
 from app.state.view_state import ViewState
 from engine import MapSpec, Slice, System, Window
-from engine.service import TYPED, format_number
+from engine.service import TYPED, format_number, formula_letters
+
+LONGEST_FORMULA = 80
+"""Largest number of characters of a formula in a title."""
 
 SIDE = 210
 """Columns and rows of the map in a picture."""
@@ -49,7 +52,8 @@ class LinkPicture:
     @property
     def title(self) -> str:
         """Name of the system, with the formula of a typed one."""
-        return f"{self.system.title}{f', V = {self.system.formula}' if self.system.case == TYPED else ''}"
+        formula = _shown_formula(self.system)
+        return f"{self.system.title}, V = {formula}" if formula else self.system.title
 
     def describe(self) -> str:
         """What the view shows, in one sentence."""
@@ -82,3 +86,16 @@ def picture_of(values: Mapping[str, Any]) -> LinkPicture:
     """The picture of a link, from the values of `app.state.permalink.read_link`."""
     chosen = {name: values.get(name, ViewState.param[name].default) for name in ("plane", "window", "t_max", "palette")}
     return LinkPicture(system=linked_system(values), energy=values.get("energy"), **chosen)
+
+
+def _shown_formula(system: System) -> str:
+    """A typed formula without its clauses, which contain names; empty if it is long or has words that no formula has.
+
+    Other programs show it as a text of this server, whoever wrote the link.
+    """
+    formula = system.formula.partition(";")[0].strip() if system.case == TYPED else ""
+    try:
+        formula_letters(formula)
+    except ValueError:
+        return ""
+    return formula if len(formula) <= LONGEST_FORMULA else ""

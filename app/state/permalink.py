@@ -90,13 +90,15 @@ def write_link(state: ViewState, *, embedded: bool = False) -> str:
     return "?" + urlencode(chosen, safe=",;:=")
 
 
-def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]:
+def read_link(parameters: Mapping[str, str], prefix: str = "") -> tuple[dict[str, Any], list[str]]:
     """Parse the parameters of a link; its potential is reviewed later, see `linked_system` and `fit_to_system`.
 
     Parameters
     ----------
     parameters
         Names and values of the query string. Unknown names are ignored: other sites append their own.
+    prefix
+        What the names begin with in messages.
 
     Returns
     -------
@@ -117,9 +119,9 @@ def read_link(parameters: Mapping[str, str]) -> tuple[dict[str, Any], list[str]]
             value = read(text)
             values[attribute] = values.get(attribute, {}) | value if isinstance(value, dict) else value
         except (ValueError, KeyError):
-            problems.append(f"Ignored {_quoted(name, text)}: choose {legal}.")
+            problems.append(f"Ignored {_quoted(prefix + name, text)}: choose {legal}.")
     problems += drop_unknown_letters(values)
-    problems += [*_read_slice(parameters, values), *_read_compared(parameters, values)]
+    problems += [*_read_slice(parameters, values, prefix), *_read_compared(parameters, values)]
     if EMBED in parameters and values.get("focus") in ON_DEMAND:
         values[ON_DEMAND[values["focus"]]] = True
     if values.get("chosen", 0) >= len(values.get("starts", (0,))):
@@ -151,7 +153,7 @@ def _read_compared(parameters: Mapping[str, str], values: dict[str, Any]) -> lis
         return []
     energy = given.pop("h", "")
     described = {name: text for name, text in given.items() if name in _DESCRIBES_VIEW}
-    found, problems = read_link(described)
+    found, problems = read_link(described, _COMPARED)
     try:
         plane = found.get("plane", ViewState.param.plane.default)
         if len(energy) > LONGEST_VALUE:
@@ -172,7 +174,7 @@ def _slice_in_link(chosen: Slice) -> dict[str, str]:
     return {_PLANE: axes, **({_FIX: held} if held else {})}
 
 
-def _read_slice(parameters: Mapping[str, str], values: dict[str, Any]) -> list[str]:
+def _read_slice(parameters: Mapping[str, str], values: dict[str, Any], prefix: str) -> list[str]:
     """Add the slice of a link to its values, or return a message why there is none."""
     axes, held = (parameters.get(name, "") for name in (_PLANE, _FIX))
     if not axes and not held:
@@ -182,7 +184,7 @@ def _read_slice(parameters: Mapping[str, str], values: dict[str, Any]) -> list[s
             raise ValueError
         values["plane"] = read_slice(axes, held, linked_system(values))
     except ValueError:
-        shown = ", ".join(_quoted(name, parameters[name]) for name in (_PLANE, _FIX) if name in parameters)
+        shown = ", ".join(_quoted(prefix + name, parameters[name]) for name in (_PLANE, _FIX) if name in parameters)
         return [f"Ignored {shown}: choose {_listed(plane.key for plane in Plane)}, or two axes such as x,theta held by y=0.1."]
     return []
 
@@ -224,6 +226,11 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
 def refused_link(problem: str) -> str:
     """The message for a link whose system is refused."""
     return f"Ignored the potential in the link: {problem}"
+
+
+def refused_comparison(problem: str) -> str:
+    """The message for a link whose view to compare with has a system that is refused."""
+    return f"Ignored the view in the link with which to compare: {problem}"
 
 
 def _quoted(name: str, text: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Protocol
 
 from engine.jobs.job import Job
@@ -34,10 +34,12 @@ class JobClient:
         The job manager.
     most_requests
         Most requests open at the same time, 1 to 1000.
+    account
+        As for `Jobs.request`.
     """
 
-    def __init__(self, jobs: Jobs, most_requests: int = MOST_REQUESTS) -> None:
-        self._jobs = jobs
+    def __init__(self, jobs: Jobs, most_requests: int = MOST_REQUESTS, account: Hashable = None) -> None:
+        self._jobs, self._account = jobs, account
         self._most_requests = checked_count("most_requests", most_requests, 1, _LARGEST_LIMIT)
         self._subscriptions: list[Subscription] = []
 
@@ -45,7 +47,9 @@ class JobClient:
         self, job: Job[Result], on_result: Callable[[Result], None], on_error: Callable[[Exception], None]
     ) -> Subscription:
         """Request a result as `Jobs.request` does; `on_error` receives a ValueError when too many requests are open."""
-        return self._refuse(on_error) or self._add(self._jobs.request(job, on_result, on_error, client=self))
+        return self._refuse(on_error) or self._add(
+            self._jobs.request(job, on_result, on_error, client=self, account=self._account)
+        )
 
     def close(self) -> None:
         """Cancel all subscriptions."""

@@ -19,6 +19,7 @@ from engine.jobs.orbit_semaphore import OrbitSemaphore
 from engine.jobs.scheduler import FairScheduler, Priority, QueueExecutor
 from engine.jobs.stats import JobStats
 from engine.jobs.subscription import Subscription
+from engine.taylor.jit.compiled_operations import charged_to
 
 DEFAULT_CACHE_BYTES = 512 * 2**20
 """Default memory limit of cached results, in bytes."""
@@ -39,6 +40,7 @@ class _Run:
     job: Job[Any]
     subscriptions: list[Subscription]
     client: Hashable
+    account: Hashable
     map_priority: MapPriority | None
     """Of a map that is shown; all short calls of other jobs are in the background."""
     cancel: threading.Event = field(default_factory=threading.Event)
@@ -109,6 +111,7 @@ class Jobs:
         on_error: Callable[[Exception], None],
         *,
         client: Hashable = None,
+        account: Hashable = None,
     ) -> Subscription:
         """Request the result of a job.
 
@@ -125,6 +128,8 @@ class Jobs:
         client
             Identifies the client for fair scheduling: clients are served in turn, and the first frame of every map comes before
             the second frame of any.
+        account
+            Whose share of the limit of compiled code the job takes; None for no one's.
         """
         subscription = Subscription(partial(self._unsubscribe, job), on_result, on_error)
         with self._lock:
@@ -136,7 +141,7 @@ class Jobs:
             elif not complete:
                 latest = None
                 priority = MapPriority() if job.queue is Queue.FIRST_FRAME else None
-                run = self._in_flight[job] = _Run(job, [subscription], client, priority)
+                run = self._in_flight[job] = _Run(job, [subscription], client, account, priority)
                 self._coordinators.submit(self._run_job, run)
         if complete or latest is not None:
             subscription.deliver(latest, last=complete)
@@ -194,7 +199,7 @@ class Jobs:
         result: Any = ABSENT
         try:
             execution = Execution(cancel=run.cancel)
-            with self._semaphore.acquire(run.job.orbits_held, execution):
+            with self._semaphore.acquire(run.job.orbits_held, execution), charged_to(run.account):
                 execution.raise_if_cancelled()
                 run.executors = self._create_executors(run)
                 result = self._compute(run.job, run, partial(self._publish, run))

@@ -7,7 +7,9 @@ import time
 from collections import Counter, OrderedDict, deque
 from collections.abc import Callable, Hashable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextvars import copy_context
 from enum import IntEnum
+from functools import partial
 from typing import Any, NamedTuple
 from weakref import WeakSet
 
@@ -228,9 +230,10 @@ class QueueExecutor(Executor):
         return self._scheduler.threads
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Queue a call and return its future."""
+        """Queue a call, which runs in the context of the caller, and return its future."""
         future: Future[Any] = Future()
-        self._scheduler.add(_Call(self, future, lambda: fn(*args, **kwargs), time.monotonic()))
+        call = partial(copy_context().run, fn, *args, **kwargs)
+        self._scheduler.add(_Call(self, future, call, time.monotonic()))
         return future
 
     def cancel_futures(self) -> None:

@@ -189,7 +189,7 @@ def _define_module(
 
     decorator, write: what compiles the kernels, and what makes a function of a program.
     """
-    compiled_operations.add(code.operations)
+    compiled_operations.add(code.digest, code.operations)
     name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
     # Numba looks here for the module of a kernel that it loads from the cache.

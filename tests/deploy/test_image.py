@@ -1,4 +1,4 @@
-"""The image has every package that the server imports."""
+"""The image has every package that the server imports; images and actions from elsewhere have versions."""
 
 from __future__ import annotations
 
@@ -17,3 +17,16 @@ def test_a_package_or_file_of_the_build_is_copied_and_not_ignored(name: str) -> 
     copied = re.findall(r"^COPY (?!--from)(.*) \S+$", (ROOT / "Dockerfile").read_text(), re.MULTILINE)
     assert name in " ".join(copied).split()
     assert f"!{name}" in (ROOT / ".dockerignore").read_text().splitlines()
+
+
+def test_the_base_of_the_image_has_a_version() -> None:
+    assert re.search(
+        r"^ARG BASE=python(:\d+\.\d+\.\d+-slim-[a-z]+|@sha256:[0-9a-f]{64})$", (ROOT / "Dockerfile").read_text(), re.MULTILINE
+    )
+
+
+def test_actions_have_versions() -> None:
+    workflows = [path.read_text() for path in (ROOT / ".github" / "workflows").iterdir()]
+    used = re.findall(r"uses: (\S+)", "\n".join(workflows))
+    assert used
+    assert all(re.fullmatch(r"[\w/-]+@(v\d+\.\d+\.\d+|[0-9a-f]{40})", action) for action in used), used

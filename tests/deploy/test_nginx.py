@@ -6,6 +6,7 @@ import asyncio
 import http.client
 import http.server
 import json
+import os
 import re
 import subprocess
 import sys
@@ -21,12 +22,21 @@ from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
 from tests.app.other_loop import run_on_new_loop
-from tests.deploy.proxy import ROOT, Proxy, authorization, free_port, nginx, proxied
+from tests.deploy.proxy import ADDRESS_HEADER, ROOT, Proxy, authorization, free_port, nginx, proxied
 
 pytestmark = pytest.mark.skipif(nginx() is None, reason="nginx is not installed")
 # Starts the explorer; the other tests use servers that answer with their port.
 with_explorer = pytest.mark.slow
 START_SECONDS = 240.0
+PAGES_PER_ADDRESS = 6
+FORGED = (
+    "X-Forwarded-For",
+    "X-Real-Ip",
+    "X-Forwarded-Proto",
+    "X-Scheme",
+    "X-Forwarded-Host",
+    "Forwarded",
+)
 
 
 @pytest.fixture(scope="module")
@@ -51,8 +61,11 @@ def proxy_before_two(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Proxy
 @contextmanager
 def explorer(log: Path, port: int, origin: str) -> Iterator[None]:
     command = [sys.executable, "-m", "panel", "serve", "app", "--address=127.0.0.1", f"--port={port}", "--use-xheaders"]
+    # Pages without a connection count until the end of the tests.
+    command += [f"--allow-websocket-origin={origin}", "--unused-session-lifetime=3600000"]
+    environment = {**os.environ, "ESCAPE_EXPLORER_PAGES_PER_ADDRESS": str(PAGES_PER_ADDRESS)}
     with log.open("w") as output:
-        process = subprocess.Popen([*command, f"--allow-websocket-origin={origin}"], cwd=ROOT, stdout=output, stderr=output)
+        process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=output, stderr=output)
     try:
         wait_until_ready(port, process)
         yield
@@ -73,10 +86,12 @@ def wait_until_ready(port: int, process: subprocess.Popen[bytes]) -> None:
 
 
 class PortHandler(http.server.BaseHTTPRequestHandler):
-    """Answers with the port of the server."""
+    """Answers with the port of the server, or under ``/browser/`` with the headers of the request."""
 
     def do_GET(self) -> None:
         text = str(self.connection.getsockname()[1]).encode()
+        if self.path.startswith("/browser/"):
+            text = json.dumps(self.headers.items()).encode()
         self.send_response(200)
         self.send_header("Content-Length", str(len(text)))
         self.end_headers()
@@ -168,6 +183,23 @@ def test_websocket_requires_the_password(proxy: Proxy) -> None:
     with pytest.raises(HTTPClientError) as refused:
         run_on_new_loop(lambda: first_message_header(proxy, proxy.origin, {}))
     assert refused.value.code == 401
+
+
+def test_clients_cannot_forge_their_address(proxy_before_two: Proxy) -> None:
+    forged = {**authorization(), ADDRESS_HEADER: "192.0.2.1"} | dict.fromkeys(FORGED, "198.51.100.1")
+    arrived = json.loads(ask(proxy_before_two, "/browser/headers", forged)[2])
+    named = [(name, value) for name, value in arrived if name in FORGED]
+    assert named == [("X-Forwarded-For", "192.0.2.1"), ("X-Forwarded-Proto", "https")]
+
+
+@with_explorer
+def test_forged_addresses_do_not_change_the_limit_of_an_address(proxy: Proxy) -> None:
+    visitor = {**authorization(), ADDRESS_HEADER: "192.0.2.1"}
+    answers = [
+        ask(proxy, "/app", visitor | dict.fromkeys(FORGED, f"198.51.100.{number}")) for number in range(PAGES_PER_ADDRESS + 1)
+    ]
+    assert [status for status, *_ in answers] == [200] * PAGES_PER_ADDRESS + [429]
+    assert f"{PAGES_PER_ADDRESS} open pages".encode() in answers[-1][2]
 
 
 def test_http_redirects_to_https(proxy_before_two: Proxy) -> None:

@@ -116,9 +116,10 @@ def test_figures_can_be_drawn_in_several_threads(escape_map: EscapeMap) -> None:
     assert len(set(files)) == 1
 
 
-def test_a_png_with_too_many_pixels_is_refused_and_the_same_figure_as_svg_is_not(escape_map: EscapeMap) -> None:
-    large = FigureStyle(100.0, 1200.0)
-    with pytest.raises(ValueError, match=r"dpi=1200: must be at most \d+ for a figure of 100 × \d+ cm") as caught:
+@pytest.mark.parametrize("dpi", [150, 1200])
+def test_a_png_with_too_many_pixels_is_refused_and_the_same_figure_as_svg_is_not(escape_map: EscapeMap, dpi: int) -> None:
+    large = FigureStyle(100.0, dpi)
+    with pytest.raises(ValueError, match=rf"dpi={dpi}: must be at most \d+ for a figure of 100 × \d+ cm") as caught:
         map_figure_bytes(escape_map, ["basins"], PAPER, FigureFormat.PNG, large)
     most = int(re.findall(r"at most (\d+)", str(caught.value))[0])
     assert (most * 100.0 / CM_PER_INCH) ** 2 <= MOST_PIXELS

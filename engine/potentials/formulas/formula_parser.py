@@ -57,7 +57,7 @@ LONGEST_TEXT = 500
 """Largest number of characters of a formula."""
 
 DEEPEST_NESTING = 50
-"""Largest depth of nested brackets in a formula."""
+"""Largest depth of nested brackets, or of roots of roots, in a formula."""
 
 LARGEST_VALUE = COEFFICIENT_RANGE[1]
 """Largest magnitude of the value of a letter; unlike a coefficient, it may be 0."""
@@ -94,10 +94,10 @@ def parse_formula(text: str, name: str | None = None, parameters: Mapping[str, f
     ------
     ValueError
         A `FormulaError` with the position and the problem, if the text cannot be parsed, has more than 500 characters, more than
-        50 nested brackets, neither x nor y, a function of a number outside its domain, as a polynomial a degree above 12, more
-        than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and functions
-        with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula, its value is not legal,
-        or V has no minimum to which the axes could be moved.
+        50 nested brackets or roots, neither x nor y, a function of a number outside its domain, as a polynomial a degree above
+        12, more than 60 terms or a coefficient whose magnitude is not between 1e-9 and 1e9, or else more than 120 products and
+        functions with the derivatives up to the second. A ValueError, if a parameter is no letter of the formula, its value is
+        not legal, or V has no minimum to which the axes could be moved.
 
     Examples
     --------
@@ -297,7 +297,7 @@ class _Parser:
         """What follows the name of a function: its argument in brackets; after √ any base."""
         if token.kind == "root":
             start = self.token
-            argument = self._parse_base()
+            argument = self._parse_nested(token, self._parse_base) if start.kind == "root" else self._parse_base()
             if start.kind == "name" and start.text == "r":
                 argument = self._bounded(token, raised, argument, Fraction(1, 2))
         else:
@@ -307,15 +307,20 @@ class _Parser:
         return self._bounded(token, NAMES["sqrt" if token.kind == "root" else token.text], argument)
 
     def _parse_brackets(self, opening: Token) -> FormulaValue:
-        self.depth += 1
-        if self.depth > DEEPEST_NESTING:
-            raise FormulaError(opening.position, f"more than {DEEPEST_NESTING} nested brackets")
-        value = self._parse_sum()
+        value = self._parse_nested(opening, self._parse_sum)
         if self.token.kind == "end":
             raise FormulaError(opening.position, "this bracket is not closed")
         if self.token.kind != "close":
             raise self._unexpected_token()
         self._next_token()
+        return value
+
+    def _parse_nested(self, token: Token, parse: Callable[[], FormulaValue]) -> FormulaValue:
+        """The value of what is inside brackets, or of a root under a root."""
+        self.depth += 1
+        if self.depth > DEEPEST_NESTING:
+            raise FormulaError(token.position, f"more than {DEEPEST_NESTING} nested brackets or roots")
+        value = parse()
         self.depth -= 1
         return value
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from bokeh.protocol.exceptions import ProtocolError
+from bokeh.util.token import generate_jwt_token, generate_session_id
 from tornado.web import HTTPError
 
 from app.runtime import process_state as process_state_module
@@ -16,12 +17,16 @@ from app.runtime.settings import Settings
 from app.server.admission import (
     LONGEST_LINK,
     PICTURES_PER_ADDRESS,
+    RETRY_SECONDS,
     admit,
     admitted_picture,
+    check_session,
     count_socket,
     forget_socket,
-    network_of,
+    refusal_page,
 )
+
+TOKEN = generate_jwt_token(generate_session_id())
 
 
 @pytest.fixture
@@ -56,12 +61,30 @@ def test_pages_of_one_address_are_limited(state: ProcessState) -> None:
 
 def test_pages_of_all_addresses_are_limited(state: ProcessState) -> None:
     state.sessions = lambda: [session_of(f"192.0.2.{number}") for number in range(3)]
-    assert ask("192.0.2.9") == (503, "All 3 places are taken. Reload this page in a minute.")
+    assert ask("192.0.2.9") == (503, "All 3 places are taken.")
 
 
 def test_websockets_are_not_pages(state: ProcessState) -> None:
     state.sessions = lambda: [session_of("192.0.2.1")] * 2
     assert ask("192.0.2.1", "/app/ws")[0] == 200
+
+
+def test_the_only_visitor_of_a_busy_server_may_reload_the_page(state: ProcessState) -> None:
+    state.overload.add(1000.0)
+    state.sessions = lambda: [session_of("192.0.2.1")]
+    count_socket("192.0.2.1")
+    assert ask("192.0.2.1")[0] == 200
+    assert ask("192.0.2.2")[0] == 503
+    context = SimpleNamespace(sessions=[])
+    check_session(TOKEN, context, "192.0.2.1")
+    with pytest.raises(ProtocolError, match="is busy"):
+        check_session(TOKEN, context, "192.0.2.2")
+
+
+def test_a_refused_page_asks_again_by_itself() -> None:
+    page = refusal_page("All <3> places are taken.")
+    assert f"<meta http-equiv=refresh content={RETRY_SECONDS}>" in page
+    assert "All &lt;3&gt; places are taken." in page
 
 
 @pytest.mark.parametrize(("length", "status"), [(LONGEST_LINK, 200), (LONGEST_LINK + 1, 414)])
@@ -126,16 +149,3 @@ def test_a_full_server_sends_no_picture(state: ProcessState) -> None:
     with ExitStack() as pictures:
         assert ask_for_picture(pictures, "192.0.2.9") == 503
     assert state.metrics.registry.get_sample_value("escape_explorer_link_pictures_refused_total") == 1
-
-
-@pytest.mark.parametrize(
-    ("one", "other", "same"),
-    [
-        ("192.0.2.1", "192.0.2.2", False),
-        ("2001:db8::1", "2001:db8::ffff:1", True),
-        ("2001:db8::1", "2001:db8:0:1::1", False),
-        ("socket", "socket", True),
-    ],
-)
-def test_addresses_of_an_ipv6_network_are_one(one: str, other: str, same: bool) -> None:
-    assert (network_of(one) == network_of(other)) is same

@@ -8,6 +8,7 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
+from tornado.httpclient import AsyncHTTPClient
 from tornado.testing import bind_unused_port
 from tornado.web import Application, RequestHandler
 from tornado.websocket import WebSocketHandler, websocket_connect
@@ -27,6 +28,13 @@ class Answer(RequestHandler):
         self.write("here")
 
 
+class Origin(RequestHandler):
+    """Answers with what the server takes for the address and the scheme of the client."""
+
+    def get(self) -> None:
+        self.write(f"{self.request.protocol} {self.request.remote_ip}")
+
+
 class Echo(WebSocketHandler):
     pass
 
@@ -41,7 +49,7 @@ def state(monkeypatch: pytest.MonkeyPatch) -> ProcessState:
 @asynccontextmanager
 async def served(**options: Any) -> AsyncIterator[int]:
     """The port of a server."""
-    server = LimitedHTTPServer(Application([("/", Answer), ("/ws", Echo)]), **options)
+    server = LimitedHTTPServer(Application([("/", Answer), ("/origin", Origin), ("/ws", Echo)]), **options)
     listening, port = bind_unused_port()
     server.add_socket(listening)
     try:
@@ -132,3 +140,20 @@ def test_large_headers_are_refused() -> None:
         writer.close()
 
     run(scenario)
+
+
+@pytest.mark.parametrize(("xheaders", "origin"), [(True, "https 192.0.2.1"), (False, "http 127.0.0.1")])
+@pytest.mark.usefixtures("state")
+def test_address_and_scheme_are_those_of_the_last_proxy(xheaders: bool, origin: str) -> None:
+    headers = {
+        "X-Forwarded-For": "198.51.100.1, 192.0.2.1",
+        "X-Forwarded-Proto": "http, https",
+        "X-Real-Ip": "198.51.100.2",
+        "X-Scheme": "http",
+    }
+
+    async def scenario(port: int) -> None:
+        answer = await AsyncHTTPClient().fetch(f"http://127.0.0.1:{port}/origin", headers=headers)
+        assert answer.body.decode() == origin
+
+    run(scenario, xheaders=xheaders)

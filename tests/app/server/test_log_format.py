@@ -10,7 +10,15 @@ import pytest
 from tornado.websocket import WebSocketClosedError
 
 from app.runtime.settings import LogFormat
-from app.server.log_format import JsonLineFormatter, TextFormatter, is_not_closed_socket, is_not_probe, set_up_logs
+from app.server.log_format import (
+    LONGEST_MESSAGE,
+    JsonLineFormatter,
+    TextFormatter,
+    is_not_closed_socket,
+    is_not_probe,
+    set_up_logs,
+    shorten_message,
+)
 
 FORGED = "h=1\n2026-01-01 ERROR root: forged\x1b[2K\u2028"
 
@@ -63,6 +71,18 @@ def test_all_handlers_write_the_same_format_to_stderr() -> None:
     assert isinstance(handler.formatter, JsonLineFormatter)
     assert handler.stream is sys.stderr
     assert counter in logger.handlers
+
+
+@pytest.mark.parametrize(("length", "shortened"), [(LONGEST_MESSAGE, False), (LONGEST_MESSAGE + 1, True), (10_000, True)])
+def test_long_messages_keep_their_beginning_and_their_end(length: int, shortened: bool) -> None:
+    message = "400 GET /app?V=".ljust(length - 12, "x") + " (::1) 0.1ms"
+    record = new_record("%s")
+    record.args = (message,)
+    assert shorten_message(record)
+    text = record.getMessage()
+    assert (len(text), " … " in text) == (min(length, LONGEST_MESSAGE), shortened)
+    assert text.startswith("400 GET /app?V=")
+    assert text.endswith(" (::1) 0.1ms")
 
 
 @pytest.mark.parametrize(("error", "expected"), [(WebSocketClosedError(), False), (ValueError("h"), True), (None, True)])

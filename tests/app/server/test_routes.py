@@ -8,7 +8,7 @@ import pytest
 from bokeh.application import Application
 from bokeh.server.tornado import BokehTornado
 
-from app.server.routes import served_routes
+from app.server.routes import LOOPBACK, accepted_hosts, served_routes
 from tests.app.server.mounted_routes import ROOT, mounted_routes
 
 
@@ -31,7 +31,7 @@ def documented() -> list[str]:
 
 def test_all_mounted_routes_are_documented(mounted: list[str]) -> None:
     # The addresses of modules contain a hash.
-    assert [re.sub(r"/browser/[0-9a-f]+/", "/browser/…/", route) for route in mounted[1:]] == documented()
+    assert [re.sub(r"/browser/[0-9a-f]+/", "/browser/…/", route) for route in mounted[2:]] == documented()
 
 
 def test_other_routes_are_refused_first(mounted: list[str]) -> None:
@@ -52,6 +52,31 @@ def test_other_routes_are_refused_first(mounted: list[str]) -> None:
 @pytest.mark.parametrize("path", ["/app", "/app/ws", "/", "/static/js/bokeh.min.js", "/app/static/theme.css", "/metrics"])
 def test_routes_of_the_page_and_the_operator_are_served(mounted: list[str], path: str) -> None:
     assert not re.fullmatch(mounted[0], path)
+
+
+def accepts(application: BokehTornado, host: str) -> bool:
+    return re.fullmatch(accepted_hosts(application), host) is not None
+
+
+@pytest.mark.parametrize("host", LOOPBACK)
+def test_the_hosts_of_this_machine_are_accepted(host: str, application: BokehTornado) -> None:
+    assert accepts(application, host)
+    assert not accepts(application, "elsewhere.example")
+
+
+@pytest.mark.parametrize(
+    ("origin", "accepted", "refused"),
+    [
+        ("maps.example.org:443", "maps.example.org", "mapsxexample.org"),
+        ("Maps.example.org", "maps.example.org", "example.org"),
+        ("*.example.org:*", "maps.example.org", "old.maps.example.org"),
+        ("*", "elsewhere.example", None),
+    ],
+)
+def test_hosts_whose_pages_may_open_a_websocket_are_accepted(origin: str, accepted: str, refused: str | None) -> None:
+    application = BokehTornado({"/app": Application()}, extra_websocket_origins=[origin])
+    assert accepts(application, accepted)
+    assert refused is None or not accepts(application, refused)
 
 
 def test_served_routes_have_the_prefix_of_the_server(application: BokehTornado) -> None:

@@ -23,6 +23,7 @@ import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from app.browser.module_files import ADDRESS
+from app.server.log_format import LONGEST_MESSAGE
 from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
 
@@ -146,6 +147,37 @@ def test_routes_that_the_page_does_not_need_are_refused(path: str, served: Serve
     assert served.metric("sessions_created_total") == 0
 
 
+@pytest.mark.parametrize(
+    ("path", "host", "status"),
+    [
+        ("/app", "elsewhere.example:80", 421),
+        ("/", "elsewhere.example", 421),
+        ("/app/picture.png", "127.0.0.1.elsewhere.example", 421),
+        ("/static/js/bokeh.min.js", "localhost:1", 200),
+        # Probes ask for whatever host their network gives them.
+        ("/liveness", "elsewhere.example", 200),
+    ],
+)
+def test_other_hosts_are_refused(path: str, host: str, status: int, served: Served) -> None:
+    assert served.get(path, Host=host)[0] == status
+    assert served.metric("sessions_created_total") == 0
+
+
+@pytest.mark.parametrize("opening", ["exp(", "√(", "√", "("])
+@pytest.mark.parametrize("more", [{}, {"plane": "x,a=1:2"}], ids=["formula", "formula and plane"])
+def test_a_nested_formula_is_answered_with_few_lines_in_the_log(opening: str, more: dict[str, str], served: Served) -> None:
+    text = opening * 40 + "x" + ")" * 40 * opening.count("(")
+    written = served.log.stat().st_size
+    status, answer, _ = served.get(f"/app/picture.png?{urlencode({'case': 'typed', 'V': text, **more})}")
+    # The line of a request is written before the next one is answered.
+    served.get("/liveness")
+    lines = served.log.read_bytes()[written:].decode().splitlines()
+    assert (status, len(answer) < 300) == (400, True)
+    # Others say how late the event loop was.
+    assert len([line for line in lines if "loop_watch" not in line]) == 1
+    assert all(len(json.loads(line)["message"]) <= LONGEST_MESSAGE for line in lines)
+
+
 def test_token_of_another_server_is_refused(served: Served) -> None:
     token = generate_jwt_token(generate_session_id(), signed=False, extra_payload={"arguments": {"h": ["0" * 2**20]}})
     assert upgrade(served, token, f"http://localhost:{served.port}") == 403
@@ -158,9 +190,11 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     served.pages = [page for _, page, _ in opened]
     for _, page, headers in opened:
         check_nonce(page, headers["Content-Security-Policy"])
-    status, text, _ = served.get("/app")
+    status, text, headers = served.get("/app")
     assert status == 503
     assert "All 2 places are taken." in text
+    # The page asks again by itself.
+    assert f"http-equiv=refresh content={headers['Retry-After']}>" in text
     assert served.get("/readiness")[0] == 503
     assert served.metric("sessions_open") == 2
     assert served.metric("pages_refused_total") == 1

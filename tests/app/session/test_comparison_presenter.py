@@ -26,9 +26,11 @@ class Session:
 
     def __init__(self, jobs: Jobs) -> None:
         self.changed = threading.Condition()
-        self.said = [""]
+        self.said, self.refused = [""], [""]
         self.state, self.maps = ViewState(case="I", energy=0.2, t_max=100.0), make_maps()
-        self.presenter = ComparisonPresenter(self.state, jobs, self.maps, self.said.append, locked_by(self.changed))
+        self.presenter = ComparisonPresenter(
+            self.state, jobs, self.maps, self.said.append, self.refused.append, locked_by(self.changed)
+        )
 
     def show(self, frame: EscapeMap) -> None:
         self.maps.show(frame, map_columns(frame))
@@ -37,6 +39,10 @@ class Session:
     def wait_for(self, text: str) -> None:
         with self.changed:
             assert self.changed.wait_for(lambda: text in self.said[-1], 60), self.said
+
+    def wait_for_refusal(self, text: str) -> None:
+        with self.changed:
+            assert self.changed.wait_for(lambda: text in self.refused[-1], 60), self.refused
 
 
 @pytest.fixture(scope="module")
@@ -85,10 +91,15 @@ def test_the_end_of_a_comparison_removes_its_pictures(session: Session, frame: E
     assert session.maps.source.data["difference"][0].size == session.maps.compared.source.data["fate"][0].size == 1
 
 
-@pytest.mark.parametrize(("system", "plane"), [(System(TYPED, "x +"), Plane.X_PX), (System("I"), Plane.X_H)])
-def test_a_view_that_has_no_map_is_refused_in_a_sentence(
-    session: Session, frame: EscapeMap, system: System, plane: Plane
-) -> None:
-    session.state.compared = ComparedView(system, plane, 0.2)
+@pytest.mark.parametrize(("formula", "problem"), [("x +", "the formula ends"), ("x² + y²", "No saddle")])
+def test_a_view_of_a_refused_system_ends_the_comparison(session: Session, formula: str, problem: str) -> None:
+    # Before there is a map to compare it with.
+    session.state.compared = ComparedView(System(TYPED, formula), Plane.X_PX, 0.2)
+    session.wait_for_refusal(problem)
+    assert session.state.compared is None
+
+
+def test_a_view_that_has_no_map_is_refused_in_a_sentence(session: Session, frame: EscapeMap) -> None:
+    session.state.compared = ComparedView(System("I"), Plane.X_H, 0.2)
     session.show(frame)
     session.wait_for("There is no other view to compare with: ")

@@ -132,6 +132,16 @@ def test_a_link_is_shown_whole_when_its_potential_has_passed(called: list[str]) 
     assert not called
 
 
+def test_a_view_to_compare_with_that_is_refused_is_told_beside_other_problems() -> None:
+    async def check(explorer: Explorer) -> None:
+        await wait_for(lambda: "Ignored the view in the link" in explorer.notice._pane.object)
+        assert "Ignored palette=none" in explorer.notice._pane.object
+        assert "the formula ends" in explorer.notice._pane.object
+        assert explorer.state.compared is None
+
+    with_page({"with_V": "x +", "with_h": "0.2", "palette": "none"}, check)
+
+
 def test_a_typed_potential_is_reviewed_in_another_process(called: list[str]) -> None:
     async def check(explorer: Explorer) -> None:
         explorer.potential.panel.formula._receive({"text": "½(x² + y²) − 0.79x²y²", "typed": 1, "done": True})

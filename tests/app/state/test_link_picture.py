@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, urlencode
 
 import pytest
 
@@ -36,6 +36,21 @@ def test_a_link_without_energy_shows_the_first_one_of_its_system() -> None:
 def test_an_axis_of_energies_has_those_of_the_page() -> None:
     low, high = spec("case=II&plane=x_h").energy
     assert (low, high) == pytest.approx((1 / 6, review_system(picture("case=II").system).shown_energies.high))
+
+
+@pytest.mark.parametrize(
+    ("formula", "title"),
+    [
+        ("½r² − a x²y exp(−y²)", "Typed potential, V = ½r² − a x²y exp(−y²)"),
+        ("−1/r; centre the Moon (0, 0) 0.0045", "Typed potential, V = −1/r"),
+        ("x + " * 19 + "x²y", "Typed potential, V = " + "x + " * 19 + "x²y"),
+        ("x + " * 20 + "x²y", "Typed potential"),
+        ("visit http://elsewhere.example", "Typed potential"),
+        ("x²; centre elsewhere", "Typed potential, V = x²"),
+    ],
+)
+def test_the_title_has_a_short_formula_and_no_other_text(formula: str, title: str) -> None:
+    assert picture(urlencode({"V": formula})).title == title
 
 
 def test_links_that_differ_in_orbits_and_layers_have_one_picture() -> None:

@@ -235,8 +235,9 @@ def test_a_link_contains_the_view_with_which_another_is_compared(view: ComparedV
         ({"with_case": "II", "with_h": "nan"}, "with_h"),
         ({"with_case": "II", "with_plane": "x_h", "with_h": "0.2"}, "two for an axis h"),
         ({"with_case": "II", "with_h": "1e300"}, "with_h"),
-        ({"with_case": "V", "with_h": "0.2"}, "case=V"),
-        ({"with_plane": "x,x", "with_h": "0.2"}, "plane=x,x"),
+        ({"with_case": "V", "with_h": "0.2"}, "with_case=V"),
+        ({"with_plane": "x,x", "with_h": "0.2"}, "with_plane=x,x"),
+        ({"with_V": "x" * 501, "with_h": "0.2"}, "with_V=xxx"),
     ],
 )
 def test_a_view_to_compare_with_that_is_not_understood_is_left_out(link: dict[str, str], message: str) -> None:

@@ -4,6 +4,7 @@ import math
 import re
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -118,6 +119,7 @@ def test_operator_precedence(text: str, terms: tuple[tuple[int, int, float], ...
         ("√(x+" * 30 + "y" + ")" * 30, 0, "The first and second derivatives of V have"),
         ("x" + " " * 500, 500, "at most 500"),
         ("(" * 51 + "x" + ")" * 51, 50, "more than 50"),
+        ("√" * 52 + "x", 50, "more than 50"),
         ("__import__('os')", 0, "not understood"),
         ("x\u0000", 1, "not understood"),
         ("١x", 0, "not understood"),
@@ -131,6 +133,17 @@ def test_errors_have_position_and_reason(text: str, position: int, reason: str) 
 
 def test_fifty_nested_brackets_are_parsed() -> None:
     assert parse_formula("(" * 50 + "x" + ")" * 50).terms == ((1, 0, 1.0),)
+
+
+NESTED = ["exp(", "√(", "√", "(", "−(", "1/(1+", "exp(a*", "x^(", "("]
+
+
+@pytest.mark.parametrize("opening", NESTED)
+@pytest.mark.parametrize("depth", [30, 50, 60, 240])
+def test_a_deeply_nested_text_is_parsed_or_refused(opening: str, depth: int) -> None:
+    text = opening * depth + "x" + ")" * depth * opening.count("(")
+    with suppress(FormulaError):
+        assert parse_formula(text[:500])
 
 
 def test_large_expansions_are_fast() -> None:
