@@ -23,7 +23,7 @@ from engine.taylor.source.recurrence import LANES
 _PROMISING_DIGITS = 3.5
 # A window that takes longer than the time left is used only on the few most promising orbits, for the curves they give, and only
 # if that costs less than this share of the work left.
-_MAX_WORK_SHARE = 0.1
+_MAX_WORK_SHARE = 0.15
 _MAX_SEEDS = 2 * LANES
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
 # A coarse lattice with fewer candidates is left out, as a round with few orbits does not keep all workers busy.
