@@ -79,7 +79,7 @@ class SerialExecutor(Executor):
 class Execution:
     """How a computation runs: where its parts are computed, how it is cancelled, and who follows it.
 
-    Fates, escape times and the crossings of escaping orbits do not depend on it, to the last bit.
+    Complete results do not depend on it, to the last bit.
 
     Parameters
     ----------

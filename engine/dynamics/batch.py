@@ -52,6 +52,10 @@ class OrbitBatch:
         (n,) int8 codes, see `Certificate`: why an orbit is bounded although it was not integrated to t_max; 0 for all others.
     remainder
         (n, 2) what rounding has dropped from x and y of `state`, see `engine.taylor.kernels.propagate.Orbits`.
+    tested
+        (n,) time of the last test for certificates, 0 before the first.
+    digits
+        (n,) digits to which averages agreed in that test, infinite before the first; see `BoundednessCertifier`.
     """
 
     state: np.ndarray
@@ -63,6 +67,8 @@ class OrbitBatch:
     outside: np.ndarray
     certificate: np.ndarray
     remainder: np.ndarray
+    tested: np.ndarray
+    digits: np.ndarray
 
     @classmethod
     def empty(cls, curve_row: np.ndarray) -> OrbitBatch:
@@ -70,8 +76,10 @@ class OrbitBatch:
         n = curve_row.size
         counts, codes = np.zeros((2, n), np.int64), np.zeros((2, n), np.int8)
         fate = np.full(n, Fate.NOT_COMPUTED, np.int8)
-        states = np.full((n, 4), np.nan)
-        return cls(states, np.zeros(n), counts[0], counts[1], fate, curve_row, codes[0], codes[1], np.zeros((n, 2)))
+        states, times, digits = np.full((n, 4), np.nan), np.zeros((2, n)), np.full(n, np.inf)
+        return cls(
+            states, times[0], counts[0], counts[1], fate, curve_row, codes[0], codes[1], np.zeros((n, 2)), times[1], digits
+        )
 
     @classmethod
     def from_starts(cls, states: np.ndarray, curve_row: np.ndarray) -> OrbitBatch:
@@ -139,11 +147,10 @@ class OrbitBatch:
         certified = self.certificate[which] != Certificate.NONE
         self.certificate[images] = np.where(certified, Certificate.MIRRORED, Certificate.NONE)
 
-    def reopen_bounded(self) -> None:
-        """Make orbits integrated to t_max undecided again, for a later t_max; certified orbits stay bounded."""
-        bounded = (self.fate == Fate.BOUNDED) & (self.certificate == Certificate.NONE)
-        self.fate[bounded] = Fate.NOT_COMPUTED
-        self.last_crossings[bounded] = 0
+    def reopen(self, which: np.ndarray) -> None:
+        """Make the orbits `which` (indices), which are bounded or undecided, undecided again, to be continued."""
+        self.fate[which], self.certificate[which] = Fate.NOT_COMPUTED, Certificate.NONE
+        self.last_crossings[which] = 0
 
     def certificates(self) -> np.ndarray:
         """(n,) int8: the `Certificate` of each orbit, including `Certificate.INTEGRATED`."""

@@ -19,14 +19,11 @@ from engine.invariant_sets.invariant_curves import InvariantCurve, find_invarian
 from engine.potentials.potential import Potential
 from engine.taylor.source.recurrence import LANES
 
-SHORTEST_T_MAX = 1e4
-"""Smallest t_max for which certificates cost less than integrating all orbits."""
-
 # An orbit is tested with the next window if its averages over the previous one agreed to at least this many digits.
 _PROMISING_DIGITS = 3.5
-# All promising orbits are tested with a window if that takes less than this share of the remaining time. A longer window is used
-# only on the few most promising orbits, for the curves they give, and only if that costs less than this share of the work left.
-_MAX_TIME_SHARE, _MAX_WORK_SHARE = 0.4, 0.1
+# A window that takes longer than the time left is used only on the few most promising orbits, for the curves they give, and only
+# if that costs less than this share of the work left.
+_MAX_WORK_SHARE = 0.15
 _MAX_SEEDS = 2 * LANES
 _LATTICE_STRIDES = (16, 8, 4, 2, 1)
 # A coarse lattice with fewer candidates is left out, as a round with few orbits does not keep all workers busy.
@@ -54,14 +51,20 @@ class BoundednessCertifier:
     grid_indices
         (n, 2) row and column of each orbit's pixel.
     time_left
-        Time each orbit would otherwise be integrated, dimensionless; the cost that a certificate saves.
+        Time until the next test, or until t_max, dimensionless: the integration that a certificate saves.
     execution
         How the computation runs.
+    tested_for
+        `time_left` of an earlier test of the same orbits, whose windows are not used again; 0 without one.
+    digits
+        (n,) digits found by the earlier test; None without one.
 
     Attributes
     ----------
     certificate
         (n,) int8 `Certificate` codes found so far.
+    digits
+        (n,) digits to which the averages over two windows of the greatest length tried agree; infinite before any.
     """
 
     def __init__(
@@ -72,11 +75,14 @@ class BoundednessCertifier:
         grid_indices: np.ndarray,
         time_left: float,
         execution: Execution = DEFAULT_EXECUTION,
+        *,
+        tested_for: float = 0.0,
+        digits: np.ndarray | None = None,
     ) -> None:
         self.potential, self.states, self.grid_indices = potential, states, grid_indices
-        self._execution, self._time_left = execution, time_left
+        self._execution, self._time_left, self._tested_for = execution, time_left, tested_for
         self.certificate = np.zeros(len(states), np.int8)
-        self._digits = np.full(len(states), np.inf)
+        self.digits = np.full(len(states), np.inf) if digits is None else digits.copy()
         self._entry_points = () if energy is None else find_entry_points(potential, energy)
         self._use_curves = bool(self._entry_points) and all(map(len, self._entry_points))
         if self._use_curves:
@@ -84,27 +90,31 @@ class BoundednessCertifier:
             self._on_section = np.isfinite(self._points).all(axis=1)
             self._separated = np.zeros((len(states), len(self._entry_points)), bool)
 
-    def run(self, on_round: Callable[[], None]) -> None:
-        """Certify as many orbits as possible; `on_round` is called after each round of tests."""
+    def run(self, on_round: Callable[[], None]) -> bool:
+        """Certify as many orbits as possible; `on_round` is called after each round of tests.
+
+        Returns whether the test was completed; False if it was cancelled.
+        """
         for window, tested in self._rounds():
             if self._execution.is_cancelled:
-                return
+                return False
             two, three = compare_averages(self.potential, self.states[tested], window, execution=self._execution).T
-            self._digits[tested] = two
+            self.digits[tested] = two
             self.certificate[tested[three >= CERTIFIED_DIGITS]] = Certificate.QUASI_PERIODIC
             if self._use_curves:
                 # Two averages are enough here, since the curve is evidence of a torus as well.
                 self._certify_enclosed(tested[two >= CERTIFIED_DIGITS])
             on_round()
+        return not self._execution.is_cancelled
 
     def _rounds(self) -> Iterator[tuple[float, np.ndarray]]:
         """(window, orbits) of each round; orbits certified in one round are left out of the next."""
         for window in WINDOWS:
-            promising = self._digits >= _PROMISING_DIGITS
+            promising = self.digits >= _PROMISING_DIGITS
             duration = 2.0 * window
-            if duration <= _MAX_TIME_SHARE * self._time_left:
+            if self._tested_for < duration <= self._time_left:
                 yield from ((window, tested) for tested in self._lattices(promising))
-            elif self._use_curves:
+            elif duration > self._time_left and self._use_curves:
                 yield from ((window, tested) for tested in self._most_promising(promising, duration))
 
     def _lattices(self, candidates: np.ndarray) -> Iterator[np.ndarray]:
@@ -122,7 +132,7 @@ class BoundednessCertifier:
             before = np.count_nonzero(self._uncertified())
             affordable = int(_MAX_WORK_SHARE * before * self._time_left / duration) // LANES * LANES
             remaining = np.flatnonzero(self._uncertified() & candidates)
-            best_first = remaining[np.argsort(-self._digits[remaining], kind="stable")]
+            best_first = remaining[np.argsort(-self.digits[remaining], kind="stable")]
             tested = best_first[: min(affordable, _MAX_SEEDS)]
             if not tested.size:
                 return

@@ -69,8 +69,7 @@ def compute_map(
 
     Returns
     -------
-    `EscapeMap`; fates, escape times and the crossings of escaping orbits are bit-identical for every executor, interruption and
-    resumption. Which certificate a bounded orbit has may depend on these.
+    `EscapeMap`; a complete one has arrays that are bit-identical for every executor, interruption and resumption.
 
     Raises
     ------

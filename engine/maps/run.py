@@ -14,7 +14,7 @@ from engine.dynamics.classification import Outcomes, collect_outcomes
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution, run_parts
 from engine.exits.exit_rows import closed_exits, exit_curves
-from engine.invariant_sets.boundedness_certifier import SHORTEST_T_MAX, BoundednessCertifier
+from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
 from engine.maps.pixels import MirrorPixels
 from engine.maps.result import EscapeMap, find_interior, representative_indices
 from engine.maps.spec import MapSpec
@@ -24,30 +24,33 @@ COARSE_PIXELS = 1200
 """Largest number of pixels in the first frame."""
 
 CERTIFIED_FROM = 1000.0
-"""Time in units of the well from which undecided orbits are tested for certificates; most escapes happen earlier."""
+"""Time in units of the well at which undecided orbits are first tested for certificates; most escapes happen earlier."""
 
 _FIRST_HORIZON = 100.0
 _HORIZON_FACTOR = 10.0
 
 
 def rising_horizons(first: float, factor: float, t_max: float) -> Iterator[float]:
-    """Integration times of successive stages: a geometric sequence up to half of t_max, then t_max."""
+    """Integration times of successive stages: a geometric sequence below t_max, then t_max."""
     horizon = first
-    while horizon < 0.5 * t_max:
+    while horizon < t_max:
         yield horizon
         horizon *= factor
     yield t_max
 
 
-def certifies_before(spec: MapSpec, reached: float, horizon: float) -> bool:
-    """Whether orbits integrated up to `reached` are to be tested for certificates before they go on to `horizon`."""
-    return spec.certify and spec.potential.certifies_tori and spec.t_max >= SHORTEST_T_MAX and horizon > CERTIFIED_FROM >= reached
+def certifies_tori(spec: MapSpec) -> bool:
+    """Whether the orbits of a map are tested for certificates."""
+    return spec.certify and spec.potential.certifies_tori
 
 
 class MapRun:
     """State of the computation of a map, or of some of its rows, in units of the well.
 
     Of two pixels that are mirror images of each other only the first is computed.
+
+    What is done up to a time does not depend on t_max: a map with a smaller t_max is the beginning of this one. Stages end at
+    fixed times, at which the orbits still inside are tested for certificates, from `CERTIFIED_FROM` on.
 
     Parameters
     ----------
@@ -102,7 +105,7 @@ class MapRun:
             earlier.outside.ravel(), earlier.certificate.ravel(),
         )  # fmt: skip
         self._batch.put(continued, earlier.batch)
-        self._batch.reopen_bounded()
+        self._batch.reopen(continued)
 
     def run(
         self,
@@ -112,10 +115,10 @@ class MapRun:
         """Run all stages until done or cancelled; `on_change(stage_over)` is called whenever pixels may have changed."""
         self._find_starts(execution)
         for pixels, stride, horizon in self._stages():
+            if certifies_tori(self.spec) and self.horizon >= CERTIFIED_FROM:
+                self._certify(self.horizon, execution, lambda: on_change(False))
             if execution.is_cancelled:
                 break
-            if certifies_before(self.spec, self.horizon, horizon):
-                self._certify(execution, lambda: on_change(False))
             self._begin_stage(pixels, stride, horizon, execution)
             propagate_batch(
                 self.spec.potential, self._curves, self._batch, pixels[self._started[pixels]], horizon,
@@ -174,20 +177,39 @@ class MapRun:
                 self._curves[row] = exit_curves(self.spec.potential, float(self._energy[pixel]))
                 self._rows_without_exits.discard(row)
 
-    def _certify(self, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark undecided orbits as bounded that have a certificate."""
+    def _certify(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
+        """Mark orbits inside at t = `reached` as bounded that have a certificate; where it is cancelled, none of them."""
         spec, batch = self.spec, self._batch
-        undecided = self._mirror.firsts_among(np.flatnonzero(batch.fate == Fate.NOT_COMPUTED))
-        grid_indices = np.column_stack(np.divmod(undecided, self.shape[1]))
+        tested = self._find_untested(reached, execution)
+        if not tested.size:
+            return
+        grid_indices = np.column_stack(np.divmod(tested, self.shape[1]))
+        time_left = (_HORIZON_FACTOR - 1.0) * reached
         certifier = BoundednessCertifier(
-            spec.potential, spec.common_energy, batch.state[undecided], grid_indices, spec.t_max - self.horizon, execution
-        )
+            spec.potential, spec.common_energy, batch.state[tested], grid_indices, time_left, execution,
+            tested_for=time_left / _HORIZON_FACTOR, digits=batch.digits[tested],
+        )  # fmt: skip
 
         def mark_certified() -> None:
-            batch.mark_bounded(undecided, certifier.certificate)
+            batch.mark_bounded(tested, certifier.certificate)
             on_round()
 
-        certifier.run(mark_certified)
+        if certifier.run(mark_certified):
+            batch.tested[tested], batch.digits[tested] = reached, certifier.digits
+        else:
+            # A later test of only those without a certificate would be another test.
+            batch.reopen(tested)
+
+    def _find_untested(self, reached: float, execution: Execution) -> np.ndarray:
+        """Pixels whose orbits are inside at t = `reached` and have not been tested there."""
+        batch = self._batch
+        untested = np.flatnonzero((batch.fate == Fate.NOT_COMPUTED) & (batch.tested < reached))
+        firsts = self._mirror.firsts_among(untested)
+        # Orbits stop before the step across `reached`. Those that escape in it have escaped on a map that ends here.
+        propagate_batch(self.spec.potential, self._curves, batch, firsts, reached, final=True, execution=execution)
+        inside: np.ndarray = firsts[batch.fate[firsts] == Fate.BOUNDED]
+        batch.reopen(inside)
+        return inside
 
     def result(self) -> EscapeMap:
         """The map so far, with the integration state for a later `resume`."""

@@ -19,7 +19,7 @@ from engine.invariant_sets.boundedness_certifier import BoundednessCertifier
 from engine.maps.parameter_map import Place, analyse_lines
 from engine.maps.pixels import PixelAnalysis, PixelCodes, code_share
 from engine.maps.result import PIXEL_ARRAYS, EscapeMap
-from engine.maps.run import CERTIFIED_FROM, certifies_before, rising_horizons
+from engine.maps.run import CERTIFIED_FROM, certifies_tori, rising_horizons
 from engine.maps.spec import FINEST_PIXEL, MapSpec
 from engine.maps.stored_maps import MapLike, as_map
 from engine.potentials.compiled import kernels_of
@@ -202,7 +202,7 @@ def _test_trust(
     for horizon in rising_horizons(_FIRST_HORIZON, _HORIZON_FACTOR, spec.t_max):
         if test.is_finished():
             break
-        if certifies_before(spec, reached, horizon):
+        if certifies_tori(spec) and reached == CERTIFIED_FROM:
             test.certify(reached)
         test.propagate(horizon)
         reached = horizon

@@ -49,7 +49,7 @@ def test_propagation_continues_after_reopening(batch: OrbitBatch, curves: np.nda
     direct = deepcopy(batch)
     propagate_batch(POTENTIAL, curves, direct, np.arange(60), 90.0, final=True)
     propagate_batch(POTENTIAL, curves, batch, np.arange(60), 30.0, final=True)
-    batch.reopen_bounded()
+    batch.reopen(np.flatnonzero(batch.fate == Fate.BOUNDED))
     propagate_batch(POTENTIAL, curves, batch, np.arange(60), 90.0, final=True)
     np.testing.assert_array_equal(batch.fate, direct.fate)
     np.testing.assert_array_equal(batch.t, direct.t)

@@ -1,0 +1,134 @@
+"""A map is the same however it was computed: at once, continued from shorter ones, interrupted, on any number of threads."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from engine import (
+    CASES,
+    POTENTIALS,
+    Certificate,
+    Coordinate,
+    EscapeMap,
+    MapSpec,
+    ParameterAxis,
+    Plane,
+    Slice,
+    System,
+    compute_map,
+)
+from engine.execution import SerialExecutor
+from engine.maps.result import PIXEL_ARRAYS
+from tests.forgetful_pool import ForgetfulPool
+
+ALONG_EPSILON = Slice(Coordinate.X, ParameterAxis("epsilon", 0.9, 1.1, System("I")))
+# The orbits of each are tested twice, at t = 1000 and 10 000, and those of the last one also at 100 000.
+SPECS = {
+    "I": MapSpec(CASES["I"], Plane.X_PX, 0.13, (16, 16), t_max=2e4),
+    "III": MapSpec(CASES["III"], Plane.X_PX, 0.30, (24, 24), t_max=2e4),
+    "HH": MapSpec(POTENTIALS["HH"], Plane.X_PX, 0.168, (32, 32), t_max=2e4),
+    "many energies": MapSpec(CASES["III"], Plane.X_H, (0.25, 0.5), (16, 12), t_max=2e4),
+    "a parameter": MapSpec(CASES["I"], ALONG_EPSILON, 0.13, (24, 4), t_max=2e4),
+    "III, longer": MapSpec(CASES["III"], Plane.X_PX, 0.35, (40, 40), t_max=1.1e5),
+}
+# Times of shorter maps: choices of the page; between those at which orbits are tested; just before and just after such a time.
+LADDERS = [(1e3, 1e4), (500.0, 2e3, 1.5e4), (999.9, 1000.1), (9999.0,), (19999.0,)]
+
+each_spec = pytest.mark.parametrize("spec", SPECS.values(), ids=SPECS)
+
+
+@cache
+def at_once(spec: MapSpec) -> EscapeMap:
+    return compute_map(spec)
+
+
+def assert_same_map(one: EscapeMap, other: EscapeMap) -> None:
+    assert one.complete
+    assert other.complete
+    for name in PIXEL_ARRAYS:
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+
+
+def early(escape_map: EscapeMap) -> np.ndarray:
+    """(rows, columns) bool: pixels called bounded before t_max."""
+    return ~np.isin(escape_map.certificate, (Certificate.NONE, Certificate.INTEGRATED))
+
+
+class CallCounter(SerialExecutor):
+    """Counts its calls."""
+
+    calls = 0
+
+    def submit(self, *args, **kwargs):  # type: ignore[no-untyped-def]
+        """Count and make the call."""
+        self.calls += 1
+        return super().submit(*args, **kwargs)
+
+
+@each_spec
+@pytest.mark.parametrize("ladder", LADDERS, ids=str)
+def test_a_map_continued_from_shorter_ones_is_the_one_computed_at_once(spec: MapSpec, ladder: tuple[float, ...]) -> None:
+    result = None
+    for t_max in (*ladder, spec.t_max):
+        result = compute_map(replace(spec, t_max=t_max), resume=result)
+    assert result is not None
+    assert_same_map(result, at_once(spec))
+
+
+@each_spec
+def test_orbits_certified_on_a_shorter_map_keep_their_evidence_and_crossings(spec: MapSpec) -> None:
+    shorter, longer = compute_map(replace(spec, t_max=1.5e4)), at_once(spec)
+    kept = early(shorter)
+    assert Certificate.QUASI_PERIODIC in shorter.certificate[kept]
+    for name in ("certificate", "crossings", "energy_error"):
+        np.testing.assert_array_equal(getattr(longer, name)[kept], getattr(shorter, name)[kept], err_msg=name)
+
+
+@each_spec
+@pytest.mark.parametrize("workers", [1, 3])
+def test_evidence_does_not_depend_on_the_number_of_threads(spec: MapSpec, workers: int) -> None:
+    with ThreadPoolExecutor(workers) as pool:
+        assert_same_map(compute_map(spec, executor=pool), at_once(spec))
+
+
+@pytest.mark.parametrize("name", ["I", "many energies", "a parameter"])
+def test_a_map_interrupted_at_any_call_is_resumed_to_the_same_result(name: str) -> None:
+    spec, counter = SPECS[name], CallCounter()
+    assert_same_map(compute_map(spec, executor=counter), at_once(spec))
+    for good_calls in range(0, counter.calls, max(1, counter.calls // 6)):
+        cancel = threading.Event()
+        with ForgetfulPool(good_calls, cancel) as pool:
+            interrupted = compute_map(spec, cancel=cancel, executor=pool)
+        assert_same_map(compute_map(spec, resume=interrupted), at_once(spec))
+
+
+def test_a_test_for_certificates_that_is_interrupted_leaves_none() -> None:
+    spec, counter = SPECS["III"], CallCounter()
+    after_each_test = [early(compute_map(replace(spec, t_max=t_max))) for t_max in (1e3, 1e4)] + [early(at_once(spec))]
+    compute_map(spec, executor=counter)
+    for good_calls in range(0, counter.calls, 2):
+        cancel = threading.Event()
+        with ForgetfulPool(good_calls, cancel) as pool:
+            interrupted = compute_map(spec, cancel=cancel, executor=pool)
+        assert any(np.array_equal(early(interrupted), expected) for expected in after_each_test), good_calls
+
+
+def test_a_map_interrupted_and_resumed_again_and_again_is_the_same() -> None:
+    spec, result, calls = SPECS["III"], None, 0
+    while result is None or not result.complete:
+        cancel, calls = threading.Event(), calls + 10
+        with ForgetfulPool(calls, cancel) as pool:
+            result = compute_map(spec, cancel=cancel, executor=pool, resume=result)
+    assert_same_map(result, at_once(spec))
+
+
+def test_frames_do_not_change_the_map() -> None:
+    frames: list[EscapeMap] = []
+    assert_same_map(compute_map(SPECS["III"], frames.append), at_once(SPECS["III"]))
+    assert_same_map(frames[-1], at_once(SPECS["III"]))
