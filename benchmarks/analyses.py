@@ -25,7 +25,8 @@ from engine import (
     fit_decay_laws,
 )
 from engine.execution import DEFAULT_EXECUTION
-from engine.service import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels, prepare_kernels
+from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
+from engine.warmup import prepare_kernels
 
 REPEATS = 5
 SPEC = MapSpec(CASES["III"], Plane.X_PX, 0.45)

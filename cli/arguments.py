@@ -10,7 +10,7 @@ import numpy as np
 from cli.options import Edges
 from cli.potential_argument import find_potential, find_system
 from engine import MapSpec, Slice
-from engine.service import read_slice
+from engine.slices.slice_text import read_slice
 from plots.palette import PALETTES, Palette
 
 

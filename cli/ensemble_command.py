@@ -104,7 +104,7 @@ def _draw_starts(
 def _print_result(statistics: EscapeStatistics, laws: DecayLaws, flux: EscapeFlux, files: list[str], as_json: bool) -> None:
     from cli.output import print_json, print_sentences, print_table
     from engine import Fate
-    from engine.service import name_fate
+    from engine.dynamics.fates import name_fate
 
     shares, intervals = statistics.shares, statistics.share_intervals
     shown = {code: name_fate(code, statistics.outcomes) for code in shares if code >= Fate.BOUNDED or shares[code]}

@@ -128,7 +128,7 @@ def draw_map(
 def _print_result(frame: EscapeMap, analyses: MapAnalyses, files: Sequence[str], count_outside: bool, as_json: bool) -> None:
     from cli.map_analyses import describe_analyses
     from cli.output import outcome_shares, print_json, print_sentences, print_table
-    from engine.service import UNRESOLVED
+    from engine.dynamics.fates import UNRESOLVED
 
     shares = outcome_shares(frame, count_outside=count_outside)
     sentences = describe_analyses(analyses)

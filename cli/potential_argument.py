@@ -6,7 +6,9 @@ import re
 import reprlib
 
 from engine import POTENTIALS, Potential, System, review_potential
-from engine.service import CATALOGUE, PARAMETERS, TYPED, formula_letters
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.formulas.formula_parser import formula_letters
+from engine.potentials.system import PARAMETERS, TYPED
 from plots.accepted_potentials import refusal
 
 

@@ -37,7 +37,7 @@ def describe_potential(
 
 def _list_catalogue(as_json: bool) -> None:
     from cli.output import print_json, print_table
-    from engine.service import CATALOGUE
+    from engine.potentials.catalogue import CATALOGUE
 
     if as_json:
         names = ("name", "title", "formula", "description", "reference")

@@ -21,7 +21,8 @@ from engine import (
     integrate_orbit,
     start_states,
 )
-from engine.service import SECTION, SPACE
+from engine.slices.planes import SPACE
+from engine.slices.section import SECTION
 from plots.figure_axes import (
     add_figure_legend,
     name_panel,

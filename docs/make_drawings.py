@@ -46,7 +46,7 @@ from engine import (
     sample_starts,
     start_states,
 )
-from engine.service import SECTION
+from engine.slices.section import SECTION
 from plots.curve_figures import draw_statistics_figure
 from plots.figure_axes import (
     add_figure_legend,

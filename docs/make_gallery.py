@@ -28,7 +28,7 @@ from engine import (
     integrate_orbit,
     start_states,
 )
-from engine.service import trace_equipotentials
+from engine.slices.limiting_curves import trace_equipotentials
 from plots.manifold_strokes import manifold_strokes
 from plots.map_analyses import MapAnalyses
 from plots.map_figure import draw_curve, draw_pixels

@@ -1,7 +1,7 @@
 """Escapes in open Hamiltonian systems with two degrees of freedom and any smooth potential with a well.
 
 These are the public names of the library. All results show themselves in notebooks and have `plot`, `to_pandas`, `to_xarray` and
-`to_holoviews`, see `Result`. `engine.service` has the names for the page and other programs, which may change with any version.
+`to_holoviews`, see `Result`. Names of other modules are for the programs of this repository, and may change with any version.
 
 - systems: `Potential`, `System`, `Centre`, `Outcome`, `CASES`, `POTENTIALS`, `channel_family`, `parse_formula`, `write_formula`,
   `review_potential`
@@ -17,8 +17,6 @@ These are the public names of the library. All results show themselves in notebo
 - energies: `compute_curves`, `compute_crossing_statistics`, `plan_sweep`, `run_sweep`, `fit_escape_shares`, `fit_direct_shares`,
   `measure_deviation`, `PAPER_FITS`
 """
-
-from typing import Any
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
@@ -168,15 +166,3 @@ __all__ = [
     "trace_zero_velocity_curve",
     "write_formula",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    """A name that moved to `engine.service`, with a warning."""
-    import importlib
-    import warnings
-
-    service = importlib.import_module(f"{__name__}.service")
-    if name not in service.__all__:
-        raise AttributeError(f"module 'engine' has no attribute {name!r}")
-    warnings.warn(f"engine.{name} is deprecated: import it from engine.service", DeprecationWarning, stacklevel=2)
-    return getattr(service, name)

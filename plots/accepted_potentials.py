@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from engine import PotentialReview
-from engine.service import HIGHEST_SHOWN, LARGEST_NUMBER
+from engine.potentials.energy_ranges import HIGHEST_SHOWN
+from engine.validation import LARGEST_NUMBER
 from plots.palette import MOST_CHANNELS, MOST_COLLISIONS
 
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Curves, DecayLaws, EscapeStatistics, Fate, Outcome, Potential
-from engine.service import LawFit
+from engine.measures.decay_laws import LawFit
 from plots.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.figure_style import SCREEN, FigureStyle
 from plots.palette import LAW_COLOURS, MEASURED, PAPER

@@ -19,7 +19,7 @@ from matplotlib.text import Text
 from matplotlib.ticker import LogLocator
 
 from engine import Fate, Potential, SampledOrbits, Window, compute_flux
-from engine.service import require_package
+from engine.results.extras import require_package
 from plots.figure_axes import RENDER_LOCK, label_axes, name_panel, new_figure, set_font, style_axes
 from plots.figure_style import FigureStyle
 from plots.map_figure import show_window

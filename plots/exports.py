@@ -9,7 +9,9 @@ from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Outcome, Plane, Slice, System, judge_orbit
-from engine.service import CATALOGUE, TYPED, require_package
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.system import TYPED
+from engine.results.extras import require_package
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ import textwrap
 from matplotlib.figure import Figure
 
 from engine import EscapeMap
-from engine.service import format_number, format_time, highest_energy
+from engine.results.wording import format_number, format_time
+from engine.slices.energies import highest_energy
 from plots.figure_axes import RENDER_LOCK, save_figure
 from plots.figure_style import SCREEN, FigureFormat
 from plots.map_figure import draw_limits, draw_pixels

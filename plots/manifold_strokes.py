@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine import StableManifolds
-from engine.service import ManifoldArc
+from engine.invariant_sets.stable_manifolds import ManifoldArc
 
 # Of the first, the second and all later images, which lie ever closer together.
 _WIDTHS, _ALPHAS = (1.6, 1.0, 0.6), (1.0, 0.9, 0.6)

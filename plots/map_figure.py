@@ -36,7 +36,8 @@ from engine import (
     Window,
     trace_zero_velocity_curve,
 )
-from engine.service import common_energy, find_known_exits
+from engine.exits.lyapunov_orbits import find_known_exits
+from engine.slices.energies import common_energy
 from plots.axis_labels import label_axis
 from plots.figure_axes import (
     add_legend_below,

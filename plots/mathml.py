@@ -7,7 +7,9 @@ from html import escape
 from xml.etree import ElementTree
 
 from engine import Potential
-from engine.service import ExpressionForm, Form, PolynomialForm
+from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.form import Form
+from engine.potentials.forms.polynomial_form import PolynomialForm
 from plots.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, raised, row, var
 from plots.mathml_expressions import signed_parts
 

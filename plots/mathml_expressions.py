@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.service import CoordinateNode, Expression, Function, Product, Sum
+from engine.expressions.nodes import Coordinate as CoordinateNode
+from engine.expressions.nodes import Expression, Function, Product, Sum
 from plots.mathml_elements import COEFFICIENT_DIGITS, digits, number, op, row, var
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine import Orbit, Potential, Window, default_window
-from engine.service import SPACE
+from engine.slices.planes import SPACE
 from plots.histories import History, reduce_history
 
 LEAST_SALI = 1e-17

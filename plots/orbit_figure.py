@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CHAOS_THRESHOLD, Potential, Window
-from engine.service import SPACE, format_number
+from engine.results.wording import format_number
+from engine.slices.planes import SPACE
 from plots.figure_axes import add_figure_legend, add_panel_legend, label_axes, name_panel, new_figure, style_axes, write_below
 from plots.figure_style import SCREEN, FigureStyle
 from plots.histories import ENVELOPE_ALPHA, History

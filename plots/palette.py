@@ -14,7 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from engine import Certificate, Fate, Outcome, Regularity, StableManifolds
-from engine.service import UNRESOLVED, OutcomeKind, outcome_of
+from engine.dynamics.fates import UNRESOLVED, outcome_of
+from engine.potentials.outcomes import OutcomeKind
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from engine import Potential, Window
-from engine.service import SPACE, critical_energies, depth_levels, trace_equipotentials
+from engine.potentials.energy_ranges import critical_energies, depth_levels
+from engine.slices.limiting_curves import trace_equipotentials
+from engine.slices.planes import SPACE
 from plots.map_figure import draw_curve, draw_limits
 from plots.palette import LIGHT, Palette
 

@@ -40,13 +40,11 @@ from engine import (
     Window,
     default_window,
 )
-from engine.service import (
-    SECTION,
-    SPACE,
-    RadiusEnvelope,
-    SuperStickySearch,
-    require_package,
-)
+from engine.maps.super_sticky import SuperStickySearch
+from engine.results.extras import require_package
+from engine.slices.planes import SPACE
+from engine.slices.section import SECTION
+from engine.trajectories.radius_envelope import RadiusEnvelope
 from plots.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
 from plots.image_columns import fate_codes, passage_column

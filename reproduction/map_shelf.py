@@ -21,7 +21,10 @@ from engine import (
     compute_regularity,
     compute_uncertainty_exponent,
 )
-from engine.service import DEFAULT_EXECUTION, SuperStickySearch, find_super_sticky_orbits, run_map, tabulate_crossing_statistics
+from engine.execution import DEFAULT_EXECUTION
+from engine.maps.compute import run_map
+from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
+from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engine.service import DEFAULT_RESOLUTION
+from engine.maps.spec import DEFAULT_RESOLUTION
 
 
 @dataclass(frozen=True)

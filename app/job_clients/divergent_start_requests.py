@@ -8,7 +8,9 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.view_state import SYSTEM, Start, ViewState
 from engine import DivergentStart, find_divergent_start
-from engine.service import Job, JobSubmitter, describe_fate
+from engine.dynamics.fates import describe_fate
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job
 
 
 class DivergentStartRequests:

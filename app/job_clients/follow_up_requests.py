@@ -11,7 +11,8 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.view_state import ViewState
 from engine import EscapeMap
-from engine.service import Job, JobSubmitter
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,9 @@ from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import BirkhoffDigits, Fate, IndicatorVerdict, Orbit, compute_birkhoff_digits, evaluate_indicators
-from engine.service import Job, JobSubmitter, Queue, Subscription
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job, Queue
+from engine.jobs.subscription import Subscription
 
 
 class IndicatorsRequests:

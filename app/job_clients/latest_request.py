@@ -8,7 +8,9 @@ from typing import Any
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.locking import Locked
-from engine.service import Job, JobSubmitter, Subscription
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job
+from engine.jobs.subscription import Subscription
 
 
 class LatestRequest:

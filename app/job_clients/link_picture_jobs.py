@@ -12,7 +12,10 @@ from typing import Any
 from app.state.link_picture import SIDE, LinkPicture
 from app.state.system_review import SystemReview, review_job
 from engine import EscapeMap, Execution
-from engine.service import Job, Jobs, Queue, is_ready_for_maps, run_map
+from engine.jobs.job import Job, Queue
+from engine.jobs.manager import Jobs
+from engine.maps.compute import run_map
+from engine.warmup import is_ready_for_maps
 from plots.palette import PALETTES
 
 

@@ -12,7 +12,11 @@ from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.job_clients.locking import Locked
 from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
-from engine.service import Job, JobSubmitter, Queue, Subscription, is_ready_for_maps, map_job, prepare_for_maps
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job, Queue
+from engine.jobs.map_jobs import map_job
+from engine.jobs.subscription import Subscription
+from engine.warmup import is_ready_for_maps, prepare_for_maps
 from plots.image_columns import draw_over, map_columns
 
 

@@ -9,7 +9,8 @@ from app.job_clients.locking import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import Orbit, Separation, compute_separation
-from engine.service import Job, JobSubmitter, Queue
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job, Queue
 from plots.orbit_curves import initial_state
 
 Pair = tuple[int, int]

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any
 
-from engine.service import MOST_REQUESTS, count_cores
+from engine.execution import count_cores
+from engine.jobs.client import MOST_REQUESTS
 
 PREFIX = "ESCAPE_EXPLORER_"
 """Prefix of the environment variables."""

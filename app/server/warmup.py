@@ -11,7 +11,7 @@ from functools import partial
 from app.runtime.process_state import ProcessState
 from app.views.orbits import orbit_plots
 from engine import CASES, Potential
-from engine.service import prepare_for_certificates, prepare_for_maps, prepare_kernels, reserve_catalogue
+from engine.warmup import prepare_for_certificates, prepare_for_maps, prepare_kernels, reserve_catalogue
 
 # A child of Bokeh's logger, so that `panel serve` shows the messages.
 log = logging.getLogger(f"bokeh.{__name__}")

@@ -35,20 +35,20 @@ from engine import (
     compute_uncertainty_exponent,
     find_stable_manifolds,
 )
-from engine.service import (
-    SECTION,
-    Job,
-    JobSubmitter,
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job
+from engine.jobs.map_jobs import (
     basin_measures_job,
     curves_job,
     decay_laws_job,
-    default_range,
     flux_job,
-    is_ready_for_maps,
     origin_fate_job,
     regularity_job,
     trust_job,
 )
+from engine.slices.section import SECTION
+from engine.slices.slice_text import default_range
+from engine.warmup import is_ready_for_maps
 from plots.manifold_strokes import select_image
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.map_images import ON_DEMAND

@@ -14,7 +14,10 @@ from app.state.view_state import ViewState
 from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
 from engine import EscapeMap, Fate
-from engine.service import Job, JobSubmitter, Queue, is_ready_for_maps, map_job, prepare_for_maps
+from engine.jobs.client import JobSubmitter
+from engine.jobs.job import Job, Queue
+from engine.jobs.map_jobs import map_job
+from engine.warmup import is_ready_for_maps, prepare_for_maps
 
 
 class ComparisonPresenter:

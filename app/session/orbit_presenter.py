@@ -23,7 +23,8 @@ from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback
 from app.views.orbits.separation_plot import SeparationPlot
 from engine import IndicatorVerdict, System
-from engine.service import SECTION, JobSubmitter
+from engine.jobs.client import JobSubmitter
+from engine.slices.section import SECTION
 from plots.orbit_curves import OrbitCurves, restrict_curves
 from plots.palette import Palette
 

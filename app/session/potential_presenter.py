@@ -12,7 +12,9 @@ from app.state.system_review import SystemReview, is_known, review_catalogue_ent
 from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
-from engine.service import TYPED, JobSubmitter, is_ready_for_maps
+from engine.jobs.client import JobSubmitter
+from engine.potentials.system import TYPED
+from engine.warmup import is_ready_for_maps
 
 
 @dataclass(frozen=True)

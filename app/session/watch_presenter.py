@@ -15,7 +15,9 @@ from app.state.view_state import SYSTEM, Analysis, ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for
 from app.views.components.texts import TextPane
 from engine import EscapeFlux
-from engine.service import JobSubmitter, flux_job, is_ready_for_maps
+from engine.jobs.client import JobSubmitter
+from engine.jobs.map_jobs import flux_job
+from engine.warmup import is_ready_for_maps
 
 
 class WatchPresenter:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from engine import System
-from engine.service import CATALOGUE, RANGES, TYPED, checked_letter_value, formula_letters
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.formulas.formula_parser import checked_letter_value, formula_letters
+from engine.potentials.system import RANGES, TYPED
 
 LETTERS = "letters"
 """Parameter with the values of the letters of a formula, such as a:1.5,b:-2."""

@@ -10,7 +10,9 @@ from app.state.permalink import fit_to_system, linked_system, refused_link
 from app.state.system_review import SystemReview
 from app.state.view_state import ViewState
 from engine import MapSpec, Slice, System, Window
-from engine.service import TYPED, format_number, formula_letters
+from engine.potentials.formulas.formula_parser import formula_letters
+from engine.potentials.system import TYPED
+from engine.results.wording import format_number
 
 LONGEST_FORMULA = 80
 """Largest number of characters of a formula in a title."""

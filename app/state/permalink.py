@@ -26,7 +26,10 @@ from app.state.view_state import (
 )
 from app.state.watched_starts import COUNTS, DEFAULT_STARTS, StartsFrom, WatchedStarts
 from engine import POTENTIALS, Plane, Slice, System, Window
-from engine.service import LARGEST_NUMBER, LARGEST_VALUE, LONGEST_TEXT, RANGES, TYPED, read_slice, write_slice
+from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
+from engine.potentials.system import RANGES, TYPED
+from engine.slices.slice_text import read_slice, write_slice
+from engine.validation import LARGEST_NUMBER
 from plots.map_images import ON_DEMAND
 from plots.palette import MOST_ORBITS, PALETTES
 from plots.time_scale import TimeScale

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from functools import cache
 
 from engine import CASES, Potential, PotentialReview, Slice, System, review_potential
-from engine.service import TYPED, EnergyRange, Job, Queue
+from engine.jobs.job import Job, Queue
+from engine.potentials.energy_ranges import EnergyRange
+from engine.potentials.system import TYPED
 from plots.accepted_potentials import refusal
 
 

@@ -15,7 +15,10 @@ from app.state.compared_view import ComparedView
 from app.state.system_review import SystemReview, review_catalogue_entry
 from app.state.watched_starts import DEFAULT_STARTS, WatchedStarts
 from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Slice, System, Window, integrate_orbit, start_states
-from engine.service import LARGEST_NUMBER, PAPER_ENERGIES, TYPED, EnergyRange, Job, Queue
+from engine.jobs.job import Job, Queue
+from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange
+from engine.potentials.system import TYPED
+from engine.validation import LARGEST_NUMBER
 from plots.map_images import COMPARISON_TITLES, TITLES
 from plots.palette import MOST_ORBITS, PALETTES, Palette
 from plots.time_scale import TimeScale

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import CASES, PAPER_FITS, Plane, compute_statistics, fit_decay_laws, fit_direct_shares, fit_escape_shares
-from engine.service import tabulate_crossing_statistics
+from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from plots.curve_figures import draw_decay_laws, draw_shares
 from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from plots.figure_style import SCREEN

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from engine import Plane, find_lyapunov_orbits
-from engine.service import RadiusEnvelope, SuperStickySearch, compute_radius_envelope
+from engine.maps.super_sticky import SuperStickySearch
+from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
 from plots.figure_axes import (
     add_figure_legend,
     add_panel_legend,

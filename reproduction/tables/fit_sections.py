@@ -15,7 +15,8 @@ from engine import (
     fit_escape_shares,
     measure_deviation,
 )
-from engine.service import HyperbolicTangent, Polynomial, format_number
+from engine.measures.published_fits import HyperbolicTangent, Polynomial
+from engine.results.wording import format_number
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import three_energies
 from reproduction.tables.markdown import write_rows

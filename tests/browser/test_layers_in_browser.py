@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity, find_stable_manifolds
-from engine.service import describe_certificate
+from engine.dynamics.certificates import describe_certificate
 from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 

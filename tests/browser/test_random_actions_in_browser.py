@@ -18,7 +18,7 @@ from app.state.view_state import Analysis, ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS
 from app.views.components.numbers import percent
 from engine import CASES, EscapeMap, Fate, MapSpec, Orbit, Plane, compute_map, compute_statistics, integrate_orbit, judge_orbit
-from engine.service import Job
+from engine.jobs.job import Job
 from plots.image_columns import map_columns
 from plots.time_scale import fitted_scale
 from tests.app.state.opened_link import open_link

@@ -15,7 +15,7 @@ import pytest
 from cli import map_analyses
 from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
 from engine import CASES, EscapeMap
-from engine.service import run_map
+from engine.maps.compute import run_map
 
 Run = Callable[..., tuple[int, str, str]]
 

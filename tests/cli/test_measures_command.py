@@ -27,7 +27,7 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.service import exit_labels
+from engine.measures.labels import exit_labels
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -43,10 +43,11 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
+from engine.maps.super_sticky import find_super_sticky_orbits
 from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.well_units import WellUnits
-from engine.service import compute_curve_point, compute_radius_envelope, find_super_sticky_orbits
-from engine.sweeps.curve_points import CurvePointSpec
+from engine.sweeps.curve_points import CurvePointSpec, compute_curve_point
+from engine.trajectories.radius_envelope import compute_radius_envelope
 
 
 @dataclass(frozen=True)

@@ -7,17 +7,17 @@ import threading
 import pytest
 
 from engine import Potential
-from engine.service import (
+from engine.taylor import bound_kernels
+from engine.taylor.bound_kernels import load_kernels
+from engine.taylor.jit.compiled_operations import CompiledOperations
+from engine.warmup import (
+    _Compilations,
     is_ready_for_maps,
     prepare_for_certificates,
     prepare_for_maps,
     prepare_kernels,
     seconds_until_ready_for_maps,
 )
-from engine.taylor import bound_kernels
-from engine.taylor.bound_kernels import load_kernels
-from engine.taylor.jit.compiled_operations import CompiledOperations
-from engine.warmup import _Compilations
 
 # Hénon-Heiles with the orientation of the original paper, and with another term: structures that no other test compiles.
 POTENTIAL = Potential("rotated", ((2, 0, 0.5), (0, 2, 0.5), (2, 1, 1.0), (0, 3, -1 / 3)))

@@ -16,7 +16,7 @@ import xarray as xr
 
 from cli.main import FAILED, main
 from engine import CASES
-from engine.service import prepare_kernels
+from engine.warmup import prepare_kernels
 from tests.forked import Finished, run
 
 

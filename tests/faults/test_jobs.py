@@ -12,7 +12,9 @@ import pytest
 
 from app.job_clients.error_messages import sentence
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.service import Job, Jobs, Queue, map_job
+from engine.jobs.job import Job, Queue
+from engine.jobs.manager import Jobs
+from engine.jobs.map_jobs import map_job
 from tests.engine.jobs.inbox import Inbox, wait_until_idle
 
 MAP = MapSpec(CASES["I"], Plane.X_PX, 0.3, (48, 48), t_max=100.0)

@@ -12,7 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine import CASES, MapSpec, Plane, integrate_orbit
-from engine.service import Job, JobClient, Jobs, Queue, Subscription, map_job
+from engine.jobs.client import JobClient
+from engine.jobs.job import Job, Queue
+from engine.jobs.manager import Jobs
+from engine.jobs.map_jobs import map_job
+from engine.jobs.subscription import Subscription
 from tests.fuzz.hostile import anything
 
 ORBITS = [Job(integrate_orbit, (CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0), queue=Queue.LONG_CALL) for k in range(4)]

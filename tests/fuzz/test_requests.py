@@ -40,7 +40,10 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
-from engine.service import LONGEST_TIME, compute_radius_envelope, fit_uncertainty, trace_equipotentials
+from engine.measures.uncertainty_exponent import fit_uncertainty
+from engine.slices.limiting_curves import trace_equipotentials
+from engine.trajectories.radius_envelope import compute_radius_envelope
+from engine.validation import LONGEST_TIME
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
 CASE = CASES["I"]

@@ -26,7 +26,7 @@ from engine import (
     integrate_orbit,
     judge_orbit,
 )
-from engine.service import TYPED
+from engine.potentials.system import TYPED
 from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 from plots.map_analyses import MapAnalyses
 

@@ -40,7 +40,8 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
-from engine.service import compute_radius_envelope, exit_labels
+from engine.measures.labels import exit_labels
+from engine.trajectories.radius_envelope import compute_radius_envelope
 from plots.palette import PALETTES
 
 POTENTIAL, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)

@@ -19,7 +19,8 @@ from app.views.components.plots import set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button
 from engine import DecayLaws, EscapeFlux, Result, UncertaintyExponent, Window
-from engine.service import BasinMeasures, LawFit
+from engine.jobs.map_jobs import BasinMeasures
+from engine.measures.decay_laws import LawFit
 from plots.palette import LAW_COLOURS, LIGHT, MEASURED, SET_ASIDE, Entry
 
 _LAW_POINTS = 200

@@ -18,7 +18,7 @@ from app.views.components.plots import FigurePane, set_decades, set_range, squar
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from engine import Curves, Outcome, System
-from engine.service import PARAMETERS
+from engine.potentials.system import PARAMETERS
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 
 TITLES = {

@@ -16,15 +16,9 @@ from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button
 from engine import PotentialReview, System
-from engine.service import (
-    CATALOGUE,
-    LARGEST_VALUE,
-    LONGEST_TEXT,
-    PARAMETERS,
-    RANGES,
-    TYPED,
-    formula_letters,
-)
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
+from engine.potentials.system import PARAMETERS, RANGES, TYPED
 from plots.mathml import potential_formula, potential_symbol
 from plots.palette import MOST_CHANNELS
 

@@ -19,7 +19,7 @@ from app.views.components.numbers import grouped, percent, percent_range
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
-from engine.service import UNRESOLVED
+from engine.dynamics.fates import UNRESOLVED
 from plots.palette import PAPER, Palette
 from plots.statistics_charts import BINS, MOST_CROSSINGS
 

@@ -6,7 +6,7 @@ from bokeh.models import ColumnDataSource, CustomJSHover, HoverTool, Range1d
 
 from app.browser.callbacks import callback_code
 from engine import Certificate, Fate, Regularity, Trust
-from engine.service import describe_certificate
+from engine.dynamics.certificates import describe_certificate
 from plots.palette import CROSSING_CLASSES, MOST_CHANNELS, OUTCOMES, PAPER
 
 TRUST = {

@@ -40,7 +40,7 @@ from app.views.maps.picture_grid import PictureGrid
 from app.views.maps.two_fingers import TwoFingers
 from app.views.maps.well import WellView
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
-from engine.service import format_number
+from engine.results.wording import format_number
 from plots.image_columns import NO_LAYER, character_column, passage_column
 from plots.map_images import COMPARISON_TITLES, CROSSED_BY_MANIFOLDS, DOUBTED, PAINTED, TITLES
 from plots.palette import PAPER, Palette

@@ -12,7 +12,7 @@ from bokeh.document import Document
 from bokeh.models import Range1d
 
 from engine import MapSpec, Window
-from engine.service import finest_pixel
+from engine.maps.spec import finest_pixel
 
 GESTURE_PAUSE_MS = 500
 """Drags and steps of the wheel that follow each other within this time are one entry of the browser's history."""

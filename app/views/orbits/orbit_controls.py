@@ -19,7 +19,7 @@ from app.views.components.numbers import grouped
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from engine import Coordinate, IndicatorVerdict, Orbit, Slice
-from engine.service import SECTION
+from engine.slices.section import SECTION
 from plots.orbit_curves import initial_state
 from plots.palette import Palette
 

@@ -12,7 +12,8 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.numbers import grouped, percent
 from app.views.components.texts import TextPane
 from engine import EscapeMap, Fate, compute_statistics
-from engine.service import UNRESOLVED, format_time
+from engine.dynamics.fates import UNRESOLVED
+from engine.results.wording import format_time
 
 
 class AccessibleTable:

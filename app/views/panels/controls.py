@@ -18,7 +18,7 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from engine import CASES, Plane, Potential, Slice
-from engine.service import EnergyRange
+from engine.potentials.energy_ranges import EnergyRange
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"

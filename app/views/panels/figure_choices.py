@@ -9,7 +9,7 @@ from functools import partial
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import Curves, EscapeMap
-from engine.service import highest_energy
+from engine.slices.energies import highest_energy
 from plots.figure_files import (
     curves_figure_bytes,
     map_figure_bytes,

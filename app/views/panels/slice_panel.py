@@ -15,7 +15,8 @@ from app.state.view_state import SYSTEM, ViewState
 from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
 from engine import Coordinate, ParameterAxis, Slice
-from engine.service import AXIS_NAMES, PARAMETERS, default_range
+from engine.potentials.system import PARAMETERS
+from engine.slices.slice_text import AXIS_NAMES, default_range
 
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
 _ANGLES = {Coordinate.THETA: "speed, at angle θ from the x axis", Coordinate.BETA: "speed, at angle β from the radius"}

@@ -25,7 +25,8 @@ from engine import (
     compute_trust,
     default_window,
 )
-from engine.service import TYPED, make_portable_system
+from engine.dynamics.portable_system import make_portable_system
+from engine.potentials.system import TYPED
 from tests.node import needs_node, run_node
 
 SYSTEMS = (

@@ -23,8 +23,8 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
+from engine.dynamics.portable_system import make_portable_system
 from engine.exits.interior import find_outside_channels
-from engine.service import make_portable_system
 from tests.node import needs_node, run_node
 from tests.peers.taylor_heyoka import equations
 

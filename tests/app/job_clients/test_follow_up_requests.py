@@ -12,7 +12,8 @@ import pytest
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Regularity, RegularityMap, compute_map
-from engine.service import Jobs, regularity_job
+from engine.jobs.manager import Jobs
+from engine.jobs.map_jobs import regularity_job
 
 
 class Session:

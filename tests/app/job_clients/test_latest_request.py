@@ -11,7 +11,8 @@ import pytest
 
 from app.job_clients.latest_request import LatestRequest
 from engine import CASES, Orbit, integrate_orbit
-from engine.service import Job, Jobs, Queue
+from engine.jobs.job import Job, Queue
+from engine.jobs.manager import Jobs
 
 ORBIT = Job(integrate_orbit, (CASES["I"], (0.1, 0.0, 0.05, 0.5), 50.0), queue=Queue.LONG_CALL)
 LONG_ORBIT = replace(ORBIT, arguments=(CASES["III"], (0.0, 0.0, 0.1, 0.5), 1e7))

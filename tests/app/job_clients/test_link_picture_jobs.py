@@ -12,7 +12,9 @@ from app.job_clients import link_picture_jobs
 from app.job_clients.link_picture_jobs import NotCompiledError, PngFile, link_picture_job, result_of
 from app.state.link_picture import LinkPicture, picture_of
 from engine import CASES
-from engine.service import TYPED, Jobs, prepare_for_maps
+from engine.jobs.manager import Jobs
+from engine.potentials.system import TYPED
+from engine.warmup import prepare_for_maps
 from tests.app.other_loop import run_on_new_loop
 from tests.engine.jobs.inbox import wait_until_idle
 

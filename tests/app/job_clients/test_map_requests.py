@@ -11,7 +11,8 @@ import pytest
 from app.job_clients.map_requests import MapRequests
 from app.state.view_state import ViewState
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from engine.service import Jobs, Subscription
+from engine.jobs.manager import Jobs
+from engine.jobs.subscription import Subscription
 
 
 class Recorder:

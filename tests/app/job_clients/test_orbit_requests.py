@@ -14,7 +14,7 @@ from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
 from engine import IndicatorVerdict, Plane, Separation, Verdict, integrate_orbit
-from engine.service import Jobs
+from engine.jobs.manager import Jobs
 
 
 class Recorder:

@@ -31,7 +31,7 @@ from app.server.url_patterns import PageHandler
 from app.session.page import ExplorerTemplate
 from app.state.link_picture import picture_of
 from engine import CASES
-from engine.service import prepare_for_maps
+from engine.warmup import prepare_for_maps
 from tests.app.other_loop import run_on_new_loop
 
 PATTERNS = [("/?", PageHandler), ("/ws", PageWebSocket), (ROUTE, LinkPictureHandler)]

@@ -25,7 +25,7 @@ from engine import CASES, Plane, System, Window
 from engine.potentials import potential as potential_module
 from engine.potentials import system as system_module
 from engine.potentials.forms import polynomial_form as polynomial_module
-from engine.service import TYPED
+from engine.potentials.system import TYPED
 from tests.app.other_loop import run_on_new_loop
 
 CIRCULAR = {"case": TYPED, "V": "r^2/2 - r^4 + r^6 - r^8 + r^10 - 1.0183r^12"}

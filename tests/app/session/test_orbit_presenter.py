@@ -13,7 +13,7 @@ from app.state.view_state import ViewState
 from app.views.maps.markers import Markers
 from app.views.maps.well import WellView
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
-from engine.service import Jobs
+from engine.jobs.manager import Jobs
 
 
 class RecordingMarkers(Markers):

@@ -15,7 +15,8 @@ from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import PotentialPanel
 from engine import CASES, System
-from engine.service import TYPED, Jobs
+from engine.jobs.manager import Jobs
+from engine.potentials.system import TYPED
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 WEAKER = "½(x² + y²) − 0.5xy²"

@@ -14,7 +14,8 @@ from app.state.system_review import review_catalogue_entry
 from app.state.view_state import Analysis, ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts
 from engine import CASES, Plane, compute_flux
-from engine.service import Jobs, prepare_for_maps
+from engine.jobs.manager import Jobs
+from engine.warmup import prepare_for_maps
 from tests.app.session.session_lock import locked_by
 
 

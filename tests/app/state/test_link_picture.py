@@ -10,7 +10,7 @@ from app.state.link_picture import LONGEST_TIME, SIDE, LinkPicture, picture_of
 from app.state.permalink import read_link
 from app.state.system_review import review_system
 from engine import CASES, MapSpec, Plane
-from engine.service import PAPER_ENERGIES
+from engine.potentials.energy_ranges import PAPER_ENERGIES
 
 
 def picture(link: str) -> LinkPicture:

@@ -13,7 +13,7 @@ from app.state.permalink import LONGEST_VALUE, linked_system, read_link, without
 from app.state.view_state import LAYERS, PICTURES, RESOLUTION_CHOICES, T_MAX_CHOICES, Analysis, ViewState
 from app.state.watched_starts import COUNTS, StartsFrom, WatchedStarts
 from engine import CASES, Coordinate, ParameterAxis, Plane, Slice, System, Window
-from engine.service import TYPED
+from engine.potentials.system import TYPED
 from plots.palette import MOST_ORBITS, PALETTES
 from tests.app.state.opened_link import open_link
 from tests.engine.slices.test_slice import slices

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from engine import CHAOS_THRESHOLD, Fate
-from engine.service import describe_fate, is_chaotic, name_fate
+from engine.dynamics.fates import describe_fate, is_chaotic, name_fate
 from tests.disc import DISC, LABELS
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map
-from engine.service import describe_certificate
+from engine.dynamics.certificates import describe_certificate
 
 EARLY = (Certificate.CLOSED, Certificate.QUASI_PERIODIC, Certificate.ENCLOSED, Certificate.MIRRORED)
 # Mostly regular; sticky, with slow escapes; on a plane where starts are not on the section; islands only; many energies.

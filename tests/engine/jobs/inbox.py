@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from engine.service import Jobs
+from engine.jobs.manager import Jobs
 
 
 class Inbox:

@@ -24,7 +24,9 @@ from engine import (
     find_divergent_start,
     integrate_orbit,
 )
-from engine.service import Job, Jobs, Queue, map_job, regularity_job
+from engine.jobs.job import Job, Queue
+from engine.jobs.manager import Jobs
+from engine.jobs.map_jobs import map_job, regularity_job
 from tests.engine.jobs.inbox import Inbox, wait_until, wait_until_idle
 
 QUICK = MapSpec(CASES["I"], Plane.X_PX, 0.3, (64, 64), t_max=200.0)

@@ -11,7 +11,7 @@ import pytest
 
 from engine import CASES, Fate, MapSpec, OriginFateMap, Plane, classify_orbits, compute_map, compute_origin_fates, start_states
 from engine.execution import Execution
-from engine.service import join_origin_fates
+from engine.maps.origin_fates import join_origin_fates
 
 # Channel numbers under y → −y; 0 is bounded.
 MIRRORED_IN_Y = {"I": [0, 2, 1], "II": [0, 1, 3, 2], "III": [0, 4, 3, 2, 1]}

@@ -25,7 +25,7 @@ from engine import (
     open_result,
     sample_starts,
 )
-from engine.service import tabulate_crossing_statistics
+from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from tests.disc import DISC, LABELS, disc_map
 
 

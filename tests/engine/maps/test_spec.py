@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from engine import CASES, Coordinate, Fate, MapSpec, Plane, Potential, Slice, Window, compute_map, default_window
-from engine.service import LARGEST_SIDE, LONGEST_TIME
+from engine.maps.spec import LARGEST_SIDE
 from engine.slices.energies import Energy
+from engine.validation import LONGEST_TIME
 
 I = CASES["I"]  # noqa: E741  # named like the case
 WINDOW = (-1.0, 1.0, -1.0, 1.0)

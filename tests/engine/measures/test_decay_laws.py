@@ -23,8 +23,8 @@ from engine import (
 )
 from engine.execution import Execution
 from engine.exits.interior import find_outside_channels
-from engine.measures.escape_statistics import MAX_SURVIVAL_POINTS
-from engine.service import DecayLaw, LawFit, compute_survival
+from engine.measures.decay_laws import DecayLaw, LawFit
+from engine.measures.escape_statistics import MAX_SURVIVAL_POINTS, compute_survival
 
 T_LOW, T_HIGH = 2.0, 1e4
 KAPPA, GAMMA = 0.05, 1.5

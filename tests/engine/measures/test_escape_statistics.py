@@ -20,7 +20,7 @@ from engine import (
     fit_decay_laws,
     sample_starts,
 )
-from engine.service import compute_survival
+from engine.measures.escape_statistics import compute_survival
 
 SIDE = 60
 

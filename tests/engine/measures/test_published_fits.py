@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine import PAPER_FITS
-from engine.service import HyperbolicTangent, Polynomial
+from engine.measures.published_fits import HyperbolicTangent, Polynomial
 
 
 # ½[1 + tanh u] = 1 / (1 + exp(−2u)).

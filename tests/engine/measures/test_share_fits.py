@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
-from engine.service import HyperbolicTangent, Polynomial
+from engine.measures.published_fits import HyperbolicTangent, Polynomial
 
 MANY = 10**9
 ENERGIES = np.linspace(0.26, 0.6, 25)

@@ -6,7 +6,8 @@ import pytest
 
 from engine import CASES, POTENTIALS, System, parse_formula, review_potential
 from engine.potentials.catalogue import CATALOGUE
-from engine.service import PAPER_ENERGIES, TYPED
+from engine.potentials.energy_ranges import PAPER_ENERGIES
+from engine.potentials.system import TYPED
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.service import hold_lock
+from engine.storage.output_lock import hold_lock
 from tests.forked import fork_context, start
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such locks")

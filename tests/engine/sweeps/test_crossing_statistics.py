@@ -14,7 +14,7 @@ import xarray as xr
 from engine import CASES, EscapeMap, Fate, MapSpec, Plane, Window, compute_crossing_statistics, compute_map, compute_statistics
 from engine.execution import Execution
 from engine.measures.published_fits import PAPER_FITS
-from engine.service import tabulate_crossing_statistics
+from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 
 SIDE = 50
 T_MAX = 1000.0

@@ -29,7 +29,7 @@ from engine import (
     fit_decay_laws,
 )
 from engine.execution import Execution
-from engine.service import CurvePoint, CurvePointSpec, compute_curve_point
+from engine.sweeps.curve_points import CurvePoint, CurvePointSpec, compute_curve_point
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
 
 SPEC = CurvesSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), 500.0, exponent=False)

@@ -48,7 +48,7 @@ from engine import (
     sample_orbits,
     sample_starts,
 )
-from engine.service import CurvePoint, CurvePointSpec
+from engine.sweeps.curve_points import CurvePoint, CurvePointSpec
 
 C = Coordinate
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)

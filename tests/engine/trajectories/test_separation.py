@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from engine import CASES, Plane, classify_orbits, compute_separation, start_states
 from engine.execution import Execution
-from engine.service import LONGEST_SEPARATION
+from engine.trajectories.separation import LONGEST_SEPARATION
 
 
 def state_at(case: str, h: float, x: float, px: float) -> np.ndarray:

@@ -17,7 +17,7 @@ from engine import (
     compute_wada_test,
     fit_decay_laws,
 )
-from engine.service import BasinMeasures
+from engine.jobs.map_jobs import BasinMeasures
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from engine import (
     evaluate_indicators,
     integrate_orbit,
 )
-from engine.service import BasinMeasures
+from engine.jobs.map_jobs import BasinMeasures
 from plots.orbit_curves import compute_orbit_curves
 
 

@@ -9,7 +9,7 @@ from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.panels.controls import ControlActions, Controls
 from engine import Plane, System
-from engine.service import TYPED
+from engine.potentials.system import TYPED
 
 
 class Page:

@@ -11,7 +11,7 @@ from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
-from engine.service import TYPED
+from engine.potentials.system import TYPED
 
 C = Coordinate
 

@@ -7,7 +7,9 @@ from collections.abc import Hashable
 import pytest
 
 from engine import POTENTIALS
-from engine.service import Job, JobClient, Jobs, Queue
+from engine.jobs.client import JobClient
+from engine.jobs.job import Job, Queue
+from engine.jobs.manager import Jobs
 from engine.taylor import bound_kernels
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.compiled_operations import LARGEST_CODE, SHARES, CompiledCodeLimitError, CompiledOperations, charged_to
