@@ -39,9 +39,10 @@ def pytest_collection_finish() -> None:
 
 @pytest.fixture(autouse=True)
 def _unlimited_compiled_code() -> Iterator[None]:
-    """The limit of a server state that a test makes is not that of the tests after it."""
+    """The limit of a server state that a test makes is not that of the tests after it, and what they compile does not count."""
     yield
     compiled_operations.most = None
+    compiled_operations.reserve(compiled_operations.codes)
 
 
 @pytest.fixture(scope="session")

@@ -57,4 +57,4 @@ def test_the_comparison_follows_the_slider_without_the_server(open_explorer: Cal
 
 def test_a_link_with_a_system_that_is_refused_says_so(open_explorer: Callable[..., ExplorerPage]) -> None:
     explorer = open_explorer(link=f"{QUICK}&with_V=x%2B&with_case=typed&with_h=0.2")
-    expect(explorer.text("There is no other view to compare with")).to_be_visible()
+    expect(explorer.text("Ignored the view in the link with which to compare")).to_be_visible()

@@ -44,6 +44,12 @@ class CompiledOperations:
         with self._lock:
             return sum(count for count, _ in self._counted())
 
+    @property
+    def codes(self) -> frozenset[str]:
+        """The digests of all codes so far."""
+        with self._lock:
+            return frozenset(self._compiled)
+
     def is_nearly_full(self) -> bool:
         """Whether less is left than one account may have."""
         return self.most is not None and self.most - self.used < self.most // SHARES
