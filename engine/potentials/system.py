@@ -133,12 +133,16 @@ class System:
 
     @property
     def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of the parameters; of systems with letters with these."""
+        """V(x, y) as text, with the values of the parameters; of systems with letters with these, and the origin of moved axes."""
         if self.case != TYPED and (not self.parameters or "epsilon" not in CATALOGUE[self.case].parameters):
             return CATALOGUE[self.case].formula
         if self.value_of(ROTATION):
             return self.as_typed.formula
-        return write_formula(self.potential, SHOWN_DIGITS)
+        potential = self.potential
+        if any(potential.origin):
+            x, y = potential.origin
+            return f"{potential.name}, where x and y count from ({x:.6g}, {y:.6g})"
+        return write_formula(potential, SHOWN_DIGITS)
 
     @property
     def energies(self) -> EnergyRange:

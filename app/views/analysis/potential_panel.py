@@ -31,7 +31,7 @@ _PLACEHOLDER = "½(x² + y²) − x²y + y³/3"
 _HINT = (
     f"Numbers, x, y, r², √, exp, log, sin, cos, letters with sliders, and + − * / ^ ( ), at most {LONGEST_TEXT} characters, "
     "for example 0.5(x^2+y^2) - a x^2 y. “; centre (0, 0) 0.001” adds a body with a radius of collision, “; escape 10” an escape "
-    "radius in place of exits over saddles."
+    "radius in place of exits over saddles; “; well (1, 0)” moves the axes to the minimum near (1, 0)."
 )
 NEW_INTEGRATOR = "Press Enter to use it: an integrator for its form and its outcomes is compiled first, which takes some seconds."
 """What is said of a text that the maps do not follow while it is typed."""

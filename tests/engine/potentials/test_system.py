@@ -80,3 +80,8 @@ def test_an_illegal_value_of_a_letter_is_named(parameters: dict[str, float]) -> 
 def test_a_known_potential_has_no_letters() -> None:
     with pytest.raises(ValueError, match="no parameter of I; it has omega_1, omega_2, epsilon"):
         _ = System("I", parameters={"a": 2.0}).potential
+
+
+def test_the_formula_of_moved_axes_is_shown_as_typed() -> None:
+    system = System(TYPED, "((x − 1)² + y²)/2 − a(x − 1)y²; well (1, 0)", {"a": 2.0})
+    assert system.formula_shown == "1/2 − x + x²/2 + 5y²/2 − 2xy², where x and y count from (1, 0)"
