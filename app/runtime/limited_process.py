@@ -118,7 +118,9 @@ def _limit_memory(most: int) -> None:
 
         # Without a file of its memory when the system ends it.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        resource.setrlimit(resource.RLIMIT_AS, (psutil.Process().memory_info().vms + most, resource.RLIM_INFINITY))
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        soft = psutil.Process().memory_info().vms + most
+        resource.setrlimit(resource.RLIMIT_AS, (soft if hard == resource.RLIM_INFINITY else min(soft, hard), hard))
 
 
 def _do_nothing() -> None:

@@ -81,7 +81,7 @@ def _needs_positive(node: Node) -> bool:
 def _widened(node: Node, found: list[Interval], numbers: Sequence[float], x: Interval, y: Interval) -> Interval:
     if node.kind in ("x", "y"):
         return x if node.kind == "x" else y
-    # The cosine of the angle of a sine follows it.
+    # The second operand of a sine is a later node, which is not needed.
     operands = [found[place] for place in node.operands if place < len(found)]
     if node.kind in ("sum", "shift"):
         return _sum(node, operands, numbers, x)

@@ -145,6 +145,14 @@ def multiply(*factors: Expression) -> Expression:
     return linear_combination([(coefficient, product)])
 
 
+def expand(factor: Expression, total: Expression) -> Expression:
+    """The product with each term of a sum."""
+    if not isinstance(total, Sum):
+        return multiply(factor, total)
+    terms = ((c, multiply(factor, part)) for part, c in total.terms)
+    return linear_combination([(total.constant, factor), *terms])
+
+
 def power(base: Expression, exponent: float) -> Expression:
     """A real power; ArithmeticError or ValueError for one of a number that is not a finite real number."""
     coefficient, rest = _split_coefficient(base)

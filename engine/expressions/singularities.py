@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, as_terms
-from engine.polynomials import degree
+from engine.polynomials import Powers, degree
 
 
 def singular_bases(expression: Expression) -> tuple[Expression, ...]:
@@ -21,6 +21,19 @@ def _bases(expression: Expression) -> list[Expression]:
             singular = [base for base, exponent in factors if exponent < 0.0 or exponent != int(exponent)]
             return [*singular, *(inner for base, _ in factors for inner in _bases(base))]
     return []
+
+
+def has_central_part(expression: Expression) -> bool:
+    """Whether a singular base is a multiple of x² + y²."""
+    return any(
+        terms is not None and terms == {(2, 0): c, (0, 2): c} for terms, c in map(_with_square, singular_bases(expression))
+    )
+
+
+def _with_square(base: Expression) -> tuple[dict[Powers, float] | None, float]:
+    """The terms of a polynomial, and the coefficient of x²."""
+    terms = as_terms(base)
+    return terms, (terms or {}).get((2, 0), 0.0)
 
 
 def oblique_gradients(expression: Expression) -> tuple[tuple[float, float], ...]:

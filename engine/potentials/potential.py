@@ -98,7 +98,7 @@ class Potential(Result):
     rotation: float = 0.0
     centres: tuple[Centre, ...] = ()
     escape_radius: float | None = None
-    origin: tuple[float, float] = field(default=(0.0, 0.0), compare=False)
+    origin: tuple[float, float] = (0.0, 0.0)
 
     def __init__(
         self,
@@ -125,7 +125,7 @@ class Potential(Result):
             "rotation": checked_number("rotation", rotation),
             "centres": tuple(centres),
             "escape_radius": None if escape_radius is None else checked_radius("escape_radius", escape_radius),
-            "origin": origin,
+            "origin": (checked_number("origin", origin[0]), checked_number("origin", origin[1])),
         }
         for attribute, value in values.items():
             object.__setattr__(self, attribute, value)

@@ -133,7 +133,7 @@ class System:
 
     @property
     def formula_shown(self) -> str:
-        """V(x, y) as text, with the values of the parameters; of systems with letters with these, and the origin of moved axes."""
+        """V(x, y) as text, with the values of the parameters; of systems with letters with these, and where axes are moved."""
         if self.case != TYPED and (not self.parameters or "epsilon" not in CATALOGUE[self.case].parameters):
             return CATALOGUE[self.case].formula
         if self.value_of(ROTATION):

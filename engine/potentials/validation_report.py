@@ -209,7 +209,9 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
         return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
     place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
     which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
-    return f"{problem} {which} at {place}: with “; well {place}” after the formula, x and y count from there."
+    can_move = _other_well(potential, points) is not None and not any(potential.origin)
+    hint = f": with “; well {place}” after the formula, x and y count from there" if can_move else ""
+    return f"{problem} {which} at {place}{hint}."
 
 
 def _point_at_origin(points: tuple[CriticalPoint, ...]) -> CriticalPoint | None:

@@ -20,7 +20,7 @@ from engine.polynomials import ExactTerms
 RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 """The polynomials in x and y with rational coefficients."""
 
-# Arbitrary slopes k, tried in turn. Two common roots have the same s on a line of this slope only.
+# Arbitrary factors k, tried in turn. Two common roots have the same s only if the line through them has the slope −1/k.
 _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
 # Bits of the intervals, tried in turn.
 _PRECISIONS = (128, 256, 512, 1024)

@@ -24,7 +24,7 @@ NO_POINTS = read_only(np.empty((0, 2)))
 
 # Denominators of fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
-# An arbitrary point. The point of a curve that is nearest to it is one at which the curve is smooth.
+# An arbitrary place.
 _ARBITRARY = fmpq(577, 1009), fmpq(-733, 1013)
 # Bits of the intervals in which signs are found; all roots are known to more.
 _PRECISION = 1024
@@ -83,7 +83,7 @@ def _rational(c: float) -> Fraction:
 def _isolated_zeros(polynomial: fmpq_mpoly) -> list[CommonRoot]:
     """The real zeros of a polynomial, which are isolated points; NotIsolatedError if there are curves of them.
 
-    Each curve of zeros has a point nearest to an arbitrary one, at which the gradient points there.
+    On each curve of zeros there is a point that is nearest to an arbitrary place; the gradient there points along the line to it.
     """
     zeros = []
     x, y = RING.gens()

@@ -19,16 +19,17 @@ from engine.polynomials import Terms
 from engine.potentials.forms.common_roots import UndecidedError
 from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 from engine.potentials.forms.form import Velocity
+from engine.potentials.forms.interval_newton import Derivatives
 from engine.potentials.forms.polynomial_form import PolynomialForm
-from engine.potentials.forms.stationary_points import Derivatives, find_stationary_points
+from engine.potentials.forms.stationary_points import find_stationary_points
 from engine.potentials.well_units import nearest_power_of_two
 from engine.results.arrays import read_only
 
 MOST_CONVOLUTIONS = 120
 """Largest number of products and functions in the graph of gradient and Hessian: their cost and compile time grow with it."""
 
-# Results of searches for zeros, some 0.1 kB each.
-_ZEROS = 1024
+# Results of searches for zeros, some 0.1 kB each, and the share of the operations that a search may take.
+_ZEROS, _EFFORT_FOR_ZEROS = 1024, 0.1
 
 _ORDERS = ((2, 0), (1, 1), (0, 2))
 # Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
@@ -246,7 +247,10 @@ def _isolated_zeros(expression: Expression) -> np.ndarray:
     terms = as_terms(expression)
     form = ExpressionForm(expression) if terms is None else PolynomialForm(tuple((i, j, c) for (i, j), c in terms.items()))
     try:
-        points = form.find_critical_points()[:, :2]
+        if isinstance(form, ExpressionForm):
+            points = find_stationary_points(Derivatives.of(form.expression), _EFFORT_FOR_ZEROS)[:, :2]
+        else:
+            points = form.find_critical_points()[:, :2]
     except (NotIsolatedError, UndecidedError):
         return NO_POINTS
     size = np.abs(np.broadcast_arrays(*form.hessian(*points.T))).max(axis=0) * (1.0 + (points**2).sum(axis=1))

@@ -65,3 +65,11 @@ def test_the_review_of_a_formula_is_equal_to_one_of_this_process(limited: Limite
     assert found == expected
     assert hash(found.potential) == hash(expected.potential)
     np.testing.assert_array_equal(found.potential.saddles, expected.potential.saddles)
+
+
+def test_a_limit_of_the_system_stays(limited: LimitedProcess) -> None:
+    resource = pytest.importorskip("resource")
+    soft, hard = resource.getrlimit(resource.RLIMIT_CORE)
+    found = limited(partial(resource.getrlimit, resource.RLIMIT_AS))
+    assert 2**29 < found[0] < 2**33
+    assert (resource.getrlimit(resource.RLIMIT_CORE), found[1]) == ((soft, hard), resource.getrlimit(resource.RLIMIT_AS)[1])

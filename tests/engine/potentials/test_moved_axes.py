@@ -98,3 +98,15 @@ def test_wells_that_are_none_are_refused(text: str, message: str) -> None:
     with pytest.raises(ValueError, match=message) as caught:
         parse_formula(text)
     assert isinstance(caught.value, FormulaError) == ("minimum" not in message)
+
+
+def test_potentials_that_differ_in_their_origin_are_not_equal() -> None:
+    first, second = (parse_formula(f"(x − {a})²/2 + y²/2 − (x − {a})²y²; well ({a}, 0)") for a in (1, 2))
+    assert first.terms == second.terms
+    assert "(1, 0)" in review_potential(first).remarks[0]
+    assert "(2, 0)" in review_potential(second).remarks[0]
+
+
+def test_a_rotating_system_is_not_told_to_move() -> None:
+    refusal = str(review_potential(parse_formula("½x² + ½y² + x⁴ + y⁴ + 0.3x²y²").in_rotating_frame(1.5)).refusal)
+    assert "is at (-0.521286, -0.521286)." in refusal

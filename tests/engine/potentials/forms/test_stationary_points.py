@@ -132,3 +132,42 @@ def test_points_in_a_narrow_valley_between_two_walls_are_found() -> None:
     (foot,) = points[in_valley]
     assert foot @ [1.0, 2.0] == pytest.approx(0.0, abs=1e-3)
     assert (potential.critical_indices == 1.0).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "points", "minima"),
+    [
+        # Softened bodies, and bumps: what is divided by is small, and 0 nowhere.
+        ("½(x² + y²) − x²y² + 0.001/((x² − 0.5)² + (y² − 0.5)² + 1e-3)", 13, 1),
+        ("½(x² + y²) − 1/√((x − 0.5)² + y² + 0.02²) − 1/√((x + 0.5)² + y² + 0.02²)", 3, 2),
+        # A minimum so narrow that no start of Newton's method finds it, and a saddle beside it.
+        ("x + 3y − exp(−400((x − 2)² + (y − 1)²))", 2, 1),
+    ],
+)
+def test_points_in_narrow_places_are_found(text: str, points: int, minima: int) -> None:
+    kinds = [point.kind.value for point in review_potential(parse_formula(text)).critical_points]
+    assert (len(kinds), kinds.count("minimum")) == (points, minima)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "½(x² + y²) − x²y² + 1e-3√((x y − 0.5)² + 1e-6)",
+        "½(x² + y²) − x²y² + 0.01√((x² + y² − 1)² + 1e-4)",
+        "½(x² + y²) − x²y² + 1e-4exp(−2.5e7(x² + y² − 0.0025)²)",
+    ],
+)
+def test_what_is_not_proved_is_refused(text: str) -> None:
+    assert "is not decided within the limit on the work" in str(review_potential(parse_formula(text)).refusal)
+
+
+def test_a_planet_of_little_mass_has_its_lagrange_points() -> None:
+    text = "−1/r − 3.2e-7/√((x − 1)² + y²); centre (0, 0) 0.01; centre (1, 0) 1e-6"
+    points = parse_formula(text).in_rotating_frame(1.0).critical_points
+    np.testing.assert_allclose(np.sort(points[:, 0]), [-1.0, 1.0 - 4.74e-3, 1.0 + 4.74e-3], atol=3e-5)
+    assert (points[:, 1] == 0.0).all()
+
+
+def test_the_origin_is_no_point_where_the_slope_is_not_zero() -> None:
+    potential = parse_formula("x + y² + y exp(−(x/a)²) + (x/a)²/4 a", parameters={"a": 1e9})
+    assert not (potential.critical_points == 0.0).all(axis=1).any()

@@ -1,0 +1,155 @@
+"""Critical points in boxes: proofs with intervals that a box has none, or exactly one, and Newton's method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.expressions.calculus import derivative
+from engine.expressions.graph import Graph, evaluate, make_graph
+from engine.expressions.intervals import Enclosure, Interval, enclose
+from engine.expressions.nodes import Expression, X, Y, expand, linear_combination
+from engine.expressions.singularities import has_central_part, oblique_gradients, singular_bases
+
+Program = tuple[Graph, tuple[float, ...]]
+"""A graph and its numbers."""
+
+# A point is proved in a box this much larger than the one in which it was looked for, as it may lie on an edge.
+_ENLARGED = 1.3
+# Covers the rounding errors of Krawczyk's operator, relative to the box.
+_MARGIN = 1e-9
+_REFINING_STEPS = 8
+# How much longer an operation on intervals takes than a sum or a product.
+_COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
+_SAMPLES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """V and derivatives of it as programs.
+
+    Attributes
+    ----------
+    slopes
+        V, its derivatives along two directions that are not parallel, and along further ones.
+    jacobian
+        The x and y derivatives of the first and of the second of these two.
+    curvatures
+        V_xx, V_xy and V_yy.
+    bases
+        What is divided by, or of which a root or a logarithm is taken.
+    """
+
+    slopes: Program
+    jacobian: Program
+    curvatures: Program
+    bases: Program
+
+    @classmethod
+    def of(cls, expression: Expression) -> Derivatives:
+        """Those of an expression.
+
+        Along a straight wall the derivative of V is small, while those along x and y are large: the second direction is along it.
+        """
+        along_x, along_y = derivative(expression, 0), derivative(expression, 1)
+        oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
+        first, second, *others = [along_x, *oblique, along_y]
+        if has_central_part(expression):
+            # The same on circles around a body at the origin.
+            others.append(linear_combination([(1.0, expand(X, along_y)), (-1.0, expand(Y, along_x))]))
+        return cls(
+            make_graph((expression, first, second, *others)),
+            make_graph(tuple(derivative(each, axis) for each in (first, second) for axis in (0, 1))),
+            make_graph((derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1))),
+            make_graph(singular_bases(expression)),
+        )
+
+    @property
+    def operations(self) -> int:
+        """Number of operations on intervals for a box, in units of a sum."""
+        return sum(_COSTS.get(node.kind, 1) for graph, _ in (self.slopes, self.jacobian) for node in graph.nodes)
+
+    def slopes_at(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2) the two derivatives at points (n, 2)."""
+        return np.column_stack(evaluate(*self.slopes, *points.T)[1:3])
+
+    def jacobian_at(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) their Jacobian matrix at points (n, 2)."""
+        return np.column_stack(evaluate(*self.jacobian, *points.T)).reshape(-1, 2, 2)
+
+    def is_singular_in(self, centres: np.ndarray, half: float) -> np.ndarray:
+        """(n,) whether a base has both signs, or is not defined, at nine points of each box (n, 2)."""
+        x, y = np.moveaxis(centres[:, None] + half * _SAMPLES, -1, 0)
+        found = np.zeros(len(centres), bool)
+        for base in evaluate(*self.bases, x, y):
+            found |= np.isnan(base).any(axis=1) | ((base < 0.0).any(axis=1) & (base > 0.0).any(axis=1))
+        return found
+
+    def hessian_at(self, points: np.ndarray) -> np.ndarray:
+        """(n, 2, 2) the Hessian matrix of V at points (n, 2)."""
+        vxx, vxy, vyy = evaluate(*self.curvatures, *points.T)
+        return np.column_stack([vxx, vxy, vxy, vyy]).reshape(-1, 2, 2)
+
+
+def box(centres: np.ndarray, half: float) -> tuple[Interval, Interval]:
+    """The squares with centres (n, 2) and half a side."""
+    x, y = (Interval(centre - half, centre + half) for centre in centres.T)
+    return x, y
+
+
+def excludes_zero(slopes: Enclosure) -> np.ndarray:
+    """(n,) whether a derivative vanishes nowhere in a box."""
+    excluded: np.ndarray = np.any([each.excludes_zero() for each in slopes.values[1:]], axis=0)
+    return excluded
+
+
+def solve(derivatives: Derivatives, centres: np.ndarray, half: float) -> tuple[np.ndarray, np.ndarray]:
+    """(m, 2) the points that lie in boxes with one point each, and (n,) whether it is proved that a box has one or none.
+
+    The operator of Krawczyk maps a box c ± h to K = c − Y f + (I − Y J)(± h), with the two derivatives f at c, their Jacobian
+    matrix J on the box and Y its inverse at c. All points of the box lie in K; if K lies inside of it, it has exactly one.
+    """
+    jacobian = enclose(*derivatives.jacobian, *box(centres, _ENLARGED * half))
+    slopes = enclose(*derivatives.slopes, *box(centres, 0.0))
+    with np.errstate(all="ignore"):
+        middle, spread = (each.reshape(-1, 2, 2) for each in _middle_and_spread(jacobian.values))
+        slope, error = _middle_and_spread(slopes.values[1:3])
+        inverse = _inverse(derivatives.jacobian_at(centres))
+        step = -np.einsum("nij,nj->ni", inverse, slope)
+        rest = np.abs(np.eye(2) - inverse @ middle) + np.abs(inverse) @ spread
+        reach = _ENLARGED * half * rest.sum(axis=2) + np.einsum("nij,nj->ni", np.abs(inverse), error)
+        reach = reach * (1.0 + _MARGIN) + _MARGIN * half
+        known = jacobian.defined & slopes.defined & np.isfinite(step + reach).all(axis=1)
+        single = known & (np.abs(step) + reach < _ENLARGED * half).all(axis=1)
+        empty = known & (np.abs(step) - reach > half).any(axis=1)
+    return refined(derivatives, (centres + step)[single]), single | empty
+
+
+def _middle_and_spread(values: list[Interval]) -> tuple[np.ndarray, np.ndarray]:
+    """(n, k) the middles of k intervals, and half their lengths."""
+    low, high = np.column_stack([each.low for each in values]), np.column_stack([each.high for each in values])
+    return 0.5 * (low + high), 0.5 * (high - low)
+
+
+def _inverse(matrices: np.ndarray) -> np.ndarray:
+    """(n, 2, 2) inverse matrices; products of small entries do not underflow."""
+    size = np.abs(matrices).max(axis=(1, 2))[:, None, None]
+    (a, b), (c, d) = np.moveaxis(matrices / size, 0, -1)
+    adjugate = np.moveaxis(np.array([[d, -b], [-c, a]]), -1, 0)
+    inverse: np.ndarray = adjugate / (a * d - b * c)[:, None, None] / size
+    return inverse
+
+
+def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
+    """(n, 2) after some steps of Newton's method."""
+    for _ in range(_REFINING_STEPS):
+        points = points - newton_step(derivatives, points)
+    return points
+
+
+def newton_step(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
+    """(n, 2) to subtract."""
+    with np.errstate(all="ignore"):
+        step: np.ndarray = np.einsum("nij,nj->ni", _inverse(derivatives.jacobian_at(points)), derivatives.slopes_at(points))
+    return step
