@@ -24,8 +24,8 @@ SKIPPED = {"name": "numba", "skip_reason": "not found"}
         ([SOUND], 0, "0 known vulnerabilities in 1 audited packages"),
         ([SOUND, SKIPPED], 0, "WARNING: not all packages were audited"),
         ([SOUND, FLAWED], 1, "tornado 1.0: CVE-1"),
-        ([SKIPPED], 1, "in 0 audited packages"),
-        (None, 1, "in 0 audited packages"),
+        ([SKIPPED], 2, "in 0 audited packages"),
+        (None, 2, "in 0 audited packages"),
     ],
     ids=["sound", "one not audited", "a vulnerability", "none audited", "no answer"],
 )
