@@ -178,7 +178,7 @@ class MapRun:
                 self._rows_without_exits.discard(row)
 
     def _certify(self, reached: float, execution: Execution, on_round: Callable[[], None]) -> None:
-        """Mark orbits inside at t = `reached` as bounded that have a certificate; where it is cancelled, none of them."""
+        """Mark the orbits that are inside at t = `reached` and have a certificate as bounded; a cancelled test marks none."""
         spec, batch = self.spec, self._batch
         tested = self._find_untested(reached, execution)
         if not tested.size:
@@ -197,7 +197,7 @@ class MapRun:
         if certifier.run(mark_certified):
             batch.tested[tested], batch.digits[tested] = reached, certifier.digits
         else:
-            # A later test of only those without a certificate would be another test.
+            # When the map goes on, the test is repeated with all these orbits, so that its result is the same.
             batch.reopen(tested)
 
     def _find_untested(self, reached: float, execution: Execution) -> np.ndarray:
