@@ -22,7 +22,8 @@ _MARGIN = 1e-9
 _REFINING_STEPS = 8
 # How much longer an operation on intervals takes than a sum or a product.
 _COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
-_SAMPLES = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
+# Slightly beyond the edges, as a wall may run along one.
+_SAMPLES = 1.1 * np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
 
 @dataclass(frozen=True)

@@ -165,7 +165,8 @@ def test_the_head_of_a_page_has_the_address_of_its_picture() -> None:
 @pytest.mark.usefixtures("state")
 def test_the_address_of_a_picture_is_that_of_the_proxy() -> None:
     headers = {"Host": "maps.example.org", "X-Forwarded-Proto": "https"}
-    page = answer("/deep/app", headers, prefix="/deep", use_xheaders=True, http_server_kwargs={"xheaders": True})
+    proxy: dict[str, Any] = {"use_xheaders": True, "http_server_kwargs": {"xheaders": True}}
+    page = answer("/deep/app", headers, prefix="/deep", allow_websocket_origin=["maps.example.org"], **proxy)
     assert picture_in(page) == "https://maps.example.org/deep/app/picture.png?"
 
 
