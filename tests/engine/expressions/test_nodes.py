@@ -24,6 +24,7 @@ def plus(*parts: Expression) -> Expression:
 
 
 SQUARE = plus(power(X, 2.0), power(Y, 2.0))
+MINUS_X = linear_combination([(-1.0, X)])
 WAVE = apply_function("sin", multiply(X, Y))
 
 
@@ -34,6 +35,8 @@ WAVE = apply_function("sin", multiply(X, Y))
         (plus(X, X), linear_combination([(2.0, X)])),
         (multiply(X, WAVE, Y), multiply(WAVE, Y, X)),
         (multiply(power(X, 0.5), power(X, 1.5)), power(X, 2.0)),
+        (multiply(power(MINUS_X, 0.5), power(MINUS_X, 0.5)), MINUS_X),
+        (multiply(power(MINUS_X, -0.5), power(MINUS_X, -1.5), Y), multiply(power(X, -2.0), Y)),
         (power(power(SQUARE, 0.5), 3.0), power(SQUARE, 1.5)),
         (power(linear_combination([(4.0, SQUARE)]), 0.5), power(linear_combination([(4.0, SQUARE)]), 0.5)),
         (power(multiply(number(4.0), WAVE), 0.5), linear_combination([(2.0, power(WAVE, 0.5))])),

@@ -290,3 +290,10 @@ def test_a_divisor_that_is_a_power_stays_one(text: str, written: str, function: 
 def test_high_powers_of_a_wall_are_reviewed(power: int) -> None:
     found = review_potential(parse_formula(f"x² + y² − x⁴ + 0.01/(y − x + 0.8)^{power}"))
     assert "The only minimum is at" in str(found.refusal)
+
+
+def test_a_root_of_a_negative_product_is_understood() -> None:
+    text = "x⁴ + y⁴ − (14(√(−x y²) + exp(−y) + (y³)^1.5)^−3 − 4.7y³)^−1"
+    assert parse_formula(text).value(-0.5, 0.3) == pytest.approx(
+        0.0625 + 0.0081 - 1 / (14 * (math.sqrt(0.045) + math.exp(-0.3) + 0.027**1.5) ** -3 - 4.7 * 0.027)
+    )
