@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Future
 from concurrent.futures import TimeoutError as FutureTimeoutError
@@ -18,6 +20,8 @@ SECONDS = 5
 MEMORY = 2**30
 """Memory of the process beside that which it has when it starts, in bytes."""
 
+# How often the process looks whether the server is still there, in seconds.
+_WATCH_SECONDS = 2.0
 # A call on a busy machine may wait for the processor this many times as long as it runs.
 _PATIENCE = 4
 
@@ -27,7 +31,9 @@ class LimitError(ValueError):
 
 
 class LimitedProcess:
-    """A process that makes one call at a time; it starts with the first call, and again after one that exceeded a limit.
+    """A process that makes one call at a time; it starts with the first call, and again after it has ended.
+
+    It ends when a call exceeds a limit, and with the process that made it.
 
     Parameters
     ----------
@@ -63,10 +69,6 @@ class LimitedProcess:
                 self.stopped += 1
                 raise
 
-    def start(self) -> None:
-        """Start the process ahead of the first call."""
-        self(_do_nothing)
-
     def close(self) -> None:
         """End the process."""
         executor, self._executor = self._executor, None
@@ -93,7 +95,7 @@ class LimitedProcess:
             with suppress(BrokenExecutor):
                 waiting: Future[Result] = self._executor.submit(call)
                 return waiting
-        self._executor = ProcessPoolExecutor(max_workers=1, initializer=_limit_memory, initargs=(self._memory,))
+        self._executor = ProcessPoolExecutor(max_workers=1, initializer=_begin, initargs=(self._memory, os.getpid()))
         first: Future[Result] = self._executor.submit(call)
         return first
 
@@ -110,6 +112,19 @@ def _call_limited[Result](seconds: int, function: Callable[[], Result]) -> Resul
     return function()
 
 
+def _begin(memory: int, server: int) -> None:
+    """Prepare the process for its calls."""
+    threading.Thread(target=_end_with, args=(server,), daemon=True).start()
+    _limit_memory(memory)
+
+
+def _end_with(server: int) -> None:
+    """End the process when the server has ended, also where it was killed and could not say so."""
+    while os.getppid() == server:
+        time.sleep(_WATCH_SECONDS)
+    os._exit(0)
+
+
 def _limit_memory(most: int) -> None:
     with suppress(ImportError):
         import resource
@@ -121,7 +136,3 @@ def _limit_memory(most: int) -> None:
         _, hard = resource.getrlimit(resource.RLIMIT_AS)
         soft = psutil.Process().memory_info().vms + most
         resource.setrlimit(resource.RLIMIT_AS, (soft if hard == resource.RLIM_INFINITY else min(soft, hard), hard))
-
-
-def _do_nothing() -> None:
-    """A call that starts the process."""

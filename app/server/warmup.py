@@ -63,7 +63,6 @@ def _warm_up(state: ProcessState, steps: Mapping[str, Callable[[], None]]) -> No
             log.exception("%s could not be prepared", name)
             state.kernels_failed.set()
             return
-    state.limited.start()
     # Modules, compiled code and defaults live as long as the process: the collector need not visit them again.
     gc.freeze()
     state.kernels_ready.set()

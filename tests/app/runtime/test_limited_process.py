@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
+import threading
 from collections.abc import Iterator
 from functools import partial
+from multiprocessing.connection import Connection
 
 import numpy as np
+import psutil
 import pytest
 
 from app.runtime.limited_process import LimitedProcess, LimitError
@@ -73,3 +77,20 @@ def test_a_limit_of_the_system_stays(limited: LimitedProcess) -> None:
     found = limited(partial(resource.getrlimit, resource.RLIMIT_AS))
     assert 2**29 < found[0] < 2**33
     assert (resource.getrlimit(resource.RLIMIT_CORE), found[1]) == ((soft, hard), resource.getrlimit(resource.RLIMIT_AS)[1])
+
+
+def serve_until_killed(found: Connection) -> None:
+    process = LimitedProcess()
+    found.send(process(os.getpid))
+    threading.Event().wait()
+
+
+def test_the_process_ends_after_its_server_is_killed() -> None:
+    receiver, sender = multiprocessing.get_context("spawn").Pipe(duplex=False)
+    server = multiprocessing.get_context("spawn").Process(target=serve_until_killed, args=(sender,))
+    server.start()
+    left = psutil.Process(receiver.recv())
+    server.kill()
+    server.join()
+    psutil.wait_procs([left], timeout=60.0)
+    assert not left.is_running()
