@@ -131,7 +131,7 @@ def _limit_memory(most: int) -> None:
 
         import psutil
 
-        # Without a file of its memory when the system ends it.
+        # The system writes no core file when it ends the process.
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         _, hard = resource.getrlimit(resource.RLIMIT_AS)
         soft = psutil.Process().memory_info().vms + most

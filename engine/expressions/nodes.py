@@ -140,7 +140,7 @@ def multiply(*factors: Expression) -> Expression:
         return number(0.0)
     scaled = [base for base, n in collected.items() if n and n == int(n) and _split_coefficient(base)[1] is not base]
     if scaled:
-        # As of √(−x) √(−x), which is −x.
+        # For example, √(−x) √(−x) is −x.
         powers = [power(base, collected.pop(base)) for base in scaled]
         return multiply(number(coefficient), *(Product(((base, n),)) for base, n in collected.items() if n), *powers)
     kept = tuple(sorted(((base, n) for base, n in collected.items() if n), key=lambda factor: factor[0].key))

@@ -74,7 +74,8 @@ class PotentialReview(Result):
     remarks
         Unusual properties, one sentence each.
     well
-        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is none.
+        (x, y) of the nearest minimum if there is no well at the origin, see `Potential.at_minimum`; None if there is none, and
+        for rotating frames, escape radii and axes that are moved already.
     """
 
     potential: Potential
@@ -209,7 +210,7 @@ def _well_refusal(potential: Potential, points: tuple[CriticalPoint, ...]) -> st
         return f"{problem} Add quadratic terms that make the origin a minimum, or give an escape radius."
     place = f"({minima[0].x:.6g}, {minima[0].y:.6g})"
     which = f"The nearest of {len(minima)} minima is" if len(minima) > 1 else "The only minimum is"
-    can_move = _other_well(potential, points) is not None and not any(potential.origin)
+    can_move = _other_well(potential, points) is not None
     hint = f": with “; well {place}” after the formula, x and y count from there" if can_move else ""
     return f"{problem} {which} at {place}{hint}."
 
@@ -224,10 +225,12 @@ def _minima(points: tuple[CriticalPoint, ...]) -> list[CriticalPoint]:
 
 
 def _other_well(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[float, float] | None:
+    """The nearest minimum that a formula can be moved to by a clause, which it may have once only."""
     nearest = next(iter(_minima(points)), None)
-    if nearest is None or nearest is _point_at_origin(points) or potential.rotation or potential.escape_radius is not None:
+    is_moved = any(potential.origin)
+    if nearest is None or nearest is _point_at_origin(points) or is_moved or potential.rotation:
         return None
-    return nearest.x, nearest.y
+    return (nearest.x, nearest.y) if potential.escape_radius is None else None
 
 
 def _degenerate_refusal(_potential: Potential, points: tuple[CriticalPoint, ...]) -> str | None:

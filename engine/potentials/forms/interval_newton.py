@@ -22,7 +22,7 @@ _MARGIN = 1e-9
 _REFINING_STEPS = 8
 # How much longer an operation on intervals takes than a sum or a product.
 _COSTS = {"sin": 10, "cos": 10, "exp": 4, "log": 4, "power": 4}
-# Slightly beyond the edges, as a wall may run along one.
+# The points lie slightly beyond the edges, as a wall may run along an edge.
 _SAMPLES = 1.1 * np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, 3)] * 2), axis=-1).reshape(-1, 2)
 
 
@@ -49,7 +49,7 @@ class Derivatives:
 
     @classmethod
     def of(cls, expression: Expression) -> Derivatives:
-        """Those of an expression.
+        """The derivatives of an expression.
 
         Along a straight wall the derivative of V is small, while those along x and y are large: the second direction is along it.
         """
@@ -57,7 +57,7 @@ class Derivatives:
         oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
         first, second, *others = [along_x, *oblique, along_y]
         if has_central_part(expression):
-            # The same on circles around a body at the origin.
+            # On circles around a body at the origin the derivative is small, too.
             others.append(linear_combination([(1.0, expand(X, along_y)), (-1.0, expand(Y, along_x))]))
         return cls(
             make_graph((expression, first, second, *others)),
@@ -150,7 +150,7 @@ def refined(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
 
 
 def newton_step(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
-    """(n, 2) to subtract."""
+    """(n, 2) the steps of Newton's method from points (n, 2), to be subtracted."""
     with np.errstate(all="ignore"):
         step: np.ndarray = np.einsum("nij,nj->ni", _inverse(derivatives.jacobian_at(points)), derivatives.slopes_at(points))
     return step

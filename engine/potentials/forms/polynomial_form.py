@@ -160,7 +160,8 @@ class PolynomialForm:
                     terms[k, m] = terms.get((k, m), Fraction(0)) + part
         rounded = {powers: float(c) for powers, c in terms.items() if sum(powers) != 1}
         sizes = {powers: abs(c) * self.length ** sum(powers) for powers, c in rounded.items()}
-        kept = {powers: c for powers, c in rounded.items() if sizes[powers] > _ZERO_COEFFICIENT * max(sizes.values())}
+        smallest = _ZERO_COEFFICIENT * max(sizes.values(), default=0.0)
+        kept = {powers: c for powers, c in rounded.items() if sizes[powers] > smallest}
         return checked_form(tuple((k, m, c) for (k, m), c in kept.items()))
 
     def count_rotations(self) -> int:
