@@ -22,6 +22,7 @@ from matplotlib.legend import Legend
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator, NullFormatter
+from matplotlib.transforms import Bbox, ScaledTranslation, Transform
 
 from plots.figure_style import CM_PER_INCH, POINTS_PER_INCH, SCREEN, FigureFormat, FigureStyle
 from plots.palette import LIGHT, PATCH_EDGE, Entry
@@ -55,20 +56,30 @@ Corner = Literal["upper left", "upper right", "lower left", "lower right", "cent
 """Position of a legend in its panel."""
 
 
-def new_figure(style: FigureStyle, height: float, title: str, *, equal: bool = False) -> Figure:
+def new_figure(style: FigureStyle, height: float, title: str = "", *, equal: bool = False) -> Figure:
     """Empty figure, `height` cm high; `equal` packs panels that have equal scales on both axes."""
     layout = ConstrainedLayoutEngine(h_pad=_GAP, w_pad=_GAP, compress=equal)
     figure = Figure(figsize=(style.inches, height / CM_PER_INCH), dpi=style.dpi, layout=layout)
-    if style.titles:
+    if style.titles and title:
         figure.suptitle(title, fontsize=style.title_size, color=LIGHT.text)
     return figure
 
 
-def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle) -> None:
-    """Write lines below all panels, broken so that they fit in the width of the figure."""
-    letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / style.small_size)
-    text = "\n".join(fill(line, letters) for line in lines)
-    figure.supxlabel(text, fontsize=style.small_size, color=LIGHT.text)
+def write_below(figure: Figure, lines: Iterable[str], style: FigureStyle, size: float | None = None) -> None:
+    """Write lines below all panels, broken so that they fit in the width of the figure; `size` of the letters in points."""
+    size = size or style.small_size
+    letters = int(_LETTERS_PER_EM * style.inches * POINTS_PER_INCH / size)
+    text = "\n".join(fill(line, letters, break_on_hyphens=False) for line in lines)
+    figure.supxlabel(text, x=_GAP / style.inches, ha="left", fontsize=size, color=LIGHT.text)
+
+
+def fit_height(figure: Figure) -> None:
+    """Make a figure as high as its panels and the lines below them, whose sizes follow from the width of the figure."""
+    figure.draw_without_rendering()
+    panels = Bbox.union([box for axes in figure.axes if (box := axes.get_tightbbox()) is not None])
+    lines = sum(text.get_window_extent().height for text in figure.texts)
+    gaps = 2 + len(figure.texts)
+    figure.set_figheight((panels.height + lines) / figure.dpi + gaps * _GAP)
 
 
 def label_axes(axes: Axes, across: str, up: str, style: FigureStyle = SCREEN) -> None:
@@ -115,6 +126,12 @@ def add_figure_legend(figure: Figure, handles: Sequence[Artist], style: FigureSt
     _colour_text(figure.legend(handles=list(handles), loc="outside lower center", ncols=columns, **_legend_style(style)))
 
 
+def below(axes: Axes, depth: float, left: float = 0.0) -> Transform:
+    """Shares of a panel, moved down and to the left by so many points."""
+    move = ScaledTranslation(-left / POINTS_PER_INCH, -depth / POINTS_PER_INCH, figure_of(axes).dpi_scale_trans)
+    return axes.transAxes + move
+
+
 def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, float], width: float, style: FigureStyle) -> None:
     """Add a legend below a panel, in as many columns as fit.
 
@@ -125,14 +142,17 @@ def add_legend_below(axes: Axes, handles: Sequence[Artist], place: tuple[float, 
     handles
         Of the entries.
     place
-        Of its upper left corner, from the lower left corner of the panel to the right and up, in points.
+        Of its upper left corner, from the lower left corner of the panel to the left and down, in points.
     width
         Available, in points; longer entries are broken into lines.
     style
         Of the figure.
     """
-    corner = place[0] / size_in_points(axes)[0], place[1] / size_in_points(axes)[1]
-    options = {"loc": "upper left", "bbox_to_anchor": corner, "borderaxespad": 0.0, "borderpad": 0.0, **_legend_style(style)}
+    left, depth = place
+    options = {
+        "loc": "upper left", "bbox_to_anchor": (0.0, 0.0), "bbox_transform": below(axes, depth, left),
+        "borderaxespad": 0.0, "borderpad": 0.0, **_legend_style(style),
+    }  # fmt: skip
     names = [str(handle.get_label()) for handle in handles]
     for columns in range(min(len(names), _MOST_COLUMNS), 0, -1):
         legend = axes.legend(list(handles), names, ncols=columns, **options)

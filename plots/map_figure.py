@@ -23,8 +23,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import withStroke
-from matplotlib.text import Text
-from matplotlib.transforms import Bbox
 
 from engine import (
     CASES,
@@ -41,13 +39,17 @@ from engine.slices.energies import common_energy
 from plots.axis_labels import label_axis
 from plots.figure_axes import (
     add_legend_below,
+    below,
     figure_of,
+    fit_height,
     label_axes,
     name_panel,
+    new_figure,
     patches,
     set_font,
     size_in_points,
     style_axes,
+    write_below,
 )
 from plots.figure_style import POINTS_PER_INCH, SCREEN, FigureStyle
 from plots.manifold_strokes import Stroke, manifold_strokes
@@ -61,14 +63,17 @@ from plots.map_images import (
 from plots.palette import DOUBT, LIGHT, MARK_EDGE, Entry, Palette
 from plots.time_scale import TimeScale, fitted_scale
 
-# In units of the font size: space around the figure and between panels; from the lower edge of a map to what is below the name of
-# its axis; height of a colour bar, and from its upper edge to what is below its labels.
-_MARGIN, _GAP = 0.5, 1.0
-_BELOW_AXIS, _BAR_HEIGHT, _BELOW_BAR = 3.7, 0.75, 2.7
+# In units of the font size: from the lower edge of a map to what is below the name of its axis, from a colour bar to what is
+# below its labels, and from the left edge of a map to that of its legend.
+_BELOW_AXIS, _BELOW_BAR, _LEFT_OF_AXIS = 3.7, 3.4, 3.0
+# Of a colour bar, in units of the side of its map.
+_BAR_HEIGHT = 0.04
+# Of a row of maps with its legends before its height is fitted, in units of the width of a map with its labels.
+_ROW_HEIGHT = 2.0
+# Of a legend, as a share of the width of a map with its labels.
+_LEGEND_WIDTH = 0.9
 # In a line of a title, about.
-_LETTERS_PER_EM = 2.3
-# Of the width of a panel, about what its labels leave.
-_MAP_SHARE = 0.8
+_LETTERS_PER_EM = 2.6
 # Of tick labels, in units of their font size.
 _LETTER_WIDTH, _BETWEEN_LABELS = 0.5, 1.0
 # Least distance of the times at a colour bar, as a share of it.
@@ -79,8 +84,6 @@ _LINE_SCALE = 0.6
 _HALO_ORDER = 1.5
 # Curves are cut this far outside the window, in shares of it.
 _RIM = 0.02
-# Of a line of provenance, the share that is filled: lines of equally many letters differ in width.
-_FILLED = 0.93
 # Numbers of starts are moved to the inside of the picture this close to its right and upper edge, in shares of it.
 _EDGE = 0.06
 
@@ -122,93 +125,26 @@ def draw_map_figure(
     if not pictures:
         raise ValueError(f"pictures={pictures!r}: must be at least one of {', '.join(TITLES)}")
     times = times or fitted_scale(frame)
-    # In a figure of one square inch, positions in shares of the figure are inches.
-    figure = Figure(figsize=(1.0, 1.0), dpi=style.dpi)
-    em, columns = style.font_size / POINTS_PER_INCH, style.columns(len(pictures))
-    width = (style.inches - (2 * _MARGIN + (columns - 1) * _GAP) * em) / columns
-    panels = [figure.add_axes((0.0, 0.0, _MAP_SHARE * width, _MAP_SHARE * width), label=picture) for picture in pictures]
-    for axes, picture in zip(panels, pictures, strict=True):
+    columns = style.columns(len(pictures))
+    rows = math.ceil(len(pictures) / columns)
+    figure = new_figure(style, rows * _ROW_HEIGHT * style.width / columns, equal=True)
+    # Texts are measured in few pixels: Matplotlib allocates all pixels of the figure to measure one.
+    figure.set_dpi(POINTS_PER_INCH)
+    grid = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
+    for axes in grid[len(pictures) :]:
+        axes.remove()
+    for axes, picture in zip(grid, pictures, strict=False):
+        axes.set_label(picture)
+        axes.set_box_aspect(1.0)
         draw_picture(axes, frame, picture, palette, analyses, times, style)
         mark_starts(axes, starts, palette, frame.spec.find_window(), style)
-    left = _set_side(panels, width)
-    for axes, picture in zip(panels, pictures, strict=True):
-        _explain_picture(axes, frame, picture, palette, analyses, times, (left, width), style)
-    text = _write_provenance(figure, provenance_line(frame), style) if style.titles else None
+        _explain_picture(axes, frame, picture, palette, analyses, times, style.inches / columns, style)
+    if style.titles:
+        write_below(figure, [provenance_line(frame)], style, style.smallest_size)
     set_font(figure)
-    places, height = _place_panels(panels, columns, em, (left, width), _height(text))
-    _resize(figure, panels, places, (style.inches, height))
-    if text is not None:
-        text.set_position((_MARGIN * em / style.inches, _MARGIN * em / height))
+    fit_height(figure)
+    figure.set_dpi(style.dpi)
     return figure
-
-
-def _set_side(panels: Sequence[Axes], width: float) -> float:
-    """Make maps as large as their labels leave in a width, in whole pixels; return the inches that labels take on the left."""
-    dpi = figure_of(panels[0]).dpi
-    set_font(figure_of(panels[0]))
-    outer, inner = _box(panels[0]), panels[0].get_window_extent()
-    left = float(math.ceil(inner.x0 - outer.x0) / dpi)
-    side = math.floor((width - left) * dpi - max(outer.x1 - inner.x1, 0.0)) / dpi
-    for axes in panels:
-        axes.set_position((0.0, 0.0, side, side))
-    return left
-
-
-def _write_provenance(figure: Figure, line: str, style: FigureStyle) -> Text:
-    """Write a line in as many lines as the width of the figure needs."""
-    text = figure.text(0.0, 0.0, line, fontsize=style.smallest_size, color=LIGHT.text, va="bottom")
-    set_font(figure)
-    width = (style.inches - 2.0 * _MARGIN * style.font_size / POINTS_PER_INCH) * figure.dpi
-    text.set_text(textwrap.fill(line, int(_FILLED * len(line) * width / text.get_window_extent().width), break_on_hyphens=False))
-    return text
-
-
-def _height(text: Text | None) -> float:
-    """Of a text, in inches."""
-    return 0.0 if text is None else float(text.get_window_extent().height) / figure_of(text).dpi
-
-
-def _place_panels(
-    panels: Sequence[Axes], columns: int, em: float, span: tuple[float, float], below: float
-) -> tuple[list[tuple[float, float]], float]:
-    """The lower left corner of each map, from the upper left corner of the figure, and the height of the figure, in inches.
-
-    Parameters
-    ----------
-    panels
-        With their legends, all of the same size.
-    columns
-        In each row.
-    em
-        Font size in inches.
-    span
-        Width of the labels on the left of a map, and of a map with its labels.
-    below
-        Height to leave below the last row.
-    """
-    dpi, boxes = figure_of(panels[0]).dpi, [_box(axes) for axes in panels]
-    depth, places = _MARGIN * em, []
-    for first in range(0, len(boxes), columns):
-        row = boxes[first : first + columns]
-        depth = math.ceil(depth * dpi + max(box.y1 for box in row)) / dpi
-        places += [(math.ceil((_MARGIN * em + k * (span[1] + _GAP * em) + span[0]) * dpi) / dpi, depth) for k in range(len(row))]
-        depth += _GAP * em - min(box.y0 for box in row) / dpi
-    return places, math.ceil((depth + below + _MARGIN * em) * dpi) / dpi
-
-
-def _resize(figure: Figure, panels: Sequence[Axes], places: Sequence[tuple[float, float]], size: tuple[float, float]) -> None:
-    """Set the size of a figure of one square inch, whose panels keep theirs."""
-    (width, height), side = size, panels[0].get_position().width
-    figure.set_size_inches(width, height)
-    for axes, (x, depth) in zip(panels, places, strict=True):
-        axes.set_position((x / width, 1.0 - depth / height, side / width, side / height))
-
-
-def _box(axes: Axes) -> Bbox:
-    """Bounding box of a panel with its labels, title and legend, in pixels."""
-    box = axes.get_tightbbox()
-    assert box is not None
-    return box
 
 
 def draw_picture(
@@ -238,23 +174,21 @@ def _explain_picture(
     palette: Palette,
     analyses: MapAnalyses,
     times: TimeScale,
-    span: tuple[float, float],
+    width: float,
     style: FigureStyle,
 ) -> None:
-    """Colour bar and legend below a map; `span` as for `_place_panels`."""
-    side, depth = size_in_points(axes)[1], _BELOW_AXIS * style.font_size
+    """Colour bar and legend below a map, whose column is `width` inches wide."""
+    depth = _BELOW_AXIS * style.font_size
     if picture == "times":
-        high = _BAR_HEIGHT * style.font_size
-        bar = axes.inset_axes((0.0, -(depth + high) / side, 1.0, high / side))
+        bar = axes.inset_axes((0.0, -_BAR_HEIGHT, 1.0, _BAR_HEIGHT), transform=below(axes, depth))
         add_time_bar(figure_of(axes), times, palette, style, cax=bar, orientation="horizontal")
         bar.get_xticklabels()[-1].set_horizontalalignment("right")
-        depth += high + _BELOW_BAR * style.font_size
+        depth += _BELOW_BAR * style.font_size
     handles = [*patches(picture_entries(frame, picture, palette, analyses)), *_doubt_handle(picture, analyses)]
     # Matplotlib names curves without a label "_child…".
     handles += [curve for curve in axes.collections if not str(curve.get_label()).startswith("_")]
     handles += _manifold_handles(picture, palette, analyses)
-    left, width = (inches * POINTS_PER_INCH for inches in span)
-    add_legend_below(axes, handles, (-left, -depth), width, style)
+    add_legend_below(axes, handles, (_LEFT_OF_AXIS * style.font_size, depth), _LEGEND_WIDTH * width * POINTS_PER_INCH, style)
 
 
 def draw_pixels(axes: Axes, pixels: np.ndarray, window: Window, shown: Window) -> None:
