@@ -14,8 +14,7 @@ These are the public names of the library. All results show themselves in notebo
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
-- energies: `compute_curves`, `compute_crossing_statistics`, `plan_sweep`, `run_sweep`, `fit_escape_shares`, `fit_direct_shares`,
-  `measure_deviation`, `PAPER_FITS`
+- energies: `compute_curves`, `plan_sweep`, `run_sweep`
 """
 
 from engine.dynamics.certificates import Certificate
@@ -35,8 +34,6 @@ from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.published_fits import PAPER_FITS
-from engine.measures.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.potentials.catalogue import POTENTIALS, channel_family
@@ -54,7 +51,6 @@ from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
-from engine.sweeps.crossing_statistics import compute_crossing_statistics
 from engine.sweeps.curves import Curves, CurvesSpec, compute_curves
 from engine.sweeps.opened_results import open_result
 from engine.sweeps.run import SweepPlan, plan_sweep, run_sweep
@@ -78,7 +74,6 @@ from engine.trajectories.trajectory import Orbit, integrate_orbit
 __all__ = [
     "CASES",
     "CHAOS_THRESHOLD",
-    "PAPER_FITS",
     "POTENTIALS",
     "BasinEntropy",
     "BirkhoffDigits",
@@ -113,7 +108,6 @@ __all__ = [
     "Result",
     "SampledOrbits",
     "Separation",
-    "ShareFit",
     "Slice",
     "StableManifolds",
     "SweepPlan",
@@ -129,7 +123,6 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_birkhoff_digits",
-    "compute_crossing_statistics",
     "compute_curves",
     "compute_deep_map",
     "compute_flux",
@@ -149,11 +142,8 @@ __all__ = [
     "find_section_crossings",
     "find_stable_manifolds",
     "fit_decay_laws",
-    "fit_direct_shares",
-    "fit_escape_shares",
     "integrate_orbit",
     "judge_orbit",
-    "measure_deviation",
     "open_result",
     "parse_formula",
     "plan_sweep",

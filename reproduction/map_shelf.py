@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import CancelledError
 from dataclasses import replace
 
@@ -19,12 +19,12 @@ from engine import (
     UncertaintyExponent,
     Window,
     compute_regularity,
+    compute_statistics,
     compute_uncertainty_exponent,
 )
 from engine.execution import DEFAULT_EXECUTION
 from engine.maps.compute import run_map
-from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
-from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
+from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
 
@@ -77,9 +77,7 @@ class MapShelf:
         return self._stored(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Slice) -> xr.Dataset:
-        """Shares at the energies of `curve_energies`, from `engine.tabulate_crossing_statistics` with crossings to n = 0.
-
-        New maps are not stored.
+        """Shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored.
 
         Raises
         ------
@@ -87,7 +85,9 @@ class MapShelf:
             If cancelled.
         """
         if (case, plane) not in self._curves:
-            self._curves[case, plane] = tabulate_crossing_statistics(self._curve_maps(case, plane), most_crossings=0)
+            energies = curve_energies(case, self.quality.curve_points)
+            points = [_measure(self._unstored(self._spec(case, plane, energy))) for energy in energies]
+            self._curves[case, plane] = xr.concat(points, xr.Variable("h", list(energies)))
         return self._curves[case, plane]
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
@@ -151,14 +151,11 @@ class MapShelf:
         side, t_max = self.quality.resolution, self.quality.t_max
         return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)
 
-    def _curve_maps(self, case: str, plane: Slice) -> Iterator[EscapeMap]:
-        for energy in curve_energies(case, self.quality.curve_points):
-            spec = self._spec(case, plane, energy)
-            yield self._maps[spec] if spec in self._maps else self._compute(spec)
+    def _unstored(self, spec: MapSpec) -> EscapeMap:
+        return self._maps[spec] if spec in self._maps else self._compute(spec)
 
     def _stored(self, spec: MapSpec) -> EscapeMap:
-        if spec not in self._maps:
-            self._maps[spec] = self._compute(spec)
+        self._maps[spec] = self._unstored(spec)
         return self._maps[spec]
 
     def _compute(self, spec: MapSpec) -> EscapeMap:
@@ -167,3 +164,17 @@ class MapShelf:
             raise CancelledError
         self._on_map(computed)
         return replace(computed, batch=None)
+
+
+def _measure(frame: EscapeMap) -> xr.Dataset:
+    """Shares of the interior starts, and the largest energy error."""
+    statistics = compute_statistics(frame)
+    shares = [statistics.shares[fate] for fate in range(len(frame.spec.outcomes) + 1)]
+    return xr.Dataset(
+        {
+            "share": ("fate", shares),
+            "escaped_share": statistics.escaped / statistics.starts,
+            "direct_share": statistics.direct_share,
+            "worst_energy_error": frame.worst_energy_error,
+        }
+    )

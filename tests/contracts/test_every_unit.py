@@ -43,11 +43,9 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
-from engine.maps.super_sticky import find_super_sticky_orbits
 from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.well_units import WellUnits
 from engine.sweeps.curve_points import CurvePointSpec, compute_curve_point
-from engine.trajectories.radius_envelope import compute_radius_envelope
 
 
 @dataclass(frozen=True)
@@ -140,11 +138,6 @@ def test_follow_up_analyses(name: str, scaling: Scaling) -> None:
     assert np.any(trust.trust == Trust.DOUBTFUL)
     regularity, scaled_regularity = compute_regularity(usual), compute_regularity(scaled)
     np.testing.assert_array_equal(scaled_regularity.character, regularity.character)
-    longer = find_super_sticky_orbits(usual, regularity, 3.0 * usual.spec.t_max)
-    scaled_longer = find_super_sticky_orbits(scaled, scaled_regularity, 3.0 * scaled.spec.t_max)
-    np.testing.assert_array_equal(scaled_longer.fate, longer.fate)
-    np.testing.assert_array_equal(scaled_longer.states, scaling.states(longer.states))
-    np.testing.assert_array_equal(scaled_longer.escape_time, scaling.time * longer.escape_time)
 
 
 @each_system
@@ -241,13 +234,11 @@ def test_measures_of_single_orbits(name: str, scaling: Scaling) -> None:
     for s in (Scaling(1.0, 1.0), scaling):
         potential, state = s.potential(usual), s.states(start)
         quiet = s.states(0.1 * start * [1.0, 0.0, 1.0, 1.0])
-        envelope = compute_radius_envelope(potential, state, s.time * t_max, intervals=20)
         separation = compute_separation(potential, state, 1.0000001 * state, s.time * t_max)
         digits = compute_birkhoff_digits(potential, quiet, 2000.0 * times(name) * s.time)
         near = find_divergent_start(potential, Plane.X_PX, float(potential.energy(state)), state[0], state[2], s.time * t_max)
         assert isinstance(near, DivergentStart)
         for_both.append([
-            *(envelope.t / s.time, envelope.high / s.length**2),
             *(separation.t / s.time, separation.distance / s.length),
             *(digits.windows / s.time, digits.digits),
             *(near.x / s.length, near.ordinate / s.momentum, near.distance / s.length, near.fate),

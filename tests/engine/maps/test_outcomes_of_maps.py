@@ -25,7 +25,6 @@ from engine import (
     open_result,
     sample_starts,
 )
-from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from tests.disc import DISC, LABELS, disc_map
 
 
@@ -63,12 +62,6 @@ def test_statistics_have_a_count_for_each_outcome(escape_map: EscapeMap) -> None
 def test_statistics_count_an_outcome_that_does_not_occur(escape_map: EscapeMap) -> None:
     fate = np.where(escape_map.fate == 3, Fate.BOUNDED, escape_map.fate)
     assert compute_statistics(replace(escape_map, fate=fate)).channel_counts[2] == 0
-
-
-def test_a_table_of_crossings_has_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
-    table = tabulate_crossing_statistics([escape_map])
-    np.testing.assert_allclose(table["share"].sel(fate=3), escape_map.fractions()[3])
-    assert "3: collision with a disc" in table["fate"].attrs["codes"]
 
 
 def test_curves_have_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
