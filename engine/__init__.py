@@ -14,8 +14,10 @@ These are the public names of the library. All results show themselves in notebo
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
-- energies: `compute_curves`, `plan_sweep`, `run_sweep`
+- sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
+
+from typing import TYPE_CHECKING
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
@@ -51,10 +53,12 @@ from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
-from engine.sweeps.curves import Curves, CurvesSpec, compute_curves
+from engine.sweeps.former_names import FORMER_NAMES as FORMER_NAMES
+from engine.sweeps.former_names import find_former_name
 from engine.sweeps.opened_results import open_result
-from engine.sweeps.run import SweepPlan, plan_sweep, run_sweep
+from engine.sweeps.plan import SweepPlan, plan_sweep
 from engine.sweeps.spec import SweepSpec
+from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.trajectories.chaos_indicators import (
     BirkhoffDigits,
     IndicatorVerdict,
@@ -80,8 +84,6 @@ __all__ = [
     "Centre",
     "Certificate",
     "Coordinate",
-    "Curves",
-    "CurvesSpec",
     "DecayLaws",
     "DeepMap",
     "Direction",
@@ -110,6 +112,7 @@ __all__ = [
     "Separation",
     "Slice",
     "StableManifolds",
+    "Sweep",
     "SweepPlan",
     "SweepSpec",
     "System",
@@ -123,7 +126,6 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_birkhoff_digits",
-    "compute_curves",
     "compute_deep_map",
     "compute_flux",
     "compute_map",
@@ -131,6 +133,7 @@ __all__ = [
     "compute_regularity",
     "compute_separation",
     "compute_statistics",
+    "compute_sweep",
     "compute_trust",
     "compute_uncertainty_exponent",
     "compute_wada_test",
@@ -148,7 +151,6 @@ __all__ = [
     "parse_formula",
     "plan_sweep",
     "review_potential",
-    "run_sweep",
     "sample_entrances",
     "sample_orbits",
     "sample_starts",
@@ -156,3 +158,7 @@ __all__ = [
     "trace_zero_velocity_curve",
     "write_formula",
 ]
+
+if not TYPE_CHECKING:
+    # Type checkers would take any name for one of the module.
+    __getattr__ = find_former_name

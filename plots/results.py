@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 
 from engine import (
     BirkhoffDigits,
-    Curves,
     DecayLaws,
     DeepMap,
     EscapeFlux,
@@ -32,6 +31,7 @@ from engine import (
     SampledOrbits,
     Separation,
     StableManifolds,
+    Sweep,
     Trust,
     TrustMap,
     UncertaintyExponent,
@@ -273,9 +273,11 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
-def _draw_curves(result: Curves, axes: Axes, palette: Palette) -> None:
-    draw_shares(axes, result.values, result.shares, result.spec.potential, outcomes=result.spec.outcomes)
-    label_axes(axes, result.spec.symbol, "percentage of starts")
+def _draw_sweep(result: Sweep, axes: Axes, palette: Palette) -> None:
+    if "share" not in result.dataset:
+        raise TypeError("a sweep has a picture with the measure 'shares' only")
+    draw_shares(axes, result.values, result["share"], result.outcomes)
+    label_axes(axes, result.symbol, "percentage of starts")
     add_panel_legend(axes, "center right")
 
 

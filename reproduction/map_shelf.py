@@ -6,8 +6,6 @@ from collections.abc import Callable
 from concurrent.futures import CancelledError
 from dataclasses import replace
 
-import xarray as xr
-
 from engine import (
     CASES,
     EscapeMap,
@@ -16,14 +14,17 @@ from engine import (
     Plane,
     RegularityMap,
     Slice,
+    Sweep,
+    SweepSpec,
     UncertaintyExponent,
     Window,
     compute_regularity,
-    compute_statistics,
+    compute_sweep,
     compute_uncertainty_exponent,
 )
 from engine.execution import DEFAULT_EXECUTION
 from engine.maps.compute import run_map
+from engine.sweeps.measures import compute_point
 from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
@@ -52,7 +53,7 @@ class MapShelf:
         self.execution = execution
         self._on_map = on_map
         self._maps: dict[MapSpec, EscapeMap] = {}
-        self._curves: dict[tuple[str, Slice], xr.Dataset] = {}
+        self._curves: dict[tuple[str, Slice], Sweep] = {}
         self._regularities: dict[MapSpec, RegularityMap] = {}
         self._searches: dict[MapSpec, SuperStickySearch] = {}
         self._exponents: dict[MapSpec, UncertaintyExponent] = {}
@@ -76,7 +77,7 @@ class MapShelf:
         """
         return self._stored(self._spec(case, plane, energy, window))
 
-    def curves(self, case: str, plane: Slice) -> xr.Dataset:
+    def curves(self, case: str, plane: Slice) -> Sweep:
         """Shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored.
 
         Raises
@@ -85,9 +86,13 @@ class MapShelf:
             If cancelled.
         """
         if (case, plane) not in self._curves:
-            energies = curve_energies(case, self.quality.curve_points)
-            points = [_measure(self._unstored(self._spec(case, plane, energy))) for energy in energies]
-            self._curves[case, plane] = xr.concat(points, xr.Variable("h", list(energies)))
+            energies, side = curve_energies(case, self.quality.curve_points), self.quality.resolution
+            spec = SweepSpec(
+                CASES[case], plane, energies, (side, side), t_max=self.quality.t_max, measures=("shares", "accuracy")
+            )
+            self._curves[case, plane] = compute_sweep(
+                spec, measure=lambda point: compute_point(point, frame=self._unstored(point.map_spec)), execution=self.execution
+            )
         return self._curves[case, plane]
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
@@ -164,17 +169,3 @@ class MapShelf:
             raise CancelledError
         self._on_map(computed)
         return replace(computed, batch=None)
-
-
-def _measure(frame: EscapeMap) -> xr.Dataset:
-    """Shares of the interior starts, and the largest energy error."""
-    statistics = compute_statistics(frame)
-    shares = [statistics.shares[fate] for fate in range(len(frame.spec.outcomes) + 1)]
-    return xr.Dataset(
-        {
-            "share": ("fate", shares),
-            "escaped_share": statistics.escaped / statistics.starts,
-            "direct_share": statistics.direct_share,
-            "worst_energy_error": frame.worst_energy_error,
-        }
-    )

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import CASES, EscapeStatistics, Plane, compute_statistics, fit_decay_laws
+from engine import EscapeStatistics, Plane, compute_statistics, fit_decay_laws
 from plots.curve_figures import draw_decay_laws, draw_shares
 from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from plots.figure_style import SCREEN
@@ -37,8 +37,8 @@ def draw_statistics(case: str, shelf: MapShelf) -> Figure:
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = shelf.curves(case, Plane.X_PX)
-    h, paper = table["h"].values, PAPER_FITS[case]
-    escaped, direct = table["escaped_share"].values, table["direct_share"].values
+    h, paper = table.values, PAPER_FITS[case]
+    escaped, direct = table["share"][:, 1:].sum(axis=1), table["direct_share"]
     _draw_fits(panels[0], h, escaped, paper.escaped, fit_escape_shares(h, escaped))
     _draw_fits(panels[1], h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree))
     label_axes(panels[0], "$h$", "$N_e/N_0$")
@@ -88,8 +88,7 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
     planes = (Plane.X_Y, Plane.X_PX)
     for axes, plane in zip(panels, planes, strict=True):
         table = shelf.curves(case, plane)
-        shares = table["share"].sel(fate=range(CASES[case].channels + 1)).transpose("h", "fate")
-        draw_shares(axes, table["h"].values, shares.values, CASES[case])
+        draw_shares(axes, table.values, table["share"], table.outcomes)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
     name_panels(panels, [f"the {plane_label(plane)} plane" for plane in planes])
     add_panel_legend(panels[1], "center right")

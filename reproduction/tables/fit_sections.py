@@ -28,7 +28,7 @@ def write_fits(shelf: MapShelf) -> str:
     rows, sentences = [], []
     for case in CASES:
         table, paper = shelf.curves(case, Plane.X_PX), PAPER_FITS[case]
-        h, escaped, direct = (table[name].values for name in ("h", "escaped_share", "direct_share"))
+        h, escaped, direct = table.values, table["share"][:, 1:].sum(axis=1), table["direct_share"]
         curves: tuple[tuple[str, np.ndarray, ShareCurve, ShareFit], ...] = (
             ("Ne/N0", escaped, paper.escaped, fit_escape_shares(h, escaped)),
             ("Nde/N0", direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree)),

@@ -45,7 +45,7 @@ from engine import (
 )
 from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.well_units import WellUnits
-from engine.sweeps.curve_points import CurvePointSpec, compute_curve_point
+from engine.sweeps.measures import SweepPoint, compute_point
 
 
 @dataclass(frozen=True)
@@ -157,14 +157,14 @@ def test_resumed_maps_and_origins(name: str, scaling: Scaling) -> None:
 @exactly_scaled
 def test_curve_points_with_uncertainty_exponents(name: str, scaling: Scaling) -> None:
     usual, scaled = escape_map(name, Plane.X_PX), escape_map(name, Plane.X_PX, scaling)
-    outcomes = len(usual.spec.outcomes)
+    outcomes, measures = usual.spec.outcomes, ("shares", "islands", "escape_times")
     point, scaled_point = (
-        compute_curve_point(CurvePointSpec(m.spec, False, 0.2, tuple(range(outcomes + 1)), outcomes), frame=m)
+        compute_point(SweepPoint(m.spec, "h", 0.2, measures, tuple(range(len(outcomes) + 1)), outcomes), frame=m)
         for m in (usual, scaled)
     )
-    assert scaled_point.shares == point.shares
-    assert scaled_point.largest_island == scaling.length * scaling.momentum * point.largest_island
-    assert scaled_point.median_escape_time == scaling.time * point.median_escape_time
+    np.testing.assert_array_equal(scaled_point["share"], point["share"])
+    assert scaled_point["largest_island"] == scaling.length * scaling.momentum * point["largest_island"]
+    assert scaled_point["median_escape_time"] == scaling.time * point["median_escape_time"]
     found, scaled_found = (compute_uncertainty_exponent(m.spec, pairs=40, separations=7, work=1e5) for m in (usual, scaled))
     np.testing.assert_array_equal(scaled_found.uncertain, found.uncertain)
     np.testing.assert_array_equal(scaled_found.separations, scaling.length * found.separations)

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from engine import (
     CASES,
-    CurvesSpec,
     EscapeMap,
     MapSpec,
     Plane,
@@ -166,7 +165,6 @@ def test_divergent_start(plane: Any, energy: Any, x: Any, ordinate: Any, t_max: 
 @given(planes, mostly(st.lists(energies, max_size=4), anything), resolutions, st.none() | edges, times)
 def test_sweep_specs(plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any) -> None:
     names = ["plane", "Plane", "energies", "values", "energy", "resolution", "window", "t_max"]
-    result_or_error(lambda: CurvesSpec(CASE, plane, swept, resolution, t_max), names)
     result_or_error(lambda: SweepSpec(CASE, plane, swept, resolution, window, t_max), names)
 
 
