@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -39,7 +40,7 @@ _DASHES = {"exponential": "--", "power law": "-."}
 
 
 def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
-    """Draw the measures `CURVES` of a sweep against the energy or a parameter; those that it lacks have empty panels.
+    """Draw the shares and the other measures of a sweep against the energy or a parameter, with their error bars.
 
     Raises
     ------
@@ -53,14 +54,17 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     starts = " × ".join(str(side) for side in request["resolution"])
     title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
     figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
-    panels = figure.subplots((1 + len(_MEASURES)) // columns, columns).ravel().tolist()
+    measures = [entry for entry in _MEASURES if set(entry[0]) <= set(curves.dataset)]
+    panels = np.ravel(figure.subplots(math.ceil((1 + len(measures)) / columns), columns)).tolist()
     draw_shares(panels[0], curves.values, curves["share"], curves.outcomes, style)
-    for axes, (lines, up, words) in zip(panels[1:], _MEASURES, strict=True):
+    for axes, (lines, up, words) in zip(panels[1:], measures, strict=False):
         _draw_measures(axes, curves, lines, style)
         label_axes(axes, curves.symbol, up, style)
         name_panel(axes, words, style)
         if words == _ESCAPE_TIME:
             axes.set_yscale("log")
+    for axes in panels[1 + len(measures) :]:
+        axes.remove()
     label_axes(panels[0], curves.symbol, "percentage of starts", style)
     name_panel(panels[0], "Shares of the interior starts", style)
     add_panel_legend(panels[0], "best", style)
@@ -69,9 +73,8 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
 
 def _draw_measures(axes: Axes, curves: Sweep, lines: Mapping[str, str], style: FigureStyle) -> None:
     for (name, label), colour in zip(lines.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
-        if name in curves.dataset:
-            axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=label)
-            axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
+        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=label)
+        axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
     style_axes(axes, style, grid=True)
     if len(lines) > 1:

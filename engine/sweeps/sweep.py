@@ -168,9 +168,9 @@ def compute_sweep(
     >>> spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.5, 0.6), (40, 40), t_max=1e3, measures=("shares", "basin_entropy"))
     >>> compute_sweep(spec).to_pandas()[["h", "share_1", "share_2", "s_b"]].round(3)
          h  share_1  share_2    s_b
-    0  0.4    0.354    0.354  0.486
-    1  0.5    0.399    0.399  0.299
-    2  0.6    0.441    0.441  0.146
+    0  0.4    0.354    0.354  0.585
+    1  0.5    0.399    0.399  0.494
+    2  0.6    0.441    0.441  0.314
     """
     if spec.along is None:
         for energy in (spec.values[0], spec.values[-1]):
