@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,8 +13,11 @@ from cli.options import DEFAULT_PLANE, DEFAULT_STYLE
 
 if TYPE_CHECKING:
     from cli.files import Content
-    from engine import Curves
+    from engine import Sweep
     from plots.figure_style import FigureStyle
+
+# Columns that are in files and JSON only.
+_ERROR_BAR = re.compile(r"_(low|high)(_|$)|_error$")
 
 EXAMPLES = """Examples:
 
@@ -58,56 +62,56 @@ def draw_curves(
     from cli.files import add_ending, reserve_output, split_ending, write_files
     from cli.potential_argument import file_name_part, find_potential, find_system
     from cli.run_context import cancellable_run
-    from engine import CurvesSpec, ParameterAxis, compute_curves
+    from engine import ParameterAxis, SweepSpec, compute_sweep
+    from engine.sweeps.measures import CURVES
     from plots.figure_style import FigureFormat, FigureStyle
 
     style, values = FigureStyle(width, dpi, font_size, titles), space_energies(low, high, count)
     along = None if against == "h" else ParameterAxis(against, low, high, find_system(case))
     slice_of_starts, sides = find_plane(plane, fix, case), read_resolution(resolution)
-    spec = CurvesSpec(find_potential(case), slice_of_starts, values, sides, t_max, exponent, along, energy, refine)
+    measures = CURVES if exponent else [name for name in CURVES if name != "uncertainty_exponent"]
+    spec = SweepSpec(
+        find_potential(case), slice_of_starts, values, sides, t_max=t_max, measures=measures, along=along, energy=energy,
+        refine=refine,
+    )  # fmt: skip
     stem, endings = split_ending(
         output or Path(f"curves-{file_name_part(case)}-{spec.plane.key}"), ["nc", "csv", *FigureFormat], ["nc", "csv"]
     )
     with reserve_output(stem):
         with cancellable_run(threads) as run:
-            curves = compute_curves(spec, execution=run.start_stage("curves"))
+            curves = compute_sweep(spec, execution=run.start_stage("curves"))
         files = write_files({add_ending(stem, ending): _content(curves, ending, style) for ending in endings})
-    _print_result(*_tabulate(curves), files, as_json)
+    _print_result(curves, files, as_json)
 
 
-def _content(curves: Curves, ending: str, style: FigureStyle) -> Content:
+def _content(curves: Sweep, ending: str, style: FigureStyle) -> Content:
     """Return the content of the output file with this ending."""
     if ending == "nc":
         from plots.exports import dataset_bytes
 
-        return dataset_bytes(curves.to_xarray())
+        return dataset_bytes(curves.dataset)
     if ending == "csv":
-        head, rows = _tabulate(curves)
-        return "\n".join([",".join(head), *(",".join(map(repr, row)) for row in rows)]) + "\n"
+        from plots.exports import curves_csv
+
+        return curves_csv(curves)
     from plots.figure_files import curves_figure_bytes
     from plots.figure_style import FigureFormat
 
     return curves_figure_bytes(curves, FigureFormat(ending), style)
 
 
-def _tabulate(curves: Curves) -> tuple[list[str], list[list[float]]]:
-    """Return column names and rows: h or the parameter, the shares, then the other curves; missing numbers are NaN."""
-    from plots.exports import column_name
-
-    dataset = curves.to_xarray()
-    others = [str(name) for name in dataset.data_vars if name != "share"]
-    head = [curves.spec.name, "bounded", *map(column_name, curves.spec.outcomes), *others]
-    columns = [curves.values, *curves.shares.T, *(curves.curve(name) for name in others)]
-    return head, [list(row) for row in zip(*(column.tolist() for column in columns), strict=True)]
-
-
-def _print_result(head: list[str], rows: list[list[float]], files: list[str], as_json: bool) -> None:
+def _print_result(curves: Sweep, files: list[str], as_json: bool) -> None:
     from cli.output import print_json, print_sentences, print_table
+    from plots.exports import curve_columns
 
+    columns = curve_columns(curves)
     if as_json:
-        print_json({"points": [dict(zip(head, row, strict=True)) for row in rows], "files": files})
+        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+        print_json({"points": [dict(zip(columns, row, strict=True)) for row in rows], "files": files})
         return
+    shown = {name: column for name, column in columns.items() if not _ERROR_BAR.search(name)}
+    cells = zip(*shown.values(), strict=True)
     print_table(
-        [name.replace("_", " ") for name in head], [[f"{number:.4g}".replace("nan", "–") for number in row] for row in rows]
+        [name.replace("_", " ") for name in shown], [[f"{number:.4g}".replace("nan", "–") for number in row] for row in cells]
     )
     print_sentences(f"Written: {', '.join(files)}")

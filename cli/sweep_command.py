@@ -40,12 +40,6 @@ def sweep_energies(
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
-    piece: Annotated[
-        int | None,
-        typer.Option(
-            "--piece", metavar="STARTS", help="Maximum number of starts computed between two checkpoints: 1 to 1048576."
-        ),
-    ] = None,
     plan: Annotated[bool, typer.Option("--plan", help="Only estimate the cost.")] = False,
     threads: options.Threads = None,
     scheduler: options.Scheduler = None,
@@ -61,21 +55,21 @@ def sweep_energies(
     from cli.output import print_sentences
     from cli.potential_argument import find_potential
     from cli.run_context import cancellable_run
-    from engine import SweepSpec, Window, plan_sweep, run_sweep
+    from engine import SweepSpec, Window, compute_sweep, plan_sweep
 
     energies = space_energies(low, high, count, energy)
     frame = None if window is None else Window(*window)
     sides = read_resolution(resolution)
-    spec = SweepSpec(find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, certify, piece)
+    spec = SweepSpec(find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, certify)
     try:
         with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
             if plan:
                 print_sentences(f"{plan_sweep(spec, execution=run.execution).describe()}.")
                 return
-            dataset = run_sweep(spec, store, execution=run.start_stage("energies"))
+            dataset = compute_sweep(spec, store, execution=run.start_stage("energies")).dataset
     except CancelledError:
         raise CancelledError(
-            f"interrupted; completed energies and row blocks are kept in {store}, and the same command resumes from there"
+            f"interrupted; completed energies are kept in {store}, and the same command resumes from there"
         ) from None
     _print_result(dataset, store, as_json)
 

@@ -23,21 +23,21 @@ from engine import (
     POTENTIALS,
     Certificate,
     Coordinate,
-    CurvesSpec,
     MapSpec,
     ParameterAxis,
     Plane,
     Slice,
+    SweepSpec,
     System,
     Window,
     classify_orbits,
     compute_basin_entropy,
-    compute_curves,
     compute_flux,
     compute_map,
     compute_origin_fates,
     compute_separation,
     compute_statistics,
+    compute_sweep,
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
@@ -187,7 +187,7 @@ def curves() -> Figure:
     """Shares of the outcomes against energy."""
     figure, (axes,) = new_panels(1, 9.5, width=18.0)
     values = tuple(float(h) for h in np.linspace(0.25, 0.45, 41))
-    compute_curves(CurvesSpec(CASES["III"], Plane.X_PX, values, (80, 80), t_max=1e4, exponent=False)).plot(axes)
+    compute_sweep(SweepSpec(CASES["III"], Plane.X_PX, values, (80, 80), t_max=1e4, measures="shares")).plot(axes)
     return figure
 
 

@@ -14,9 +14,10 @@ These are the public names of the library. All results show themselves in notebo
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
 - files: `Result.to_xarray`, `open_result`
-- energies: `compute_curves`, `compute_crossing_statistics`, `plan_sweep`, `run_sweep`, `fit_escape_shares`, `fit_direct_shares`,
-  `measure_deviation`, `PAPER_FITS`
+- sweeps over energies or a parameter: `SweepSpec`, `compute_sweep`, `plan_sweep`
 """
+
+from typing import TYPE_CHECKING
 
 from engine.dynamics.certificates import Certificate
 from engine.dynamics.classification import Outcomes, classify_orbits
@@ -35,8 +36,6 @@ from engine.measures.basin_entropy import BasinEntropy, compute_basin_entropy
 from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
-from engine.measures.published_fits import PAPER_FITS
-from engine.measures.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.potentials.catalogue import POTENTIALS, channel_family
@@ -54,11 +53,12 @@ from engine.slices.planes import Plane, start_states
 from engine.slices.sampling import sample_starts
 from engine.slices.slice import Slice
 from engine.slices.window import Window
-from engine.sweeps.crossing_statistics import compute_crossing_statistics
-from engine.sweeps.curves import Curves, CurvesSpec, compute_curves
+from engine.sweeps.former_names import FORMER_NAMES as FORMER_NAMES
+from engine.sweeps.former_names import find_former_name
 from engine.sweeps.opened_results import open_result
-from engine.sweeps.run import SweepPlan, plan_sweep, run_sweep
+from engine.sweeps.plan import SweepPlan, plan_sweep
 from engine.sweeps.spec import SweepSpec
+from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.trajectories.chaos_indicators import (
     BirkhoffDigits,
     IndicatorVerdict,
@@ -78,15 +78,12 @@ from engine.trajectories.trajectory import Orbit, integrate_orbit
 __all__ = [
     "CASES",
     "CHAOS_THRESHOLD",
-    "PAPER_FITS",
     "POTENTIALS",
     "BasinEntropy",
     "BirkhoffDigits",
     "Centre",
     "Certificate",
     "Coordinate",
-    "Curves",
-    "CurvesSpec",
     "DecayLaws",
     "DeepMap",
     "Direction",
@@ -113,9 +110,9 @@ __all__ = [
     "Result",
     "SampledOrbits",
     "Separation",
-    "ShareFit",
     "Slice",
     "StableManifolds",
+    "Sweep",
     "SweepPlan",
     "SweepSpec",
     "System",
@@ -129,8 +126,6 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_birkhoff_digits",
-    "compute_crossing_statistics",
-    "compute_curves",
     "compute_deep_map",
     "compute_flux",
     "compute_map",
@@ -138,6 +133,7 @@ __all__ = [
     "compute_regularity",
     "compute_separation",
     "compute_statistics",
+    "compute_sweep",
     "compute_trust",
     "compute_uncertainty_exponent",
     "compute_wada_test",
@@ -149,16 +145,12 @@ __all__ = [
     "find_section_crossings",
     "find_stable_manifolds",
     "fit_decay_laws",
-    "fit_direct_shares",
-    "fit_escape_shares",
     "integrate_orbit",
     "judge_orbit",
-    "measure_deviation",
     "open_result",
     "parse_formula",
     "plan_sweep",
     "review_potential",
-    "run_sweep",
     "sample_entrances",
     "sample_orbits",
     "sample_starts",
@@ -166,3 +158,7 @@ __all__ = [
     "trace_zero_velocity_curve",
     "write_formula",
 ]
+
+if not TYPE_CHECKING:
+    # Type checkers would take any name for one of the module.
+    __getattr__ = find_former_name

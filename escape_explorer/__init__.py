@@ -22,7 +22,7 @@ def __getattr__(name: str) -> Any:
     engine = import_module("engine")
     if name == "__all__":
         return engine.__all__
-    if name not in engine.__all__:
+    if name not in (*engine.__all__, *engine.FORMER_NAMES):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(engine, name)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,14 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import Curves, DecayLaws, EscapeStatistics, Fate, Outcome, Potential
+from engine import DecayLaws, EscapeStatistics, Fate, Outcome, Sweep
 from engine.measures.decay_laws import LawFit
 from plots.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.figure_style import SCREEN, FigureStyle
 from plots.palette import LAW_COLOURS, MEASURED, PAPER
 from plots.statistics_charts import BINS, MOST_CROSSINGS
 
-# Curves of channels that are equal by symmetry coincide: the second is dashed.
+# Equal curves, such as those of channels that are mirror images, coincide: the second is dashed.
 _DASHED = (0, (4.0, 3.0))
 _SAMPLES = 300
 # Height of the figure of curves, in units of its width: with two columns and with one.
@@ -38,8 +39,8 @@ _MOST_MARKERS = 60
 _DASHES = {"exponential": "--", "power law": "-."}
 
 
-def draw_curves_figure(curves: Curves, style: FigureStyle) -> Figure:
-    """Draw shares, basin entropies, uncertainty exponent, escape times, decay rate and islands against the energy or a parameter.
+def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
+    """Draw the shares and the other measures of a sweep against the energy or a parameter, with their error bars.
 
     Raises
     ------
@@ -49,28 +50,31 @@ def draw_curves_figure(curves: Curves, style: FigureStyle) -> Figure:
     if not curves.values.size:
         raise ValueError("curves: must have at least one point")
     columns = style.columns(2)
-    spec = curves.spec
-    title = (
-        f"{spec.potential.name}, {spec.plane.title}, {spec.resolution[0]} × {spec.resolution[1]} starts, t_max = {spec.t_max:g}"
-    )
+    request = curves.dataset.attrs
+    starts = " × ".join(str(side) for side in request["resolution"])
+    title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
     figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
-    panels = figure.subplots((1 + len(_MEASURES)) // columns, columns).ravel().tolist()
-    draw_shares(panels[0], curves.values, curves.shares, spec.potential, style, spec.outcomes)
-    for axes, (lines, up, words) in zip(panels[1:], _MEASURES, strict=True):
+    measures = [entry for entry in _MEASURES if set(entry[0]) <= set(curves.dataset)]
+    panels = np.ravel(figure.subplots(math.ceil((1 + len(measures)) / columns), columns)).tolist()
+    draw_shares(panels[0], curves.values, curves["share"], curves.outcomes, style)
+    for axes, (lines, up, words) in zip(panels[1:], measures, strict=False):
         _draw_measures(axes, curves, lines, style)
-        label_axes(axes, spec.symbol, up, style)
+        label_axes(axes, curves.symbol, up, style)
         name_panel(axes, words, style)
         if words == _ESCAPE_TIME:
             axes.set_yscale("log")
-    label_axes(panels[0], spec.symbol, "percentage of starts", style)
+    for axes in panels[1 + len(measures) :]:
+        axes.remove()
+    label_axes(panels[0], curves.symbol, "percentage of starts", style)
     name_panel(panels[0], "Shares of the interior starts", style)
     add_panel_legend(panels[0], "best", style)
     return figure
 
 
-def _draw_measures(axes: Axes, curves: Curves, lines: Mapping[str, str], style: FigureStyle) -> None:
+def _draw_measures(axes: Axes, curves: Sweep, lines: Mapping[str, str], style: FigureStyle) -> None:
     for (name, label), colour in zip(lines.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
-        axes.plot(curves.values, curves.curve(name), color=colour, linewidth=1.4, marker="o", markersize=2.2, label=label)
+        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=label)
+        axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
     style_axes(axes, style, grid=True)
     if len(lines) > 1:
@@ -104,23 +108,14 @@ def draw_escape_times(axes: Axes, statistics: EscapeStatistics, style: FigureSty
 
 
 def draw_shares(
-    axes: Axes,
-    energies: np.ndarray,
-    shares: np.ndarray,
-    potential: Potential,
-    style: FigureStyle = SCREEN,
-    outcomes: Sequence[Outcome] | None = None,
+    axes: Axes, energies: np.ndarray, shares: np.ndarray, outcomes: Sequence[Outcome], style: FigureStyle = SCREEN
 ) -> None:
-    """Draw percentages (m, outcomes + 1), of bounded starts and of each outcome, against energy (m,).
-
-    `outcomes` are those of the shares; None for those of the potential.
-    """
-    outcomes = potential.outcomes if outcomes is None else outcomes
+    """Draw percentages (m, outcomes + 1), of bounded starts and of each outcome, against energy (m,)."""
     for code, share in enumerate(shares.T):
         if code == Fate.BOUNDED:
             line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
         else:
-            dashed = potential.mirror_in_x and code <= len(potential.outcomes) and potential.mirror_channels[code] < code
+            dashed = any(np.array_equal(share, other) for other in shares.T[1:code])
             entry = PAPER.entry(code, outcomes)
             line = {"color": entry.colour, "linewidth": 1.7, "label": entry.label}
             line |= {"linestyle": _DASHED, "zorder": 3} if dashed else {}

@@ -8,13 +8,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
-from engine import CASES, Curves, EscapeMap, MapSpec, Orbit, OrbitVerdict, Outcome, Plane, Slice, System, judge_orbit
+from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, Sweep, System, judge_orbit
 from engine.potentials.catalogue import CATALOGUE
 from engine.potentials.system import TYPED
 from engine.results.extras import require_package
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
 
 MOST_ROWS = 100_000
@@ -182,19 +183,18 @@ def file_stem(spec: MapSpec, case: str) -> str:
     return re.sub(r"[^A-Za-z0-9_.+-]", "_", stem)
 
 
-def column_name(outcome: Outcome) -> str:
-    """The label of an outcome as the name of a column."""
-    return re.sub(r"\W+", "_", outcome.label)
+def curve_columns(curves: Sweep) -> dict[str, np.ndarray]:
+    """The numbers of a sweep by name, shares by the labels of their outcomes: ``share_bounded``, ``share_channel_1``."""
+    labels = ["bounded", *(re.sub(r"\W+", "_", outcome.label) for outcome in curves.outcomes)]
+    codes = re.compile(r"(share(?:_low|_high)?)_(\d+)")
+    return {codes.sub(lambda found: f"{found[1]}_{labels[int(found[2])]}", name): c for name, c in curves.columns().items()}
 
 
-def curves_csv(curves: Curves) -> str:
-    """CSV table of curves, one row per energy or value of the parameter: it, a share per fate, and all other measures."""
-    dataset = curves.to_xarray()
-    names = ["share_bounded", *(f"share_{column_name(outcome)}" for outcome in curves.spec.outcomes)]
-    columns = {curves.spec.name: curves.values} | dict(zip(names, curves.shares.T, strict=True))
-    columns |= {str(name): dataset[name].to_numpy() for name in dataset.data_vars if name != "share"}
+def curves_csv(curves: Sweep) -> str:
+    """CSV table of a sweep, one row per energy or value of the parameter: it, a share per outcome, and all other measures."""
+    columns = curve_columns(curves)
     lines = [f"# escape-explorer {metadata.version('escape-explorer')}"]
-    lines += [f"# {name}: {value}" for name, value in dataset.attrs.items()]
+    lines += [f"# {name}: {value}" for name, value in curves.dataset.attrs.items()]
     lines.append(",".join(columns))
     lines += [",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns.values()), strict=True)]
     return "\n".join(lines) + "\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from engine import Curves, DeepMap, EscapeMap, Potential, Window, compute_statistics
+from engine import DeepMap, EscapeMap, Potential, Sweep, Window, compute_statistics
 from plots.figure_style import FigureFormat, FigureStyle
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.orbit_curves import OrbitCurves, initial_state
@@ -93,11 +93,11 @@ def statistics_figure_bytes(frame: EscapeMap, box: Window | None, format: Figure
     return _file(lambda: draw_statistics_figure(compute_statistics(frame, box), style), format, facts)
 
 
-def curves_figure_bytes(curves: Curves, format: FigureFormat, style: FigureStyle) -> bytes:
+def curves_figure_bytes(curves: Sweep, format: FigureFormat, style: FigureStyle) -> bytes:
     """File of `plots.curve_figures.draw_curves_figure`."""
     from plots.curve_figures import draw_curves_figure
 
-    facts = {str(name): str(value) for name, value in curves.to_xarray().attrs.items()}
+    facts = {str(name): str(value) for name, value in curves.dataset.attrs.items()}
     return _file(lambda: draw_curves_figure(curves, style), format, facts)
 
 

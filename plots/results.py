@@ -16,7 +16,6 @@ from matplotlib.figure import Figure
 
 from engine import (
     BirkhoffDigits,
-    Curves,
     DecayLaws,
     DeepMap,
     EscapeFlux,
@@ -31,8 +30,8 @@ from engine import (
     Result,
     SampledOrbits,
     Separation,
-    ShareFit,
     StableManifolds,
+    Sweep,
     Trust,
     TrustMap,
     UncertaintyExponent,
@@ -40,11 +39,9 @@ from engine import (
     Window,
     default_window,
 )
-from engine.maps.super_sticky import SuperStickySearch
 from engine.results.extras import require_package
 from engine.slices.planes import SPACE
 from engine.slices.section import SECTION
-from engine.trajectories.radius_envelope import RadiusEnvelope
 from plots.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
 from plots.image_columns import fate_codes, passage_column
@@ -276,9 +273,11 @@ def _draw_review(result: PotentialReview, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
-def _draw_curves(result: Curves, axes: Axes, palette: Palette) -> None:
-    draw_shares(axes, result.values, result.shares, result.spec.potential, outcomes=result.spec.outcomes)
-    label_axes(axes, result.spec.symbol, "percentage of starts")
+def _draw_sweep(result: Sweep, axes: Axes, palette: Palette) -> None:
+    if "share" not in result.dataset:
+        raise TypeError("a sweep has a picture with the measure 'shares' only")
+    draw_shares(axes, result.values, result["share"], result.outcomes)
+    label_axes(axes, result.symbol, "percentage of starts")
     add_panel_legend(axes, "center right")
 
 
@@ -291,13 +290,6 @@ def _draw_laws(result: DecayLaws, axes: Axes, palette: Palette) -> None:
 @_draw.register
 def _draw_statistics(result: EscapeStatistics, axes: Axes, palette: Palette) -> None:
     draw_escape_times(axes, result)
-
-
-@_draw.register
-def _draw_share_fit(result: ShareFit, axes: Axes, palette: Palette) -> None:
-    draw_line(axes, result.energies, result.shares, "h", "share of starts")
-    fine = np.linspace(result.energies[0], result.energies[-1], 400)
-    axes.plot(fine, result.curve(fine), color=LIGHT.text, linewidth=1.2, label="fit")
 
 
 @_draw.register
@@ -317,21 +309,5 @@ def _draw_separation(result: Separation, axes: Axes, palette: Palette) -> None:
 
 
 @_draw.register
-def _draw_envelope(result: RadiusEnvelope, axes: Axes, palette: Palette) -> None:
-    axes.fill_between(result.t[: result.low.size], result.low, result.high, color=palette.orbits[0])
-    style_axes(axes)
-    label_axes(axes, "t", "R² = x² + y²")
-
-
-@_draw.register
 def _draw_digits(result: BirkhoffDigits, axes: Axes, palette: Palette) -> None:
     draw_line(axes, result.windows, result.digits, "window", "digits", logarithmic="x")
-
-
-@_draw.register
-def _draw_sticky(result: SuperStickySearch, axes: Axes, palette: Palette) -> None:
-    window = result.spec.find_window()
-    panel = _panel(axes, window)
-    draw_limits(panel, result.spec.potential, result.spec.plane, result.spec.energy, window, palette.channels)
-    show_window(panel, window, *result.spec.plane.axis_symbols)
-    axes.scatter(result.x, result.ordinate, s=9.0, color=palette.characters[2])

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import CancelledError
 from dataclasses import replace
-
-import xarray as xr
 
 from engine import (
     CASES,
@@ -16,15 +14,18 @@ from engine import (
     Plane,
     RegularityMap,
     Slice,
+    Sweep,
+    SweepSpec,
     UncertaintyExponent,
     Window,
     compute_regularity,
+    compute_sweep,
     compute_uncertainty_exponent,
 )
 from engine.execution import DEFAULT_EXECUTION
 from engine.maps.compute import run_map
-from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
-from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
+from engine.sweeps.measures import compute_point
+from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY, curve_energies
 from reproduction.quality import Quality
 
@@ -52,7 +53,7 @@ class MapShelf:
         self.execution = execution
         self._on_map = on_map
         self._maps: dict[MapSpec, EscapeMap] = {}
-        self._curves: dict[tuple[str, Slice], xr.Dataset] = {}
+        self._curves: dict[tuple[str, Slice], Sweep] = {}
         self._regularities: dict[MapSpec, RegularityMap] = {}
         self._searches: dict[MapSpec, SuperStickySearch] = {}
         self._exponents: dict[MapSpec, UncertaintyExponent] = {}
@@ -76,10 +77,8 @@ class MapShelf:
         """
         return self._stored(self._spec(case, plane, energy, window))
 
-    def curves(self, case: str, plane: Slice) -> xr.Dataset:
-        """Shares at the energies of `curve_energies`, from `engine.tabulate_crossing_statistics` with crossings to n = 0.
-
-        New maps are not stored.
+    def curves(self, case: str, plane: Slice) -> Sweep:
+        """Shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored.
 
         Raises
         ------
@@ -87,7 +86,13 @@ class MapShelf:
             If cancelled.
         """
         if (case, plane) not in self._curves:
-            self._curves[case, plane] = tabulate_crossing_statistics(self._curve_maps(case, plane), most_crossings=0)
+            energies, side = curve_energies(case, self.quality.curve_points), self.quality.resolution
+            spec = SweepSpec(
+                CASES[case], plane, energies, (side, side), t_max=self.quality.t_max, measures=("shares", "accuracy")
+            )
+            self._curves[case, plane] = compute_sweep(
+                spec, measure=lambda point: compute_point(point, frame=self._unstored(point.map_spec)), execution=self.execution
+            )
         return self._curves[case, plane]
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
@@ -151,14 +156,11 @@ class MapShelf:
         side, t_max = self.quality.resolution, self.quality.t_max
         return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)
 
-    def _curve_maps(self, case: str, plane: Slice) -> Iterator[EscapeMap]:
-        for energy in curve_energies(case, self.quality.curve_points):
-            spec = self._spec(case, plane, energy)
-            yield self._maps[spec] if spec in self._maps else self._compute(spec)
+    def _unstored(self, spec: MapSpec) -> EscapeMap:
+        return self._maps[spec] if spec in self._maps else self._compute(spec)
 
     def _stored(self, spec: MapSpec) -> EscapeMap:
-        if spec not in self._maps:
-            self._maps[spec] = self._compute(spec)
+        self._maps[spec] = self._unstored(spec)
         return self._maps[spec]
 
     def _compute(self, spec: MapSpec) -> EscapeMap:

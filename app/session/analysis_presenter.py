@@ -20,14 +20,14 @@ from app.views.analysis.curves import REFINED_VALUES, SWEPT_VALUES, CurvesView
 from app.views.components.texts import TextPane
 from app.views.maps.map_plots import PICTURES_ALONE, PICTURES_COMPARED, MapsView
 from engine import (
-    Curves,
-    CurvesSpec,
     EscapeMap,
     MapSpec,
     OriginFateMap,
     ParameterAxis,
     RegularityMap,
     StableManifolds,
+    Sweep,
+    SweepSpec,
     System,
     TrustMap,
     UncertaintyExponent,
@@ -39,21 +39,24 @@ from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.jobs.map_jobs import (
     basin_measures_job,
-    curves_job,
     decay_laws_job,
     flux_job,
     origin_fate_job,
     regularity_job,
+    sweep_job,
     trust_job,
 )
 from engine.slices.section import SECTION
 from engine.slices.slice_text import default_range
+from engine.sweeps.measures import CURVES
 from engine.warmup import is_ready_for_maps
 from plots.manifold_strokes import select_image
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.map_images import ON_DEMAND
 from plots.palette import Palette
 
+# Columns and rows of the maps of a sweep.
+_SIDES = (112, 112)
 # Column of `map_columns` and attribute of `MapAnalyses` that each layer controls.
 _COLUMN_OF = {"judge": "character", "origins": "passage"}
 _RESULT_OF = {"judge": "regularity", "trust": "trust", "manifolds": "manifolds", "origins": "origins"}
@@ -68,7 +71,7 @@ class AnalysisPresenter:
         jobs: JobSubmitter,
         maps: MapsView,
         on_analyses: Callable[[MapAnalyses], None],
-        on_curves: Callable[[Curves | None], None],
+        on_curves: Callable[[Sweep | None], None],
         on_copy: Callable[[str], None],
         open_view: Callable[[System, dict[str, Any]], None],
         locked: Locked,
@@ -76,6 +79,7 @@ class AnalysisPresenter:
         self._open_view = open_view
         self._state, self._maps, self._on_analyses, self._on_curves = state, maps, on_analyses, on_curves
         self._spec: MapSpec | None = None
+        self._swept: SweepSpec | None = None
         self._analyses = NO_ANALYSES
         # All images that are computed.
         self._manifolds: StableManifolds | None = None
@@ -253,11 +257,12 @@ class AnalysisPresenter:
             low, high = default_range(state.system, name)
             along, energy = ParameterAxis(name, low, high, state.system), state.energy
         swept = np.round(np.linspace(low, high, SWEPT_VALUES), 4).tolist()
-        spec = CurvesSpec(
-            state.potential, plane, tuple(swept), t_max=state.t_max, along=along, energy=energy, refine=REFINED_VALUES
-        )
+        self._swept = SweepSpec(
+            state.potential, plane, swept, _SIDES, t_max=state.t_max, measures=CURVES, along=along, energy=energy,
+            refine=REFINED_VALUES,
+        )  # fmt: skip
         self.curves.show_running(True)
-        self._sweeping.submit(curves_job(spec))
+        self._sweeping.submit(sweep_job(self._swept))
 
     def _stop_sweep(self) -> None:
         self._sweeping.cancel()
@@ -267,7 +272,7 @@ class AnalysisPresenter:
         self.curves.show_running(False)
         self.curves.say(sentence)
 
-    def _show_curves(self, curves: Curves | None) -> None:
+    def _show_curves(self, curves: Sweep | None) -> None:
         if curves is not None and curves.complete:
             self._stop_sweep()
         self.curves.show(curves)
@@ -275,9 +280,9 @@ class AnalysisPresenter:
 
     def _open_value(self, value: float) -> None:
         """Show the map of an energy, or of a value of the parameter, on the plane of the curves."""
-        if self.curves.shown is None:
+        spec = self._swept
+        if self.curves.shown is None or spec is None:
             return
-        spec = self.curves.shown.spec
         if spec.along is None:
             self._state.param.update(energy=value, plane=spec.plane)
         else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from engine.execution import Execution
 from engine.jobs.cache import ResultCache
@@ -21,9 +22,13 @@ from engine.measures.escape_statistics import compute_statistics, pixels_inside
 from engine.measures.labels import ENTROPY_COUNTS_BOUNDED, WADA_COUNTS_BOUNDED, exit_labels
 from engine.measures.wada import WadaTest, compute_wada_test
 from engine.slices.window import Window
-from engine.sweeps.curve_points import CurvePoint, CurvePointSpec, compute_curve_point
-from engine.sweeps.curves import Curves, CurvesSpec, compute_curves
+from engine.sweeps.measures import SweepPoint, compute_point
+from engine.sweeps.spec import SweepSpec
+from engine.sweeps.sweep import Sweep, compute_sweep
 from engine.trajectories.flux import EscapeFlux, compute_flux
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)
@@ -85,14 +90,9 @@ def flux_job(spec: MapSpec) -> Job[EscapeFlux] | None:
     return None if several else Job(compute_flux, (spec.potential, spec.common_energy))
 
 
-def curve_point_job(point_spec: CurvePointSpec) -> Job[CurvePoint]:
-    """The job of the measures at one energy."""
-    return Job(_measure_point, (point_spec, map_job(point_spec.map_spec)))
-
-
-def curves_job(spec: CurvesSpec) -> Job[Curves]:
-    """The job of measures against energy; the measures at each energy are cached separately."""
-    return Job(_compute_curves, (spec,))
+def sweep_job(spec: SweepSpec) -> Job[Sweep]:
+    """The job of a sweep; the measures at each value are cached separately."""
+    return Job(_compute_sweep, (spec,))
 
 
 def _find_shorter_map(job: Job[EscapeMap], cache: ResultCache) -> EscapeMap | None:
@@ -116,18 +116,18 @@ def _fit_laws(escape_map: EscapeMap, box: Window | None, *, execution: Execution
     return fit_decay_laws(compute_statistics(escape_map, box), execution=execution)
 
 
-def _measure_point(spec: CurvePointSpec, frame: EscapeMap, *, execution: Execution) -> CurvePoint:
-    return compute_curve_point(spec, execution=execution, frame=frame)
+def _measure_point(point: SweepPoint, frame: EscapeMap, *, execution: Execution) -> xr.Dataset:
+    return compute_point(point, frame=frame, execution=execution)
 
 
-def _compute_curves(
-    spec: CurvesSpec,
+def _compute_sweep(
+    spec: SweepSpec,
     *,
-    on_frame: Callable[[Curves], None],
+    on_frame: Callable[[Sweep], None],
     execution: Execution,
-    find_result: Callable[[Job[CurvePoint]], CurvePoint],
-) -> Curves:
-    def measure(point_spec: CurvePointSpec) -> CurvePoint:
-        return find_result(curve_point_job(point_spec))
+    find_result: Callable[[Job[xr.Dataset]], xr.Dataset],
+) -> Sweep:
+    def measure(point: SweepPoint) -> xr.Dataset:
+        return find_result(Job(_measure_point, (point, map_job(point.map_spec))))
 
-    return compute_curves(spec, on_frame=on_frame, execution=execution, measure=measure)
+    return compute_sweep(spec, on_frame=on_frame, execution=execution, measure=measure)

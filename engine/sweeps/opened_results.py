@@ -23,9 +23,7 @@ from engine.potentials.stored_potential import read_potential
 from engine.results.arrays import read_only
 from engine.results.extras import require_package
 from engine.results.result import Result
-from engine.sweeps.curves import Curves
-from engine.sweeps.stored_curves import read_curves
-from engine.sweeps.zarr_store import DONE
+from engine.sweeps.sweep import Sweep
 from engine.trajectories.chaos_indicators import BirkhoffDigits
 from engine.trajectories.nearest_divergent_start import DivergentStart
 from engine.trajectories.sampled_orbits import SampledOrbits
@@ -40,11 +38,13 @@ _KINDS: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
         EscapeMap, RegularityMap, TrustMap, OriginFateMap, Orbit, Outcomes, Separation, BirkhoffDigits, DivergentStart,
-        BasinEntropy, UncertaintyExponent, Curves, SampledOrbits,
+        BasinEntropy, UncertaintyExponent, Sweep, SampledOrbits,
     )
 }  # fmt: skip
 # Of results with a field that is neither a number nor an array nor a request of maps.
-_READERS: dict[Any, Callable[[xr.Dataset], Result]] = {EscapeMap: read_map, Curves: read_curves}
+_READERS: dict[Any, Callable[[xr.Dataset], Result]] = {EscapeMap: read_map, Sweep: Sweep}
+# Flags of finished energies in the stores of earlier versions, and the name of their curves: both are opened as plain datasets.
+_FORMER_FLAGS, _FORMER_CURVES = "done", "Curves"
 _ZARR = "zarr.json"
 
 
@@ -60,9 +60,10 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     Returns
     -------
     An equal result: an `EscapeMap`, `RegularityMap`, `TrustMap`, `OriginFateMap`, `Orbit`, `SampledOrbits`, `Outcomes`,
-    `Separation`, `BirkhoffDigits`, `DivergentStart`, `BasinEntropy`, `UncertaintyExponent`, or `Curves`, which `compute_curves`
-    takes as `earlier`. A map has no integration state and cannot be resumed. Of a sweep the dataset of `run_sweep`, read on
-    access; measures and analyses take one of its maps, ``dataset.sel(h=0.3)``.
+    `Separation`, `BirkhoffDigits`, `DivergentStart`, `BasinEntropy`, `UncertaintyExponent`, or `Sweep`, which `compute_sweep`
+    takes as `earlier`. A map has no integration state and cannot be resumed. The dataset of a sweep in a store is read on access;
+    measures and analyses take one of its maps, ``sweep.dataset.sel(h=0.3)``. Sweeps and curves of earlier versions are opened as
+    datasets.
 
     Raises
     ------
@@ -90,8 +91,8 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     if (Path(path) / _ZARR).exists():
         require_package("zarr", "files")
         stored: xr.Dataset = xr.open_zarr(path, chunks=None, consolidated=False)
-        if "result" not in stored.attrs and DONE in stored:
-            return stored.drop_vars(DONE)
+        if _FORMER_FLAGS in stored:
+            return stored.drop_vars(_FORMER_FLAGS)
         return _read(path, stored)
     if Path(path).is_dir():
         raise ValueError(
@@ -103,16 +104,16 @@ def open_result(path: str | os.PathLike[str]) -> Any:
     except OSError as error:
         raise OSError(f"path={os.fspath(path)}: cannot be read as a NetCDF file: {error}") from error
     with dataset as opened:
-        return _read(path, opened)
+        return _read(path, opened.load())
 
 
-def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Result:
+def _read(path: str | os.PathLike[str], dataset: xr.Dataset) -> Any:
+    if dataset.attrs.get("result") == _FORMER_CURVES:
+        return dataset
     kind = _KINDS.get(str(dataset.attrs.get("result")))
     if kind is None:
         held = dataset.attrs.get("result", "no result")
-        raise ValueError(
-            f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}, or a sweep. xarray opens it"
-        )
+        raise ValueError(f"path={os.fspath(path)}: holds {held}; must hold one of {', '.join(_KINDS)}. xarray opens it")
     if kind in _READERS:
         return _READERS[kind](dataset)
     values = {each.name: _value(kind, each.name, dataset) for each in fields(kind)}

@@ -1,53 +1,70 @@
-"""The request for a stored sweep: maps at many energies on one plane and in one window."""
+"""The request of a sweep: maps at many energies, or at many values of a parameter, and what is measured on them."""
 
 from __future__ import annotations
 
-import operator
+import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
-from engine.maps.compute import LARGEST_RUN
 from engine.maps.spec import DEFAULT_RESOLUTION, MapSpec
+from engine.potentials.outcomes import Outcome, write_outcomes
 from engine.potentials.potential import Potential
+from engine.potentials.stored_potential import describe_potential
+from engine.slices.axes import Coordinate, ParameterAxis
 from engine.slices.default_window import map_window
+from engine.slices.parameter_family import parameter_family
+from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
+from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow
-from engine.sweeps.energy_grid import checked_sweep
+from engine.sweeps.measures import MEASURES, SweepPoint
+from engine.validation import LARGEST_NUMBER, check_type, checked_count, short_repr
 
-MOST_SWEPT_ENERGIES = 10_000
-"""Most energies of a stored sweep; each takes several files per array."""
+MOST_VALUES = 10_000
+"""Most energies, or values of a parameter, of one sweep."""
+
+MOST_REFINED = 1000
+"""Most further values of a sweep."""
+
+EXTENT = ("requested", "refine", "count")
+"""Attributes of a sweep that only tell at which values, and at how many, it measures."""
 
 
 @dataclass(frozen=True)
 class SweepSpec:
-    """A sweep of maps over energies on one plane and in one window, so that its result is one array per variable.
+    """A sweep of maps over energies, or over a parameter of the system, on one plane.
 
     Parameters
     ----------
     potential
-        The `Potential`.
+        The `Potential`; along a parameter, that of its system.
     plane
-        A slice without an axis h, such as (x, y) or (x, px).
-    energies
-        h, finite, dimensionless, 1 to 10 000 of them; sorted and made unique.
+        A slice of one energy and one potential, such as (x, y) or (x, px).
+    values
+        Energies h, or values of the parameter; finite, dimensionless, 1 to 10 000 of them; sorted and made unique.
     resolution
-        (columns, rows) of the map at each energy, each 1 to 4096.
+        (columns, rows) of the map at each value, each 1 to 4096.
     window
-        As in `MapSpec`, for all energies; None for the default window of the highest energy. In the three cases the interior
-        grows with h on both planes, so that this window contains the default windows of all other energies.
+        As in `MapSpec`, for all values. None for the default window of each map, which contains the whole interior; for the
+        measure "maps", whose arrays have common axes, that of the highest energy. In the three cases the interior grows with h on
+        both planes, so that this window contains the default windows of all other energies.
     t_max
         Integration time, dimensionless, 0 < t_max ≤ 1e8.
     certify
         As in `MapSpec`.
-    piece
-        Largest number of starts per row block, 1 to 1 048 576. A block is computed and stored as a whole, and is what a killed
-        run loses. None for the largest, with which each map is bit-identical to `compute_map`. Smaller blocks leave fates, escape
-        times and the crossings of escaping orbits unchanged, unless a certificate errs, which is rare (docs/long-runs.md). The
-        certificate of a bounded orbit may change, because invariant curves are only compared with orbits of their own block, and
-        with it its crossings and energy error, which are those up to the time it was integrated.
+    measures
+        What is measured on each map, by name: "maps" keeps the arrays of the map itself; "shares", "escape_times", "islands",
+        "basin_entropy", "wada", "decay_rate", "uncertainty_exponent", which takes longest, and "accuracy".
+    along
+        The parameter; None for the energy. Outcomes have the numbers of its `ParameterAxis`.
+    energy
+        h of all maps along a parameter; None otherwise.
+    refine
+        Number of further values, 0 to 1000, chosen while the sweep runs: each is the middle of the two neighbours between which
+        the share of an exit, or of bounded starts, changes most. It needs the measure "shares".
 
     Raises
     ------
@@ -57,51 +74,121 @@ class SweepSpec:
 
     potential: Potential
     plane: Slice
-    energies: Sequence[float] | np.ndarray
+    values: Sequence[float] | np.ndarray
     resolution: tuple[int, int] = DEFAULT_RESOLUTION
     window: GivenWindow | None = None
     t_max: float = 1e5
     certify: bool = True
-    piece: int | None = None
+    measures: Sequence[str] = ("maps",)
+    along: ParameterAxis | None = None
+    energy: float | None = None
+    refine: int = 0
 
     def __post_init__(self) -> None:
-        plane, energies = checked_sweep(self.plane, self.energies, MOST_SWEPT_ENERGIES)
-        piece = _checked_piece(self.piece)
-        highest = MapSpec(self.potential, plane, energies[-1], self.resolution, self.window, self.t_max, self.certify)
-        object.__setattr__(self, "energies", energies)
-        object.__setattr__(self, "piece", piece)
+        check_type("along", self.along, (ParameterAxis, type(None)))
+        if (self.along is None) != (self.energy is None):
+            raise ValueError(f"energy={short_repr(self.energy)}: must be given along a parameter, and None along the energy")
+        if self.along is not None:
+            # Validates the parameter, which must be one of the system of the potential.
+            MapSpec(self.potential, Slice(Coordinate.X, self.along), self.energy or 0.0)
+        plane, values, measures = _checked_plane(self.plane), _checked_values(self.values), _checked_measures(self.measures)
+        if checked_count("refine", self.refine, 0, MOST_REFINED) and "shares" not in measures:
+            raise ValueError(f"refine={self.refine}: must be 0 without the measure 'shares', which tells where to refine")
+        if "maps" in measures and self.along is not None and self.window is None:
+            raise ValueError("window=None: must be given for maps along a parameter, which have common axes")
+        highest = MapSpec(
+            self.potential, plane, self._energy_at(values[-1]), self.resolution, self.window, self.t_max, self.certify
+        )
+        object.__setattr__(self, "values", values)
+        object.__setattr__(self, "measures", measures)
         for name in ("plane", "resolution", "window", "t_max", "certify"):
             object.__setattr__(self, name, getattr(highest, name))
 
-    def map_spec(self, energy: float) -> MapSpec:
-        """The spec of the map at one energy."""
-        window = self.window or map_window(self.potential, self.plane, self.energies[-1], self.resolution)
-        return MapSpec(self.potential, self.plane, energy, self.resolution, window, self.t_max, self.certify)
-
-    def provenance(self) -> dict[str, Any]:
-        """The request as plain values, without the energies; see `MapSpec.provenance`."""
-        common = self.map_spec(self.energies[-1]).provenance()
-        return {**{name: value for name, value in common.items() if name != "energy"}, "piece": self.piece or LARGEST_RUN}
-
-    def coordinates(self) -> dict[str, np.ndarray]:
-        """h (energies,), ordinate (rows,), abscissa (columns,): the coordinates of the arrays, in order."""
-        x, ordinate = self.map_spec(self.energies[-1]).pixel_centres()
-        abscissa_name, ordinate_name = self.plane.axis_names
-        return {"h": np.array(self.energies), ordinate_name: ordinate, abscissa_name: x}
+    @property
+    def count(self) -> int:
+        """Number of values, those of `refine` included; a single value cannot be refined."""
+        return len(self.values) + (self.refine if len(self.values) > 1 else 0)
 
     @property
-    def orbits(self) -> int:
-        """Number of starts at all energies, including forbidden ones and those outside."""
-        return len(self.energies) * self.resolution[0] * self.resolution[1]
+    def name(self) -> str:
+        """The name of what varies, in datasets: "h", or that of the parameter."""
+        return "h" if self.along is None else self.along.key
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What is counted, after bounded orbits."""
+        if self.along is not None:
+            return parameter_family(self.along).outcomes
+        return self.potential.outcomes_at((self.values[0], self.values[-1]))
+
+    def point(self, value: float) -> SweepPoint:
+        """The measurement at one value; ValueError if the system has no potential there."""
+        potential, numbers, energy = self.potential, tuple(range(len(self.potential.outcomes) + 1)), self._energy_at(value)
+        if self.along is not None:
+            member = parameter_family(self.along).member(value)
+            potential, numbers = member.potential, tuple(member.numbers_at(energy).tolist())
+        window = self._common_window()
+        map_spec = MapSpec(potential, self.plane, energy, self.resolution, window, self.t_max, self.certify)
+        return SweepPoint(map_spec, self.name, value, tuple(self.measures), numbers, self.outcomes)
+
+    def attributes(self) -> dict[str, Any]:
+        """The request in plain values, with the integrator and the package version: the attributes of the dataset."""
+        made_by = self.point(self.values[-1]).map_spec.provenance() | describe_potential(self.potential)
+        differing = {"energy"} if self.along is None else {"terms"}
+        if self._common_window() is None:
+            differing |= {"window", "default_window"}
+        along, system = "", None
+        if self.along is not None:
+            along, system = write_slice(Slice(Coordinate.X, self.along))[0], asdict(self.along.system)
+        return {
+            "result": "Sweep",
+            **{name: value for name, value in made_by.items() if name not in differing},
+            "axis": self.name,
+            "symbol": "h" if self.along is None else self.along.symbol,
+            "along": along,
+            "along_system": json.dumps(system),
+            "measures": ", ".join(self.measures),
+            "outcomes": write_outcomes(self.outcomes),
+            "requested": list(self.values),
+            "refine": self.refine,
+            "count": self.count,
+        }
+
+    def _energy_at(self, value: float) -> float:
+        return value if self.energy is None else self.energy
+
+    def _common_window(self) -> GivenWindow | None:
+        """The window of all maps; None where each has its default window."""
+        if self.window is None and "maps" in self.measures:
+            return map_window(self.potential, self.plane, self.values[-1], self.resolution)
+        return self.window
 
 
-def _checked_piece(piece: Any) -> int | None:
-    if piece is None:
-        return None
-    try:
-        checked = operator.index(piece)
-    except TypeError:
-        checked = 0
-    if not 1 <= checked <= LARGEST_RUN:
-        raise ValueError(f"piece={piece!r}: must be an integer from 1 to {LARGEST_RUN}, or None")
+def _checked_plane(plane: Any) -> Slice:
+    checked = checked_slice(plane)
+    if checked.energy_axis is not None:
+        raise ValueError(f"plane={checked.title}: must have no axis h, which already contains all energies")
+    checked.check_one_potential("plane")
     return checked
+
+
+def _checked_values(values: Any) -> tuple[float, ...]:
+    """The values, sorted and made unique."""
+    try:
+        checked = tuple(sorted({float(h) for h in values}))
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"values={short_repr(values)}: must be a sequence of finite numbers") from None
+    if not 1 <= len(checked) <= MOST_VALUES or not np.all(np.abs(checked) <= LARGEST_NUMBER):
+        raise ValueError(f"values: {len(checked)} different ones; must be 1 to {MOST_VALUES} finite numbers")
+    return checked
+
+
+def _checked_measures(measures: Any) -> tuple[str, ...]:
+    """The names, in the order of `MEASURES`."""
+    try:
+        given = {measures} if isinstance(measures, str) else set(measures)
+    except TypeError:
+        given = set()
+    if not given or not given <= set(MEASURES):
+        raise ValueError(f"measures={short_repr(measures)}: must be one or more of {', '.join(MEASURES)}")
+    return tuple(name for name in MEASURES if name in given)

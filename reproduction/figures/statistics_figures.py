@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import CASES, PAPER_FITS, Plane, compute_statistics, fit_decay_laws, fit_direct_shares, fit_escape_shares
-from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
+from engine import EscapeStatistics, Plane, compute_statistics, fit_decay_laws
 from plots.curve_figures import draw_decay_laws, draw_shares
 from plots.figure_axes import add_panel_legend, label_axes, name_panels, new_figure, style_axes
 from plots.figure_style import SCREEN
 from plots.palette import LIGHT, MEASURED, PAPER, THRESHOLD
+from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
+from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import plane_label
 from reproduction.paper_ranges import nine_energies, three_energies
-
-Curve = Callable[[Any], Any]
-"""A share against energy."""
 
 MOST_CROSSINGS = 40
 """Upper end of the axis of crossings; only few orbits escape later."""
@@ -40,44 +37,42 @@ def draw_statistics(case: str, shelf: MapShelf) -> Figure:
     figure = new_figure(SCREEN, 21.8, f"Case {case}, {plane_label(Plane.X_PX)} plane: statistics of the escapes")
     panels = figure.subplots(2, 2).ravel().tolist()
     table = shelf.curves(case, Plane.X_PX)
-    h, starts, paper = table["h"].values, table["starts"].values, PAPER_FITS[case]
-    degree = len(paper.direct.coefficients) - 1
-    escaped = fit_escape_shares(h, table["escaped"].values, starts)
-    direct = fit_direct_shares(h, table["direct"].values, starts, degree=degree)
-    _draw_fits(panels[0], h, table["escaped_share"].values, paper.escaped, escaped.curve if escaped.determined else None)
-    _draw_fits(panels[1], h, table["direct_share"].values, paper.direct, direct.curve if direct.determined else None)
+    h, paper = table.values, PAPER_FITS[case]
+    escaped, direct = table["share"][:, 1:].sum(axis=1), table["direct_share"]
+    _draw_fits(panels[0], h, escaped, paper.escaped, fit_escape_shares(h, escaped))
+    _draw_fits(panels[1], h, direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree))
     label_axes(panels[0], "$h$", "$N_e/N_0$")
     label_axes(panels[1], "$h$", "$N_{de}/N_0$")
-    frames = (shelf.map(case, Plane.X_PX, energy) for energy in nine_energies(case))
-    _draw_crossings(panels[2], panels[3], tabulate_crossing_statistics(frames, most_crossings=MOST_CROSSINGS))
+    crossings = {energy: compute_statistics(shelf.map(case, Plane.X_PX, energy)) for energy in nine_energies(case)}
+    _draw_crossings(panels[2], panels[3], crossings)
     after = "after $n$ crossings"
     name_panels(panels, ["escaping starts", "direct escapes", f"escapes {after}", f"probability of escape {after}"])
     return figure
 
 
-def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: Curve, own: Curve | None) -> None:
+def _draw_fits(axes: Axes, h: np.ndarray, shares: np.ndarray, paper: ShareCurve, own: ShareFit) -> None:
     fine = np.linspace(h[0], h[-1], _SAMPLES)
     axes.plot(h, shares, "o", color=MEASURED, markersize=3.6, label="computed")
     axes.plot(fine, paper(fine), color=THRESHOLD, linewidth=1.5, linestyle="--", label="the paper's fit")
-    if own is not None:
-        axes.plot(fine, own(fine), color=LIGHT.text, linewidth=1.2, label="this fit")
+    if own.determined:
+        axes.plot(fine, own.curve(fine), color=LIGHT.text, linewidth=1.2, label="this fit")
     axes.set_xlim(h[0], h[-1])
     style_axes(axes, grid=True)
     add_panel_legend(axes, "lower right")
 
 
-def _draw_crossings(shares: Axes, chances: Axes, table: xr.Dataset) -> None:
+def _draw_crossings(shares: Axes, chances: Axes, statistics: Mapping[float, EscapeStatistics]) -> None:
     """Both panels against n, one line per energy; lower energies are darker."""
-    energies, n = table["h"].values.tolist(), table["n"].values
-    places = np.linspace(_DARKEST, _LIGHTEST, len(energies)).astype(int)
-    for energy, place in zip(energies, places, strict=True):
-        row = table.sel(h=energy)
+    places = np.linspace(_DARKEST, _LIGHTEST, len(statistics)).astype(int)
+    for (energy, counted), place in zip(statistics.items(), places, strict=True):
         style: dict[str, Any] = {"color": PAPER.escape_time[place], "linewidth": 1.2, "marker": "o", "markersize": 2.4}
-        share, chance = row["crossing_share"].values, row["escape_probability"].values
+        escapes = counted.crossing_counts[: MOST_CROSSINGS + 1]
+        remaining = counted.decided - np.cumsum(escapes) + escapes
         with np.errstate(divide="ignore"):
-            logarithm = np.where(share > 0.0, np.log10(share), np.nan)
+            logarithm = np.where(escapes > 0, np.log10(escapes / counted.starts), np.nan)
+        n, chance = np.arange(escapes.size), counted.escape_probabilities[: escapes.size]
         shares.plot(n, logarithm, label=f"$h = {energy:.2f}$", **style)
-        chances.plot(n, np.where(row["remaining"].values >= FEWEST_REMAINING, chance, np.nan), **style)
+        chances.plot(n, np.where(remaining >= FEWEST_REMAINING, chance, np.nan), **style)
     label_axes(shares, "$n$", r"$\log_{10}(dN_n/N_0)$")
     label_axes(chances, "$n$", "$p_n$")
     for axes in (shares, chances):
@@ -93,8 +88,7 @@ def draw_percentages(case: str, shelf: MapShelf) -> Figure:
     planes = (Plane.X_Y, Plane.X_PX)
     for axes, plane in zip(panels, planes, strict=True):
         table = shelf.curves(case, plane)
-        shares = table["share"].sel(fate=range(CASES[case].channels + 1)).transpose("h", "fate")
-        draw_shares(axes, table["h"].values, shares.values, CASES[case])
+        draw_shares(axes, table.values, table["share"], table.outcomes)
         label_axes(axes, "$h$", "percentage of starts" if axes is panels[0] else "")
     name_panels(panels, [f"the {plane_label(plane)} plane" for plane in planes])
     add_panel_legend(panels[1], "center right")

@@ -9,9 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import Plane, find_lyapunov_orbits
-from engine.maps.super_sticky import SuperStickySearch
-from engine.trajectories.radius_envelope import RadiusEnvelope, compute_radius_envelope
+from engine import Plane, find_lyapunov_orbits, sample_orbits
 from plots.figure_axes import (
     add_figure_legend,
     add_panel_legend,
@@ -24,6 +22,7 @@ from plots.figure_axes import (
 from plots.figure_style import SCREEN
 from plots.map_analyses import MapAnalyses
 from plots.palette import MEASURED, PAPER, THRESHOLD
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.map_figures import draw_map_panel
 from reproduction.map_shelf import MapShelf
 from reproduction.notation import plane_label
@@ -32,9 +31,9 @@ from reproduction.paper_ranges import STICKY_CASE, STICKY_ENERGY
 LONGEST_DRAWN = 4e6
 """Latest escape time of a drawn orbit; the integration takes a second per 1e5 time units."""
 
-# Intervals of time for which the minimum and the maximum of R² are computed, and of those that are drawn.
-_INTERVALS = 100_000
-_ACROSS = 2000
+# Intervals of time in each panel for which the minimum and the maximum of R² are drawn, and samples in each. R² oscillates with
+# a period of about π: the samples of an interval meet all its phases.
+_INTERVALS, _SAMPLES = 1000, 1000
 # Share of the time that the second panel shows, before the escape.
 _LAST = 0.01
 _TIME_UNIT = 1e5
@@ -57,12 +56,13 @@ def draw_characters(shelf: MapShelf) -> Figure:
 def draw_super_sticky(shelf: MapShelf) -> Figure:
     """R²(t) of an orbit that escapes long after the paper's 1e5 time units: the whole orbit, and its end."""
     search = shelf.super_sticky()
-    orbit = _follow_late_orbit(search, shelf)
-    figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, orbit)}")
+    place = find_shown(search)
+    figure = new_figure(SCREEN, 12.2, f"Case {STICKY_CASE}, $h = {STICKY_ENERGY}$: {_describe(search, place)}")
     panels = list(figure.subplots(1, 2, sharey=True, width_ratios=(2, 1)))
-    if orbit is not None:
-        _draw_history(panels[0], orbit, search.spec.t_max)
-        _draw_departure(panels[1], orbit)
+    if place is not None:
+        end = float(search.escape_time[place])
+        _draw_history(panels[0], _sample_r2(search, place, 0.0, shelf), end, search.spec.t_max)
+        _draw_departure(panels[1], _sample_r2(search, place, (1.0 - _LAST) * end, shelf), end)
     for axes in panels:
         _draw_exits(axes, search)
         style_axes(axes)
@@ -82,39 +82,36 @@ def find_shown(search: SuperStickySearch) -> int | None:
     return int(early[-1] if early.size else escapers[0])
 
 
-def _follow_late_orbit(search: SuperStickySearch, shelf: MapShelf) -> RadiusEnvelope | None:
-    place = find_shown(search)
+def _sample_r2(search: SuperStickySearch, place: int, begin: float, shelf: MapShelf) -> np.ndarray:
+    """(intervals, samples) R² of an orbit from a time until its escape."""
+    times = np.linspace(begin, search.escape_time[place], _INTERVALS * _SAMPLES)
+    orbits = sample_orbits(search.spec.potential, search.states[place : place + 1], times, execution=shelf.execution)
+    r2: np.ndarray = (orbits.x**2 + orbits.y**2).reshape(_INTERVALS, _SAMPLES)
+    return r2
+
+
+def _describe(search: SuperStickySearch, place: int | None) -> str:
     if place is None:
-        return None
-    return compute_radius_envelope(
-        search.spec.potential, search.states[place], search.t_max, intervals=_INTERVALS, execution=shelf.execution
-    )
-
-
-def _describe(search: SuperStickySearch, orbit: RadiusEnvelope | None) -> str:
-    if orbit is None:
         return f"no chaotic orbit of this map escapes by {search.t_max / 1e6:g} million time units"
-    return f"an orbit that escapes through channel {orbit.fate} at $t = {orbit.escape_time:.0f}$"
+    return f"an orbit that escapes through channel {search.fate[place]} at $t = {search.escape_time[place]:.0f}$"
 
 
-def _draw_history(axes: Axes, orbit: RadiusEnvelope, t_max: float) -> None:
-    places = np.arange(0, _INTERVALS, _INTERVALS // _ACROSS)
-    low, high = np.minimum.reduceat(orbit.low, places), np.maximum.reduceat(orbit.high, places)
-    _draw_band(axes, np.append(orbit.t[places], orbit.t[-1]) / _TIME_UNIT, low, high)
+def _draw_history(axes: Axes, r2: np.ndarray, end: float, t_max: float) -> None:
+    _draw_band(axes, r2, 0.0, end / _TIME_UNIT)
     style: dict[str, Any] = {"color": PAPER.channels[2], "linestyle": "--", "linewidth": 1.4}
     axes.axvline(t_max / _TIME_UNIT, label=f"the maps end: $t = 10^{{{np.log10(t_max):.0f}}}$", **style)
-    axes.set_xlim(0.0, 1.02 * orbit.t[-1] / _TIME_UNIT)
+    axes.set_xlim(0.0, 1.02 * end / _TIME_UNIT)
 
 
-def _draw_departure(axes: Axes, orbit: RadiusEnvelope) -> None:
-    last = round(_LAST * _INTERVALS)
-    _draw_band(axes, orbit.t[-last - 1 :] - orbit.t[-1], orbit.low[-last:], orbit.high[-last:])
-    axes.set_xlim(-_LAST * orbit.t[-1], 0.02 * _LAST * orbit.t[-1])
+def _draw_departure(axes: Axes, r2: np.ndarray, end: float) -> None:
+    _draw_band(axes, r2, -_LAST * end, 0.0)
+    axes.set_xlim(-_LAST * end, 0.02 * _LAST * end)
 
 
-def _draw_band(axes: Axes, ends: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
+def _draw_band(axes: Axes, r2: np.ndarray, begin: float, end: float) -> None:
     """Minimum and maximum of R² in each interval."""
-    least, greatest = (np.append(side, side[-1]) for side in (low, high))
+    ends = np.linspace(begin, end, len(r2) + 1)
+    least, greatest = (np.append(side, side[-1]) for side in (r2.min(axis=1), r2.max(axis=1)))
     axes.fill_between(ends, least, greatest, step="post", color=MEASURED, linewidth=0.2)
 
 

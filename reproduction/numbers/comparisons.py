@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine import Plane
-from engine.maps.super_sticky import SuperStickySearch
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_shelf import MapShelf
 from reproduction.numbers.map_structure import share_in_basins
 from reproduction.numbers.measures import Measures, counted_codes

@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from engine import CASES, EscapeMap, Fate, Plane, compute_statistics, find_lyapunov_orbits
-from engine.maps.super_sticky import SuperStickySearch
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_shelf import MapShelf
 from reproduction.numbers.map_structure import orders_of_escape_times, share_in_basins, share_next_to_all_basins
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber

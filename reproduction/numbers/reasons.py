@@ -9,7 +9,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from engine import PAPER_FITS, Fate, compute_statistics
+from engine import Fate, compute_statistics
+from reproduction.analyses.published_fits import PAPER_FITS
 from reproduction.numbers.measures import Measures
 from reproduction.numbers.stated_numbers import Quantity, StatedNumber
 

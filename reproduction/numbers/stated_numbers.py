@@ -240,5 +240,5 @@ _CASE_III = (
 STATED_NUMBERS: tuple[StatedNumber, ...] = (*_CASE_I, *_CASE_II, *_CASE_III)
 """All numbers of the text, by case.
 
-The fits of Ne/N0 and Nde/N0 are `engine.PAPER_FITS`. The text states no numbers for dN_n and p_n.
+The fits of Ne/N0 and Nde/N0 are `PAPER_FITS`. The text states no numbers for dN_n and p_n.
 """

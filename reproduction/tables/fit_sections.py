@@ -4,19 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from engine import (
-    CASES,
-    PAPER_FITS,
-    Plane,
-    ShareFit,
-    compute_statistics,
-    fit_decay_laws,
-    fit_direct_shares,
-    fit_escape_shares,
-    measure_deviation,
-)
-from engine.measures.published_fits import HyperbolicTangent, Polynomial
+import numpy as np
+
+from engine import CASES, Plane, compute_statistics, fit_decay_laws
 from engine.results.wording import format_number
+from reproduction.analyses.published_fits import PAPER_FITS, ShareCurve
+from reproduction.analyses.share_fits import ShareFit, fit_direct_shares, fit_escape_shares, measure_deviation
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import three_energies
 from reproduction.tables.markdown import write_rows
@@ -35,15 +28,14 @@ def write_fits(shelf: MapShelf) -> str:
     rows, sentences = [], []
     for case in CASES:
         table, paper = shelf.curves(case, Plane.X_PX), PAPER_FITS[case]
-        h, starts = table["h"].values, table["starts"].values
-        degree = len(paper.direct.coefficients) - 1
-        curves: tuple[tuple[str, str, HyperbolicTangent | Polynomial, ShareFit], ...] = (
-            ("Ne/N0", "escaped", paper.escaped, fit_escape_shares(h, table["escaped"].values, starts)),
-            ("Nde/N0", "direct", paper.direct, fit_direct_shares(h, table["direct"].values, starts, degree=degree)),
+        h, escaped, direct = table.values, table["share"][:, 1:].sum(axis=1), table["direct_share"]
+        curves: tuple[tuple[str, np.ndarray, ShareCurve, ShareFit], ...] = (
+            ("Ne/N0", escaped, paper.escaped, fit_escape_shares(h, escaped)),
+            ("Nde/N0", direct, paper.direct, fit_direct_shares(h, direct, paper.direct.degree)),
         )
-        for name, counts, published, fitted in curves:
+        for name, shares, published, fitted in curves:
             rows += list(_fit_rows(f"{case}, {name}", published, fitted))
-            off = measure_deviation(published, h, table[counts].values, starts)
+            off = measure_deviation(published, h, shares)
             new = fitted.deviation.describe()
             sentences.append(f"- Case {case}, {name}: the paper's curve lies {off.describe()}; the new fit {new}.")
     intro = _FITS.format(count=shelf.quality.curve_points)
@@ -51,7 +43,7 @@ def write_fits(shelf: MapShelf) -> str:
     return "\n\n".join([intro, write_rows(heads, rows), "\n".join(sentences)])
 
 
-def _fit_rows(name: str, published: HyperbolicTangent | Polynomial, fitted: ShareFit) -> Iterator[tuple[str, ...]]:
+def _fit_rows(name: str, published: ShareCurve, fitted: ShareFit) -> Iterator[tuple[str, ...]]:
     for parameter, value in published.parameters.items():
         low, high = fitted.intervals[parameter]
         inside = "yes" if low <= value <= high else "no"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine import CASES
-from engine.maps.super_sticky import SuperStickySearch
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_shelf import MapShelf
 from reproduction.paper_ranges import STICKY_CASE, nine_energies
 from reproduction.tables.markdown import write_rows

@@ -10,7 +10,7 @@ from importlib import metadata
 import numpy as np
 
 from engine import CASES
-from engine.maps.super_sticky import SuperStickySearch
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_shelf import MapShelf
 from reproduction.numbers.comparisons import PERCENT, POINTS, Comparison, compare_all
 from reproduction.numbers.map_structure import BOUNDARY_PIXELS

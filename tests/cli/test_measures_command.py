@@ -14,27 +14,28 @@ import xarray as xr
 
 from engine import (
     CASES,
-    CurvesSpec,
     MapSpec,
     Plane,
+    SweepSpec,
     compute_basin_entropy,
-    compute_curves,
     compute_flux,
     compute_map,
     compute_statistics,
+    compute_sweep,
     compute_uncertainty_exponent,
     compute_wada_test,
     find_lyapunov_orbits,
     fit_decay_laws,
 )
 from engine.measures.labels import exit_labels
+from engine.sweeps.measures import CURVES
 
 Run = Callable[..., tuple[int, str, str]]
 
 MAP = ("II", "--energy", 0.2, "--resolution", 25, "--t-max", 100)
 SPEC = MapSpec(CASES["II"], Plane.X_PX, 0.2, (25, 25), t_max=100.0)
 SWEEP = ("I", "--low", 0.12, "--high", 0.2, "--count", 3, "--resolution", 15, "--t-max", 50, "--no-exponent")
-SWEEP_SPEC = CurvesSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.12, 0.2, 3)), (15, 15), 50.0, exponent=False)
+SWEEP_SPEC = SweepSpec(CASES["I"], Plane.X_PX, np.linspace(0.12, 0.2, 3), (15, 15), t_max=50.0, measures=CURVES[:-1])
 
 
 def test_lyapunov_json_and_csv_equal_the_engine_result(run: Run, tmp_path: Path) -> None:
@@ -102,24 +103,24 @@ def test_measures_json_equals_the_engine_result(run: Run) -> None:
 def test_curves_netcdf_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     assert run("curves", *SWEEP, "--output", tmp_path / "curves")[0] == 0
     with xr.open_dataset(tmp_path / "curves.nc", engine="h5netcdf") as found:
-        xr.testing.assert_equal(found.load(), compute_curves(SWEEP_SPEC).to_xarray())
+        xr.testing.assert_equal(found.load(), compute_sweep(SWEEP_SPEC).dataset)
 
 
 def test_curves_csv_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
     run("curves", *SWEEP, "--output", tmp_path / "curves")
     with (tmp_path / "curves.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    curves = compute_curves(SWEEP_SPEC)
-    for name, wanted in (("h", curves.values), ("channel_2", curves.shares[:, 2]), ("s_b", curves.curve("s_b"))):
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    curves = compute_sweep(SWEEP_SPEC)
+    for name, wanted in (("h", curves.values), ("share_channel_2", curves["share"][:, 2]), ("s_b", curves["s_b"])):
         assert [float(row[name]) for row in rows] == wanted.tolist()
 
 
 def test_nan_is_null_in_json(run: Run, tmp_path: Path) -> None:
     _, out, _ = run("curves", *SWEEP, "--json", "--output", tmp_path / "curves")
     lowest = json.loads(out)["points"][0]
-    assert math.isnan(compute_curves(SWEEP_SPEC).curve("mean_escape_time")[0])
+    assert math.isnan(compute_sweep(SWEEP_SPEC)["mean_escape_time"][0])
     assert lowest["mean_escape_time"] is None
-    assert lowest["bounded"] == 1.0
+    assert lowest["share_bounded"] == 1.0
 
 
 @pytest.mark.parametrize("command", [("measures", *MAP), ("curves", *SWEEP)])
@@ -130,7 +131,7 @@ def test_no_progress_without_a_terminal(
     assert run(*command, "--json")[2] == ""
 
 
-@pytest.mark.parametrize(("ending", "begins"), [("csv", b"h,bounded"), ("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")])
+@pytest.mark.parametrize(("ending", "begins"), [("csv", b"# escape"), ("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")])
 def test_the_ending_of_the_file_name_is_the_format_of_the_curves(ending: str, begins: bytes, run: Run, tmp_path: Path) -> None:
     energies = ("--low", 0.2, "--high", 0.3, "--count", 2, "--resolution", 12, "--t-max", 100, "--no-exponent")
     path = tmp_path / f"curves.{ending}"

@@ -15,7 +15,7 @@ import xarray as xr
 
 import engine
 from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
-from engine import CASES, Execution, Plane, SweepSpec
+from engine import CASES, Execution, Plane, Sweep, SweepSpec
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -24,43 +24,43 @@ SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist(
 
 
 def load(store: Path) -> xr.Dataset:
-    return xr.open_zarr(store, chunks=None).load()
+    return xr.open_zarr(store, chunks=None, consolidated=False).load()
 
 
 def test_store_equals_the_maps_of_the_engine(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(*SWEEP, "--json", "--store", tmp_path / "store.zarr")
     found = load(tmp_path / "store.zarr")
     assert (code, json.loads(out)["dimensions"]) == (0, {"h": 3, "px": 7, "x": 9})
-    for place, energy in enumerate(SPEC.energies):
-        np.testing.assert_array_equal(found["escape_time"][place], engine.compute_map(SPEC.map_spec(energy)).escape_time)
+    for place, energy in enumerate(SPEC.values):
+        np.testing.assert_array_equal(found["escape_time"][place], engine.compute_map(SPEC.point(energy).map_spec).escape_time)
 
 
 def test_listed_energies_equal_spaced_ones(run: Run, tmp_path: Path) -> None:
-    listed = [argument for energy in SPEC.energies for argument in ("--energy", energy)]
+    listed = [argument for energy in SPEC.values for argument in ("--energy", energy)]
     run("sweep", "I", *listed, "--resolution", "9x7", "--t-max", 50, "--store", tmp_path / "listed.zarr")
     run(*SWEEP, "--store", tmp_path / "spaced.zarr")
     xr.testing.assert_identical(load(tmp_path / "listed.zarr"), load(tmp_path / "spaced.zarr"))
 
 
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run_sweep = engine.run_sweep
+    compute_sweep = engine.compute_sweep
 
-    def interrupted(spec: SweepSpec, store: Path, *, execution: Execution) -> xr.Dataset:
+    def interrupted(spec: SweepSpec, store: Path, *, execution: Execution) -> Sweep:
         def stop_later(share: float) -> None:
             if share >= 1 / 3 and not execution.is_cancelled:
                 signal.raise_signal(signal.SIGINT)
 
-        return run_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
+        return compute_sweep(spec, store, execution=replace(execution, on_progress=stop_later))
 
     store = tmp_path / "store.zarr"
     with monkeypatch.context() as patch:
-        patch.setattr(engine, "run_sweep", interrupted)
+        patch.setattr(engine, "compute_sweep", interrupted)
         code, out, err = run(*SWEEP, "--store", store)
     assert (code, out) == (INTERRUPTED, "")
     assert f"are kept in {store}" in err
-    assert load(store)["done"].values.tolist() == [True, False, False]
+    assert load(store)["h"].values.tolist() == [0.13]
     assert run(*SWEEP, "--store", store)[0] == 0
-    assert load(store)["done"].values.all()
+    assert load(store)["h"].values.tolist() == list(SPEC.values)
 
 
 def test_store_of_another_sweep_is_rejected(run: Run, tmp_path: Path) -> None:

@@ -43,11 +43,9 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
-from engine.maps.super_sticky import find_super_sticky_orbits
 from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.well_units import WellUnits
-from engine.sweeps.curve_points import CurvePointSpec, compute_curve_point
-from engine.trajectories.radius_envelope import compute_radius_envelope
+from engine.sweeps.measures import SweepPoint, compute_point
 
 
 @dataclass(frozen=True)
@@ -140,11 +138,6 @@ def test_follow_up_analyses(name: str, scaling: Scaling) -> None:
     assert np.any(trust.trust == Trust.DOUBTFUL)
     regularity, scaled_regularity = compute_regularity(usual), compute_regularity(scaled)
     np.testing.assert_array_equal(scaled_regularity.character, regularity.character)
-    longer = find_super_sticky_orbits(usual, regularity, 3.0 * usual.spec.t_max)
-    scaled_longer = find_super_sticky_orbits(scaled, scaled_regularity, 3.0 * scaled.spec.t_max)
-    np.testing.assert_array_equal(scaled_longer.fate, longer.fate)
-    np.testing.assert_array_equal(scaled_longer.states, scaling.states(longer.states))
-    np.testing.assert_array_equal(scaled_longer.escape_time, scaling.time * longer.escape_time)
 
 
 @each_system
@@ -164,14 +157,14 @@ def test_resumed_maps_and_origins(name: str, scaling: Scaling) -> None:
 @exactly_scaled
 def test_curve_points_with_uncertainty_exponents(name: str, scaling: Scaling) -> None:
     usual, scaled = escape_map(name, Plane.X_PX), escape_map(name, Plane.X_PX, scaling)
-    outcomes = len(usual.spec.outcomes)
+    outcomes, measures = usual.spec.outcomes, ("shares", "islands", "escape_times")
     point, scaled_point = (
-        compute_curve_point(CurvePointSpec(m.spec, False, 0.2, tuple(range(outcomes + 1)), outcomes), frame=m)
+        compute_point(SweepPoint(m.spec, "h", 0.2, measures, tuple(range(len(outcomes) + 1)), outcomes), frame=m)
         for m in (usual, scaled)
     )
-    assert scaled_point.shares == point.shares
-    assert scaled_point.largest_island == scaling.length * scaling.momentum * point.largest_island
-    assert scaled_point.median_escape_time == scaling.time * point.median_escape_time
+    np.testing.assert_array_equal(scaled_point["share"], point["share"])
+    assert scaled_point["largest_island"] == scaling.length * scaling.momentum * point["largest_island"]
+    assert scaled_point["median_escape_time"] == scaling.time * point["median_escape_time"]
     found, scaled_found = (compute_uncertainty_exponent(m.spec, pairs=40, separations=7, work=1e5) for m in (usual, scaled))
     np.testing.assert_array_equal(scaled_found.uncertain, found.uncertain)
     np.testing.assert_array_equal(scaled_found.separations, scaling.length * found.separations)
@@ -241,13 +234,11 @@ def test_measures_of_single_orbits(name: str, scaling: Scaling) -> None:
     for s in (Scaling(1.0, 1.0), scaling):
         potential, state = s.potential(usual), s.states(start)
         quiet = s.states(0.1 * start * [1.0, 0.0, 1.0, 1.0])
-        envelope = compute_radius_envelope(potential, state, s.time * t_max, intervals=20)
         separation = compute_separation(potential, state, 1.0000001 * state, s.time * t_max)
         digits = compute_birkhoff_digits(potential, quiet, 2000.0 * times(name) * s.time)
         near = find_divergent_start(potential, Plane.X_PX, float(potential.energy(state)), state[0], state[2], s.time * t_max)
         assert isinstance(near, DivergentStart)
         for_both.append([
-            *(envelope.t / s.time, envelope.high / s.length**2),
             *(separation.t / s.time, separation.distance / s.length),
             *(digits.windows / s.time, digits.digits),
             *(near.x / s.length, near.ordinate / s.momentum, near.distance / s.length, near.fate),

@@ -18,15 +18,15 @@ import pytest
 import engine
 from cli.clusters import _describing_losses
 from cli.main import FAILED, main
-from engine import CASES, Plane, SweepSpec, run_sweep
+from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.dynamics.fixed_step_batches import map_tiles
 from engine.execution import Execution
 from tests.forgetful_pool import ForgetfulPool
 from tests.forked import Finished, run
 
-SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (15, 15), t_max=2e4, piece=80)
+SPEC = SweepSpec(CASES["III"], Plane.X_PX, (0.36, 0.4), (15, 15), t_max=2e4)
 SWEEP = (
-    "sweep", "III", "--energy", "0.36", "--energy", "0.4", "--resolution", "15", "--t-max", "2e4", "--piece", "80",
+    "sweep", "III", "--energy", "0.36", "--energy", "0.4", "--resolution", "15", "--t-max", "2e4",
     "--store", "store.zarr",
 )  # fmt: skip
 
@@ -39,18 +39,18 @@ def files_of(store: Path) -> dict[str, bytes]:
 def straight(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     """The files of a sweep that loses nothing."""
     folder = tmp_path_factory.mktemp("straight")
-    run_sweep(SPEC, folder / "store")
+    compute_sweep(SPEC, folder / "store")
     return files_of(folder / "store")
 
 
-# The calls of a block: its tiles, then those of its certificates.
+# The calls of a map: its tiles, then those of its certificates.
 @pytest.mark.parametrize("good_calls", [0, 5, 20])
 def test_dropped_call_ends_a_sweep_that_resumes_with_the_same_bytes(
     good_calls: int, tmp_path: Path, straight: dict[str, bytes]
 ) -> None:
     with ForgetfulPool(good_calls) as pool, pytest.raises(BrokenExecutor):
-        run_sweep(SPEC, tmp_path / "store", execution=Execution(pool))
-    run_sweep(SPEC, tmp_path / "store")
+        compute_sweep(SPEC, tmp_path / "store", execution=Execution(pool))
+    compute_sweep(SPEC, tmp_path / "store")
     assert files_of(tmp_path / "store") == straight
 
 
@@ -80,17 +80,17 @@ def test_full_disk_is_no_loss_of_the_cluster() -> None:
 
 
 def sweep_and_lose(folder: Path, lose: Callable[[Any], None] | None) -> None:
-    """Run the command on a cluster of two processes, with a loss after the first block."""
+    """Run the command on a cluster of two processes, with a loss after the first map."""
     os.chdir(folder)
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
-        run_whole, lost = engine.run_sweep, []
+        run_whole, lost = engine.compute_sweep, []
 
         def on_progress(share: float) -> None:
             if share > 0.0 and lose is not None and not lost:
                 lost.append(share)
                 lose(cluster)
 
-        engine.run_sweep = lambda spec, store, *, execution: run_whole(
+        engine.compute_sweep = lambda spec, store, *, execution: run_whole(
             spec, store, execution=replace(execution, on_progress=on_progress)
         )
         sys.exit(main((*SWEEP, "--scheduler", cluster.scheduler_address)))

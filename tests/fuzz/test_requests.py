@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from engine import (
     CASES,
-    CurvesSpec,
     EscapeMap,
     MapSpec,
     Plane,
@@ -31,18 +30,14 @@ from engine import (
     find_lyapunov_orbits,
     find_stable_manifolds,
     fit_decay_laws,
-    fit_direct_shares,
-    fit_escape_shares,
     integrate_orbit,
     judge_orbit,
-    measure_deviation,
     plan_sweep,
     start_states,
     trace_zero_velocity_curve,
 )
 from engine.measures.uncertainty_exponent import fit_uncertainty
 from engine.slices.limiting_curves import trace_equipotentials
-from engine.trajectories.radius_envelope import compute_radius_envelope
 from engine.validation import LONGEST_TIME
 from tests.fuzz.hostile import anything, floats, mostly, result_or_error
 
@@ -134,14 +129,6 @@ def test_birkhoff_digits(state: Any, t_max: Any) -> None:
     result_or_error(lambda: compute_birkhoff_digits(CASE, state, t_max), ["state", "t_max", "energy"])
 
 
-@given(states, times, mostly(st.integers(1, 20)))
-def test_radius_envelope(state: Any, t_max: Any, intervals: Any) -> None:
-    result_or_error(
-        lambda: compute_radius_envelope(CASE, state, shortened(t_max), intervals=intervals),
-        ["state", "t_max", "intervals", "energy"],
-    )
-
-
 @given(energies)
 @example(0.25)
 def test_lyapunov_orbits(energy: Any) -> None:
@@ -178,7 +165,6 @@ def test_divergent_start(plane: Any, energy: Any, x: Any, ordinate: Any, t_max: 
 @given(planes, mostly(st.lists(energies, max_size=4), anything), resolutions, st.none() | edges, times)
 def test_sweep_specs(plane: Any, swept: Any, resolution: Any, window: Any, t_max: Any) -> None:
     names = ["plane", "Plane", "energies", "values", "energy", "resolution", "window", "t_max"]
-    result_or_error(lambda: CurvesSpec(CASE, plane, swept, resolution, t_max), names)
     result_or_error(lambda: SweepSpec(CASE, plane, swept, resolution, window, t_max), names)
 
 
@@ -199,13 +185,9 @@ def test_basin_measures(pixels: Any, valid: Any, box: Any) -> None:
     result_or_error(lambda: compute_basin_entropy(frame.fate, frame.fate >= 0, box=box), names)
 
 
-@given(number_lists, count_lists, count_lists, counts)
-def test_share_fits(h: Any, part: Any, whole: Any, degree: Any) -> None:
-    names = ["h", "escaped", "direct", "counts", "starts", "degree", "separations", "pairs", "uncertain"]
-    result_or_error(lambda: fit_escape_shares(h, part, whole), names)
-    result_or_error(lambda: fit_direct_shares(h, part, whole, degree=degree), names)
-    result_or_error(lambda: fit_uncertainty(h, whole, part), names)
-    result_or_error(lambda: measure_deviation(np.cos, h, part, whole), names)
+@given(number_lists, count_lists, count_lists)
+def test_fits_of_uncertain_pairs(separations: Any, pairs: Any, uncertain: Any) -> None:
+    result_or_error(lambda: fit_uncertainty(separations, pairs, uncertain), ["separations", "pairs", "uncertain"])
 
 
 @given(times, st.none() | st.tuples(floats, floats) | anything, mostly(st.just(500)), counts)

@@ -27,7 +27,6 @@ from escape_explorer import (
     Window,
     classify_orbits,
     compute_basin_entropy,
-    compute_crossing_statistics,
     compute_map,
     compute_regularity,
     compute_statistics,
@@ -72,8 +71,6 @@ entropy, wada = measure(CASES["III"], 0.45)
 print(entropy.describe(), wada.describe())
 print(follow(parse_formula("½(x² + y²) − x²y"), 0.2).fate >= Fate.BOUNDED)
 assert_type(plan_sweep(SweepSpec(POTENTIALS["HH"], Plane.X_PX, np.linspace(0.2, 0.3, 2), window=EDGES, t_max=100.0)), SweepPlan)
-table = compute_crossing_statistics(CASES["III"], Plane.X_PX, np.array([0.3, 0.4]), (20, 20), 100.0, window=EDGES)
-print(table["escaped_share"].values)
 print([orbit.period for orbit in find_lyapunov_orbits(CASES["I"], 0.19)])
 print(len(find_stable_manifolds(CASES["I"], 0.19, images=1, window=EDGES).arcs))
 print(len(trace_zero_velocity_curve(CASES["I"], Plane.X_PX, 0.19, EDGES)))

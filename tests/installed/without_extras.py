@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import escape_explorer
-from escape_explorer import CASES, MapSpec, Plane, SweepSpec, compute_map, integrate_orbit, open_result, run_sweep
+from escape_explorer import CASES, MapSpec, Plane, SweepSpec, compute_map, compute_sweep, integrate_orbit, open_result
 
 PROGRAM = str(Path(sys.executable).with_name("escape-explorer"))
 
@@ -41,7 +41,9 @@ def main() -> None:
     check_refusal(escapes.to_holoviews, "holoviews", "page")
     check_refusal(lambda: escape_explorer.Explorer, "panel", "page")
     check_refusal(lambda: open_result("map.nc"), "h5netcdf", "files")
-    check_refusal(lambda: run_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.3,), (9, 9), t_max=10.0), "sweep.zarr"), "zarr", "files")
+    check_refusal(
+        lambda: compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.3,), (9, 9), t_max=10.0), "sweep.zarr"), "zarr", "files"
+    )
     assert "pip install 'escape-explorer[page]'" in run_program("serve")
 
 

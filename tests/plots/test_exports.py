@@ -14,14 +14,14 @@ from matplotlib import pyplot
 
 from engine import (
     CASES,
-    CurvesSpec,
     MapSpec,
     Orbit,
     Plane,
+    SweepSpec,
     System,
-    compute_curves,
     compute_map,
     compute_origin_fates,
+    compute_sweep,
     compute_trust,
     integrate_orbit,
     judge_orbit,
@@ -99,12 +99,13 @@ def test_a_long_orbit_is_thinned_evenly_with_a_note(orbit: Orbit) -> None:
 
 
 def test_a_table_of_curves_has_a_row_for_each_energy() -> None:
-    curves = compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), resolution=(20, 20), t_max=100.0, exponent=False))
+    measures = ("shares", "basin_entropy")
+    curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.13, 0.2), (20, 20), t_max=100.0, measures=measures))
     comments, rows = table(curves_csv(curves))
     assert "# t_max: 100.0" in comments
     assert [float(row["h"]) for row in rows] == [0.13, 0.2]
-    np.testing.assert_array_equal([float(row["share_channel_2"]) for row in rows], curves.shares[:, 2])
-    np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves.curve("s_b"))
+    np.testing.assert_array_equal([float(row["share_channel_2"]) for row in rows], curves["share"][:, 2])
+    np.testing.assert_array_equal([float(row["s_b"]) for row in rows], curves["s_b"])
 
 
 def test_too_few_rows_for_all_orbits_are_rejected(orbit: Orbit) -> None:

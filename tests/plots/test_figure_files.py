@@ -12,15 +12,16 @@ from PIL import Image
 
 from engine import (
     CASES,
-    Curves,
-    CurvesSpec,
     EscapeMap,
     MapSpec,
     Plane,
-    compute_curves,
+    Sweep,
+    SweepSpec,
     compute_map,
+    compute_sweep,
     integrate_orbit,
 )
+from engine.sweeps.measures import CURVES
 from plots.figure_axes import MOST_PIXELS
 from plots.figure_files import curves_figure_bytes, map_figure_bytes, orbits_figure_bytes
 from plots.figure_style import CM_PER_INCH, FigureFormat, FigureStyle
@@ -44,12 +45,12 @@ def orbits() -> list[OrbitCurves]:
 
 
 @pytest.fixture(scope="module")
-def curves() -> Curves:
-    return compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), 100.0))
+def curves() -> Sweep:
+    return compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures=CURVES))
 
 
 @pytest.fixture(params=["maps", "orbits", *(pytest.param(name, marks=pytest.mark.slow) for name in ("orbit", "curves"))])
-def draw(request: pytest.FixtureRequest, escape_map: EscapeMap, orbits: list[OrbitCurves], curves: Curves) -> Draw:
+def draw(request: pytest.FixtureRequest, escape_map: EscapeMap, orbits: list[OrbitCurves], curves: Sweep) -> Draw:
     """A function that draws one of the figures."""
     drawers: dict[str, Draw] = {
         "maps": lambda format, style: map_figure_bytes(escape_map, list(TITLES), PAPER, format, style),

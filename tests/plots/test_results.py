@@ -14,26 +14,25 @@ from PIL import Image
 
 from engine import (
     CASES,
-    CurvesSpec,
     MapSpec,
     Plane,
     Result,
     SampledOrbits,
+    SweepSpec,
     compute_basin_entropy,
     compute_birkhoff_digits,
-    compute_curves,
     compute_map,
     compute_origin_fates,
     compute_regularity,
     compute_separation,
     compute_statistics,
+    compute_sweep,
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
     find_lyapunov_orbits,
     find_stable_manifolds,
     fit_decay_laws,
-    fit_escape_shares,
     integrate_orbit,
     judge_orbit,
     review_potential,
@@ -41,7 +40,6 @@ from engine import (
     sample_starts,
 )
 from engine.measures.labels import exit_labels
-from engine.trajectories.radius_envelope import compute_radius_envelope
 from plots.palette import PALETTES
 
 POTENTIAL, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
@@ -63,10 +61,8 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "decay": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), SPEC.t_max),
     "wada": lambda: compute_wada_test(*exit_labels(compute_map(SPEC).fate, bounded=False)),
     "exponent": lambda: compute_uncertainty_exponent(SPEC, pairs=20, separations=8, work=1e6),
-    "curves": lambda: compute_curves(CurvesSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), 100.0, exponent=False)),
-    "shares": lambda: fit_escape_shares([0.3, 0.35, 0.4, 0.45, 0.5], [20, 45, 60, 80, 85], [100] * 5),
+    "curves": lambda: compute_sweep(SweepSpec(POTENTIAL, Plane.X_PX, (0.3, 0.36), (20, 20), t_max=100.0, measures="shares")),
     "separation": lambda: compute_separation(POTENTIAL, STATE, (0.1, 0.0, 0.05, 0.60001), 20.0),
-    "envelope": lambda: compute_radius_envelope(POTENTIAL, STATE, 20.0),
     "digits": lambda: compute_birkhoff_digits(POTENTIAL, STATE, 1e3),
 }
 PICTURELESS: dict[str, Callable[[], Result]] = {
@@ -107,7 +103,7 @@ class TestEveryResult:
         assert len(example(name).to_holoviews()) > 0
 
 
-@pytest.mark.parametrize(("name", "abscissa"), [("orbits", "orbit"), ("manifolds", "point"), ("shares", "energies")])
+@pytest.mark.parametrize(("name", "abscissa"), [("orbits", "orbit"), ("manifolds", "point")])
 def test_holoviews_curves_are_against_the_rows_or_the_first_column(name: str, abscissa: str) -> None:
     assert {str(curve.kdims[0]) for curve in example(name).to_holoviews()} == {abscissa}
 

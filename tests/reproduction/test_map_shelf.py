@@ -32,11 +32,11 @@ def test_curves_are_the_shares_of_maps_that_are_not_stored() -> None:
     shelf = MapShelf(TINY, on_map=computed.append)
     table = shelf.curves("II", Plane.X_PX)
     energies = curve_energies("II", 7)
-    assert table["h"].values.tolist() == list(energies)
+    assert table.values.tolist() == list(energies)
     assert shelf.curves("II", Plane.X_PX) is table
     frame = shelf.map("II", Plane.X_PX, energies[2])
     shares = frame.fractions()
-    assert table["share"].values[2].tolist() == [shares[code] for code in (0, 1, 2, 3)]
+    assert table["share"][2].tolist() == [shares[code] for code in (0, 1, 2, 3)]
     assert len(computed) == 8
 
 

@@ -17,7 +17,7 @@ from app.views.components.legends import legend
 from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
-from engine import Curves, Outcome, System
+from engine import Outcome, Sweep, System
 from engine.potentials.system import PARAMETERS
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 
@@ -53,13 +53,13 @@ _WORDS = {
     "mean_escape_time": "mean escape time <b>@mean_escape_time{custom}</b>",
     "median_escape_time": "median escape time <b>@median_escape_time{custom}</b>",
     "bounded_area": "bounded starts cover <b>@bounded_area{custom}</b> of the slice, in @islands islands",
-    "decay_rate": "<b>κ = @decay_rate{custom}</b>, 95 % interval @decay_low{custom} to @decay_high{custom}",
+    "decay_rate": "<b>κ = @decay_rate{custom}</b>, 95 % interval @decay_rate_low{custom} to @decay_rate_high{custom}",
     "wada_distance": "99 % of the boundary pixels lie within <b>@wada_distance{custom} pixels</b> of all basins",
     "largest_island": "area of the largest island <b>@largest_island{custom}</b>",
 }
 _COLUMNS = (
     "value", "s_b", "s_bb", "exponent", "exponent_low", "exponent_high", "mean_escape_time", "median_escape_time",
-    "bounded_area", "islands", "largest_island", "decay_rate", "decay_low", "decay_high", "wada_distance",
+    "bounded_area", "islands", "largest_island", "decay_rate", "decay_rate_low", "decay_rate_high", "wada_distance",
 )  # fmt: skip
 
 
@@ -77,7 +77,7 @@ class CurvesView:
     def __init__(self, on_sweep: Callable[[], None], on_value: Callable[[float], None]) -> None:
         self._palette = PAPER
         self._on_value = on_value
-        self.shown: Curves | None = None
+        self.shown: Sweep | None = None
         self.running = False
         self.button = button(START, on_sweep, width=180, align="end")
         self.against = pn.widgets.Select(label="Against", options={"h": "h"}, value="h", width=80)
@@ -87,7 +87,7 @@ class CurvesView:
         self._values = {name: Range1d(*_FIRST_RANGE.get(name, (0.0, 1.0))) for name in TITLES}
         self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="curve_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
-        self._energy = 0.0
+        self._energy, self._system = 0.0, System("I")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
         self._legend = TextPane(margin=(0, 10))
         self._figures: list[figure] = []
@@ -95,6 +95,7 @@ class CurvesView:
 
     def follow_system(self, system: System) -> None:
         """Offer the parameters of a system."""
+        self._system = system
         self.against.options = {"h": "h"} | {PARAMETERS.get(name, name): name for name in system.parameter_names}
 
     def follow_energy(self, energy: float) -> None:
@@ -104,16 +105,16 @@ class CurvesView:
 
     def _mark(self) -> None:
         """Mark the energy in view, or the system's own value of the parameter."""
-        along = None if self.shown is None else self.shown.spec.along
-        self._here.location = self._energy if along is None else along.system.value_of(along.key)
+        name = "h" if self.shown is None else self.shown.name
+        self._here.location = self._energy if name == "h" else self._system.value_of(name)
 
     def show_running(self, running: bool) -> None:
         """Label the button with what it does next."""
         self.running = running
         self.button.label = STOP if running else START
 
-    def show(self, curves: Curves | None) -> None:
-        """Draw the curves; None removes them."""
+    def show(self, curves: Sweep | None) -> None:
+        """Draw the curves of the system that is followed; None removes them."""
         self.shown = curves
         if curves is not None and not self._plots.objects:
             self._plots.objects = self._build_plots()
@@ -122,9 +123,9 @@ class CurvesView:
             self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, _NO_SHARES
             self.text.object = HINT
             return
-        self.points.data = {name: curves.values if name == "value" else curves.curve(name) for name in _COLUMNS}
-        shares = curves.shares.T
-        entries, outcomes = self._entries(curves.spec.outcomes), curves.spec.outcomes
+        self.points.data = {name: curves.values if name == "value" else curves[name] for name in _COLUMNS}
+        shares, outcomes = curves["share"].T, curves.outcomes
+        entries = self._entries(outcomes)
         # Symmetric channels have equal shares: dashed curves, drawn last, leave the solid ones visible.
         order = sorted(range(len(shares)), key=_is_dashed)
         self._shares.data = {
@@ -134,22 +135,22 @@ class CurvesView:
             "dash": [_DASH if _is_dashed(k) else "solid" for k in order],
             "fate": [outcomes[k - 1].action if k else "are bounded" for k in order],
         }
-        swept = curves.spec.values
+        swept = curves.dataset.attrs["requested"]
         if len(swept) > 1:
             set_range(self._axis, swept[0], swept[-1])
         for plot in self._figures:
-            plot.xaxis.axis_label = curves.spec.symbol
+            plot.xaxis.axis_label = curves.symbol
         self._mark()
         self._scale_values(curves)
         self.text.object = _progress(curves)
         self._legend.object = legend(entries)
 
-    def _scale_values(self, curves: Curves) -> None:
+    def _scale_values(self, curves: Sweep) -> None:
         """Fit the ranges of all but the shares and the exponents."""
         entropies = _finite(curves, "s_b", "s_bb")
         set_range(self._values["entropies"], 0.0, 1.05 * max([*entropies, _FIRST_RANGE["entropies"][1]]))
         set_range(self._values["islands"], 0.0, 1.05 * max([*_finite(curves, "bounded_area"), _SMALLEST_AREA]))
-        set_range(self._values["decays"], 0.0, 1.05 * max([*_finite(curves, "decay_high"), _SMALLEST_RATE]))
+        set_range(self._values["decays"], 0.0, 1.05 * max([*_finite(curves, "decay_rate_high"), _SMALLEST_RATE]))
         distances = _finite(curves, "wada_distance")
         set_range(self._values["boundaries"], 0.0, 1.05 * max([*distances, _FIRST_RANGE["boundaries"][1]]))
         times = _finite(curves, "mean_escape_time", "median_escape_time")
@@ -226,7 +227,7 @@ class CurvesView:
         for name, curves in drawn.items():
             for column, colour in curves.items():
                 _draw_curve(figures[name], self.points, column, colour)
-        for name, column in (("exponents", "exponent"), ("decays", "decay")):
+        for name, column in (("exponents", "exponent"), ("decays", "decay_rate")):
             ends = {"x0": "value", "x1": "value", "y0": f"{column}_low", "y1": f"{column}_high"}
             figures[name].add_glyph(self.points, Segment(**ends, line_color=MEASURED, line_alpha=0.6))
         ln2 = Span(location=float(np.log(2.0)), dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
@@ -237,14 +238,14 @@ class CurvesView:
 def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str) -> None:
     plot.add_glyph(source, Line(x="value", y=column, line_color=colour, line_width=2))
     points = plot.add_glyph(source, Scatter(x="value", y=column, size=5, fill_color=colour, line_color=colour))
-    ends = (f"@{name}_{end}" for name in ("exponent", "decay") for end in ("low", "high"))
+    ends = (f"@{name}_{end}" for name in ("exponent", "decay_rate") for end in ("low", "high"))
     values = dict.fromkeys(("@value", f"@{column}", *ends), "number")
     plot.add_tools(chart_hover(f"{_WORDS[column]}<br>at @value{{custom}}", values, [points], mode="vline"))
 
 
-def _finite(curves: Curves, *columns: str) -> np.ndarray:
+def _finite(curves: Sweep, *columns: str) -> np.ndarray:
     """The numbers in some columns, without NaN."""
-    values = np.concatenate([curves.curve(column) for column in columns])
+    values = np.concatenate([curves[column] for column in columns])
     return values[np.isfinite(values)]
 
 
@@ -257,9 +258,10 @@ def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
     return TextPane(legend(Entry(label, colour) for label, colour in entries.items()), margin=(0, 10))
 
 
-def _progress(curves: Curves) -> str:
-    done, total, spec = len(curves.points), curves.spec.count, curves.spec
-    where = f"values of {spec.symbol} on {spec.plane.title}" + ("" if spec.energy is None else f" at h = {spec.energy:.6g}")
+def _progress(curves: Sweep) -> str:
+    request = curves.dataset.attrs
+    done, total = curves.values.size, request["count"]
+    where = f"values of {curves.symbol} on {request['plane']}" + (f" at h = {request['energy']:.6g}" if request["along"] else "")
     if curves.complete:
         return f"{total} {where}. Click a curve to open the map there."
     return f"{done} of {total} {where} …"

@@ -17,7 +17,7 @@ from app.views.components.widgets import button
 from app.views.panels.embedding import NOT_ALLOWED
 from app.views.panels.figure_choices import Shown
 from app.views.panels.figure_form import FigureForm
-from engine import Curves, EscapeMap
+from engine import EscapeMap, Sweep
 from plots.exports import curves_csv, file_stem, netcdf_bytes, orbits_csv, python_lines
 from plots.map_analyses import MapAnalyses
 
@@ -42,7 +42,7 @@ class Downloads:
         self._frame: EscapeMap | None = None
         self._analyses = MapAnalyses()
         self._orbits: Sequence[ChosenOrbit] = ()
-        self._curves: Curves | None = None
+        self._curves: Sweep | None = None
         self.saver = FileSaver()
         self.link = button("Copy link", copy_link)
         self.embed = button("Copy embed code", copy_embed_code, disabled=not process_state().settings.frame_ancestors)
@@ -85,7 +85,7 @@ class Downloads:
         self._orbits = orbits
         self._enable()
 
-    def show_curves(self, curves: Curves | None) -> None:
+    def show_curves(self, curves: Sweep | None) -> None:
         """Set the curves against energy to download; None without any."""
         self._curves = curves
         self._enable()
@@ -141,5 +141,5 @@ class Downloads:
         return self._frame
 
 
-def _encoded_csv(curves: Curves) -> bytes:
+def _encoded_csv(curves: Sweep) -> bytes:
     return curves_csv(curves).encode()

@@ -8,7 +8,7 @@ from functools import partial
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
-from engine import Curves, EscapeMap
+from engine import EscapeMap, Sweep
 from engine.slices.energies import highest_energy
 from plots.figure_files import (
     curves_figure_bytes,
@@ -36,7 +36,7 @@ class Shown:
     frame: EscapeMap | None = None
     analyses: MapAnalyses = NO_ANALYSES
     orbits: Sequence[ChosenOrbit] = ()
-    curves: Curves | None = None
+    curves: Sweep | None = None
 
 
 def figure_choices(shown: Shown, state: ViewState) -> dict[str, Make]:

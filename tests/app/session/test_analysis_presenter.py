@@ -72,7 +72,7 @@ def frame() -> EscapeMap:
 @pytest.fixture(autouse=True)
 def wide_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     """Little work for each exponent of the curves against energy."""
-    monkeypatch.setattr("engine.sweeps.curve_points._WORK", 1e6)
+    monkeypatch.setattr("engine.sweeps.measures._WORK", 1e6)
 
 
 @pytest.fixture

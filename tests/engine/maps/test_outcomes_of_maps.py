@@ -11,21 +11,20 @@ import pytest
 from engine import (
     POTENTIALS,
     Coordinate,
-    CurvesSpec,
     EscapeMap,
     Fate,
     MapSpec,
     Plane,
     Slice,
+    SweepSpec,
     classify_orbits,
-    compute_curves,
     compute_map,
     compute_origin_fates,
     compute_statistics,
+    compute_sweep,
     open_result,
     sample_starts,
 )
-from engine.sweeps.crossing_statistics import tabulate_crossing_statistics
 from tests.disc import DISC, LABELS, disc_map
 
 
@@ -65,17 +64,11 @@ def test_statistics_count_an_outcome_that_does_not_occur(escape_map: EscapeMap) 
     assert compute_statistics(replace(escape_map, fate=fate)).channel_counts[2] == 0
 
 
-def test_a_table_of_crossings_has_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
-    table = tabulate_crossing_statistics([escape_map])
-    np.testing.assert_allclose(table["share"].sel(fate=3), escape_map.fractions()[3])
-    assert "3: collision with a disc" in table["fate"].attrs["codes"]
-
-
-def test_curves_have_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
-    curves = compute_curves(CurvesSpec(DISC, Plane.X_PX, (0.19,), (40, 40), 300.0, exponent=False))
+def test_sweeps_have_a_share_for_each_outcome(escape_map: EscapeMap) -> None:
+    sweep = compute_sweep(SweepSpec(DISC, Plane.X_PX, (0.19,), (40, 40), t_max=300.0, measures=("shares",)))
     shares = escape_map.fractions()
-    np.testing.assert_allclose(curves.shares, [[shares[k] for k in (0, 1, 2, 3)]])
-    assert "3: collision with a disc" in curves.to_xarray()["fate"].attrs["codes"]
+    np.testing.assert_allclose(sweep["share"], [[shares[k] for k in (0, 1, 2, 3)]])
+    assert "3: collision with a disc" in sweep.dataset["outcome"].attrs["codes"]
 
 
 def test_passages_are_counted_between_all_outcomes(escape_map: EscapeMap) -> None:

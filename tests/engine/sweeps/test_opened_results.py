@@ -15,7 +15,6 @@ from engine import (
     CASES,
     POTENTIALS,
     Coordinate,
-    CurvesSpec,
     Direction,
     EscapeMap,
     MapSpec,
@@ -29,12 +28,12 @@ from engine import (
     classify_orbits,
     compute_basin_entropy,
     compute_birkhoff_digits,
-    compute_curves,
     compute_map,
     compute_origin_fates,
     compute_regularity,
     compute_separation,
     compute_statistics,
+    compute_sweep,
     compute_trust,
     compute_uncertainty_exponent,
     compute_wada_test,
@@ -44,11 +43,9 @@ from engine import (
     open_result,
     parse_formula,
     review_potential,
-    run_sweep,
     sample_orbits,
     sample_starts,
 )
-from engine.sweeps.curve_points import CurvePoint, CurvePointSpec
 
 C = Coordinate
 III, STATE = CASES["III"], (0.1, 0.0, 0.05, 0.6)
@@ -83,10 +80,11 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
 }
 
 PARAMETER = ParameterAxis("epsilon", 0.5, 2.0, System("I"))
-CURVES = {
-    "energy": CurvesSpec(III, Plane.X_PX, (0.3, 0.36), (12, 12), 100.0, refine=1),
-    "one value": CurvesSpec(TYPED, Slice(C.X, C.PX, C.PY, -1), (0.5,), (8, 8), 50.0, exponent=False),
-    "parameter": CurvesSpec(CASES["I"], Plane.X_Y, (0.8, 1.0), (10, 10), 50.0, False, PARAMETER, 0.2),
+SHARES = ("shares", "islands")
+SWEEPS = {
+    "energy": SweepSpec(III, Plane.X_PX, (0.3, 0.36), (12, 12), t_max=100.0, measures=SHARES, refine=1),
+    "one value": SweepSpec(TYPED, Slice(C.X, C.PX, C.PY, -1), (0.5,), (8, 8), t_max=50.0, measures=SHARES),
+    "parameter": SweepSpec(CASES["I"], Plane.X_Y, (0.8, 1.0), (10, 10), t_max=50.0, measures=SHARES, along=PARAMETER, energy=0.2),
 }
 
 
@@ -144,29 +142,17 @@ def test_result_comes_back(name: str, how: str, tmp_path: Path) -> None:
     assert_equal(open_result(WRITERS[how](wanted, tmp_path)), wanted)
 
 
-def made_up(one: CurvePointSpec) -> CurvePoint:
-    """A point whose numbers all differ, and differ between values."""
-    numbers = {each.name: one.value + place for place, each in enumerate(fields(CurvePoint)) if each.name != "shares"}
-    shares = tuple(one.value * place for place in range(one.outcomes + 1))
-    return CurvePoint(**numbers | {"value": one.value, "shares": shares, "islands": 3})  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize("how", WRITERS)
-@pytest.mark.parametrize("name", CURVES)
-def test_curves_come_back_and_go_on(name: str, how: str, tmp_path: Path) -> None:
-    wanted = compute_curves(CURVES[name], measure=made_up)
+@pytest.mark.parametrize("name", SWEEPS)
+def test_sweep_comes_back_and_goes_on(name: str, how: str, tmp_path: Path) -> None:
+    wanted = compute_sweep(SWEEPS[name])
     found = open_result(WRITERS[how](wanted, tmp_path))
-    assert found.spec == wanted.spec
-    assert found.points == wanted.points
-    more = replace(wanted.spec, values=(*wanted.spec.values, wanted.spec.values[-1] * 1.1), refine=0)
-    measured: list[float] = []
-
-    def measure(one: CurvePointSpec) -> CurvePoint:
-        measured.append(one.value)
-        return made_up(one)
-
-    compute_curves(more, earlier=found, measure=measure)
-    assert measured == [more.values[-1]]
+    xr.testing.assert_equal(found.dataset, wanted.dataset)
+    assert (found.outcomes, found.symbol, found.complete) == (wanted.outcomes, wanted.symbol, True)
+    more = replace(SWEEPS[name], values=(*SWEEPS[name].values, SWEEPS[name].values[-1] * 1.1), refine=0)
+    seen: list[int] = []
+    compute_sweep(more, earlier=found, on_frame=lambda sweep: seen.append(sweep.values.size))
+    assert seen == [len(more.values)]
 
 
 SWEEP = SweepSpec(III, Plane.X_PX, (0.3, 0.36, 0.5), (30, 30), t_max=200.0)
@@ -175,20 +161,18 @@ SWEEP = SweepSpec(III, Plane.X_PX, (0.3, 0.36, 0.5), (30, 30), t_max=200.0)
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("sweeps") / "maps.zarr"
-    run_sweep(SWEEP, path)
+    compute_sweep(SWEEP, path)
     return path
 
 
-def test_sweep_comes_back_as_its_dataset(store: Path) -> None:
-    xr.testing.assert_identical(
-        open_result(store), run_sweep(SweepSpec(III, Plane.X_PX, (0.3, 0.36, 0.5), (30, 30), t_max=200.0), store)
-    )
+def test_sweep_in_a_store_comes_back(store: Path) -> None:
+    xr.testing.assert_identical(open_result(store).dataset, compute_sweep(SWEEP, store).dataset)
 
 
 @pytest.mark.parametrize("h", [0.3, 0.36, 0.5])
 def test_measures_and_analyses_take_a_map_of_a_sweep(h: float, store: Path) -> None:
-    window = tuple(open_result(store).attrs["window"])
-    one, wanted = open_result(store).sel(h=h), compute_map(MapSpec(III, Plane.X_PX, h, (30, 30), window, 200.0))
+    maps = open_result(store).dataset
+    one, wanted = maps.sel(h=h), compute_map(MapSpec(III, Plane.X_PX, h, (30, 30), tuple(maps.attrs["window"]), 200.0))
     assert compute_basin_entropy(one) == compute_basin_entropy(wanted)
     assert compute_wada_test(one).describe() == compute_wada_test(wanted).describe()
     assert compute_statistics(one).shares == compute_statistics(wanted).shares
@@ -197,9 +181,18 @@ def test_measures_and_analyses_take_a_map_of_a_sweep(h: float, store: Path) -> N
     assert_equal(compute_trust(one), compute_trust(wanted))
 
 
+def test_files_of_earlier_versions_are_opened_as_datasets(tmp_path: Path) -> None:
+    curves = xr.Dataset({"share": (("h", "fate"), [[0.5, 0.5]])}, {"h": [0.3]}, {"result": "Curves"})
+    curves.to_netcdf(tmp_path / "curves.nc", engine="h5netcdf")
+    xr.testing.assert_identical(open_result(tmp_path / "curves.nc"), curves)
+    maps = xr.Dataset({"crossings": ("h", [3]), "done": ("h", [True])}, {"h": [0.3]})
+    maps.to_zarr(tmp_path / "maps.zarr", consolidated=False, zarr_format=3)
+    xr.testing.assert_identical(open_result(tmp_path / "maps.zarr").load(), maps.drop_vars("done"))
+
+
 def test_several_maps_are_no_map(store: Path) -> None:
     with pytest.raises(ValueError, match=r"labels: a dataset of several maps; must be one of them, such as dataset.sel"):
-        compute_basin_entropy(open_result(store))
+        compute_basin_entropy(open_result(store).dataset)
 
 
 def test_a_dataset_of_something_else_is_no_map() -> None:

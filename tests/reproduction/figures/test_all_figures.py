@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
 from engine import CASES, Fate, Plane, classify_orbits
-from engine.maps.super_sticky import SuperStickySearch
 from plots.palette import PAPER
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.figures.all_figures import FIGURES
 from reproduction.figures.sticky_figures import LONGEST_DRAWN, find_shown
 from reproduction.map_shelf import MapShelf
@@ -159,10 +159,11 @@ def test_the_published_and_the_new_fit_are_drawn_over_the_shares(shelf: MapShelf
     escaped = FIGURES["I-statistics"].draw(shelf).axes[0]
     data, paper, own = escaped.lines
     table = shelf.curves("I", Plane.X_PX)
-    np.testing.assert_array_equal(np.asarray(data.get_ydata()), table["escaped_share"].values)
+    shares = table["share"][:, 1:].sum(axis=1)
+    np.testing.assert_array_equal(np.asarray(data.get_ydata()), shares)
     h = np.asarray(paper.get_xdata(), float)
     np.testing.assert_allclose(np.asarray(paper.get_ydata()), 1.0 / (1.0 + np.exp(8.0 - 60.0 * h)), rtol=1e-9)
-    assert np.abs(np.interp(table["h"].values, h, np.asarray(own.get_ydata())) - table["escaped_share"].values).max() < 0.15
+    assert np.abs(np.interp(table.values, h, np.asarray(own.get_ydata())) - shares).max() < 0.15
 
 
 class ShelfWithSearch(MapShelf):

@@ -18,7 +18,7 @@ from engine import (
     compute_regularity,
     compute_uncertainty_exponent,
 )
-from engine.maps.super_sticky import SuperStickySearch
+from reproduction.analyses.super_sticky import SuperStickySearch
 from reproduction.map_shelf import MapShelf
 from reproduction.numbers.comparisons import Comparison, compare_all
 from reproduction.numbers.stated_numbers import Counting, Quantity, Relation, StatedNumber

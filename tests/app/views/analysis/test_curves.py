@@ -5,7 +5,8 @@ from __future__ import annotations
 from bokeh.models import Range1d
 
 from app.views.analysis.curves import TITLES, CurvesView
-from engine import CASES, CurvesSpec, Plane, compute_curves
+from engine import CASES, Plane, SweepSpec, compute_sweep
+from engine.sweeps.measures import CURVES
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:
@@ -13,7 +14,7 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
     *_, plots = view.build()
     assert not plots.visible
     assert plots.objects == []
-    view.show(compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (20, 20), 100.0, exponent=False)))
+    view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (20, 20), t_max=100.0, measures=CURVES)))
     assert plots.visible
     assert len(plots.objects) == len(TITLES)
     view.show(None)
@@ -23,5 +24,5 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
 def test_axes_have_ranges_when_there_are_no_numbers_yet() -> None:
     view = CurvesView(lambda: None, lambda energy: None)
     view.build()
-    view.show(compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.1,), (20, 20), 100.0, exponent=False)))
+    view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.1,), (20, 20), t_max=100.0, measures=CURVES)))
     assert all(isinstance(edges, Range1d) and edges.start < edges.end for edges in view._values.values())

@@ -15,13 +15,13 @@ from app.views.panels.figure_choices import ALL_MAPS, FIGURES, Shown, figure_cho
 from app.views.panels.figure_form import FigureForm
 from engine import (
     CASES,
-    CurvesSpec,
     EscapeMap,
     MapSpec,
     Plane,
-    compute_curves,
+    SweepSpec,
     compute_map,
     compute_regularity,
+    compute_sweep,
     integrate_orbit,
 )
 from plots.figure_style import FigureFormat, FigureStyle
@@ -40,7 +40,7 @@ def escape_map() -> EscapeMap:
 @pytest.fixture(scope="module")
 def shown(escape_map: EscapeMap) -> Shown:
     """Everything that can be drawn."""
-    curves = compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), 100.0))
+    curves = compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), t_max=100.0, measures="shares"))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = MapAnalyses(regularity=compute_regularity(escape_map))
     return Shown(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)

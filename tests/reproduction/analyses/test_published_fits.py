@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import PAPER_FITS
-from engine.measures.published_fits import HyperbolicTangent, Polynomial
+from reproduction.analyses.published_fits import PAPER_FITS, HyperbolicTangent, Polynomial
 
 
 # ½[1 + tanh u] = 1 / (1 + exp(−2u)).

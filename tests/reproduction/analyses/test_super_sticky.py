@@ -21,7 +21,7 @@ from engine import (
     compute_regularity,
 )
 from engine.execution import Execution
-from engine.maps.super_sticky import SuperStickySearch, find_super_sticky_orbits
+from reproduction.analyses.super_sticky import SuperStickySearch, find_super_sticky_orbits
 
 LONG = 2e4
 
@@ -92,31 +92,8 @@ def test_description_without_chaotic_orbits() -> None:
     assert found.describe() == f"None of the {np.count_nonzero(whole.fate == Fate.BOUNDED)} bounded starts is chaotic."
 
 
-def test_progress_increases_to_one() -> None:
-    seen: list[float] = []
-    find_super_sticky_orbits(*map_and_regularity(), LONG, execution=Execution(on_progress=seen.append))
-    assert seen == sorted(seen)
-    assert seen[-1] == 1.0
-
-
 def test_cancelling_raises() -> None:
     cancel = threading.Event()
     cancel.set()
     with pytest.raises(CancelledError):
         find_super_sticky_orbits(*map_and_regularity(), LONG, execution=Execution(cancel=cancel))
-
-
-def test_regularity_of_another_map_raises() -> None:
-    with pytest.raises(ValueError, match="regularity: must be"):
-        find_super_sticky_orbits(map_and_regularity()[0], map_and_regularity("II", 0.17)[1], LONG)
-
-
-def test_t_max_below_that_of_the_map_raises() -> None:
-    with pytest.raises(ValueError, match="t_max=100"):
-        find_super_sticky_orbits(*map_and_regularity(), 100.0)
-
-
-def test_map_with_many_energies_raises() -> None:
-    whole = compute_map(MapSpec(CASES["III"], Plane.X_H, (0.26, 0.3), (5, 5), t_max=10.0))
-    with pytest.raises(ValueError, match=r"\(x, h\)"):
-        find_super_sticky_orbits(whole, compute_regularity(whole), LONG)

@@ -45,6 +45,11 @@ class Polynomial:
         return np.polynomial.polynomial.polyval(np.asarray(h, dtype=float), self.coefficients)
 
     @property
+    def degree(self) -> int:
+        """The highest power of h."""
+        return len(self.coefficients) - 1
+
+    @property
     def parameters(self) -> dict[str, float]:
         """Coefficients by name."""
         return {f"c{power}": c for power, c in enumerate(self.coefficients)}

@@ -1,0 +1,127 @@
+"""The store of a sweep: a Zarr group on disk to which value after value is appended."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from engine.results.extras import require_package
+from engine.storage.output_lock import hold_lock
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# Attribute of the group: number of values that are on the disk.
+_FINISHED = "finished"
+# Name of the temporary files of Zarr.
+_UNFINISHED = "*.partial"
+_OPTIONS: Mapping[str, Any] = {"consolidated": False, "zarr_format": 3}
+
+
+@contextmanager
+def open_store(path: Path, attributes: Mapping[str, Any]) -> Iterator[SweepStore]:
+    """Hold the store of a request, which is new or has some of its values, for this process.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds another sweep or other files, or the folder that is to hold it does not exist.
+    OSError
+        If it cannot be written to.
+    BlockingIOError
+        If another process holds it.
+    """
+    require_package("zarr", "files")
+    if not path.parent.exists():
+        raise ValueError(f"store={path}: the folder {path.parent} does not exist; make it first")
+    with hold_lock(path):
+        yield SweepStore(path, attributes)
+
+
+class SweepStore:
+    """Values of a sweep on disk, in the order in which they were appended.
+
+    Arrays have one chunk, and thus one file, for each value. The number of finished values is written last, so that a killed run
+    loses only the value in progress.
+    """
+
+    def __init__(self, path: Path, attributes: Mapping[str, Any]) -> None:
+        self._path, self._attributes, self._finished = path, dict(attributes), 0
+        if path.exists() and any(path.iterdir()):
+            self._open()
+
+    def read(self) -> xr.Dataset:
+        """All values in ascending order; they are read from the disk on access."""
+        # Slow to import.
+        import xarray as xr
+
+        axis = self._attributes["axis"]
+        if not self._finished:
+            return xr.Dataset(coords={axis: np.zeros(0)}, attrs=self._attributes)
+        dataset: xr.Dataset = xr.open_zarr(self._path, chunks=None, **_OPTIONS)
+        values = dataset[axis].values
+        return dataset if np.all(np.diff(values) > 0.0) else dataset.sortby(axis)
+
+    def append(self, point: xr.Dataset) -> None:
+        """Add a value: its arrays are on the disk before it counts, against power cuts, and to detect a full disk in time."""
+        import zarr
+
+        how: dict[str, Any] = {"append_dim": self._attributes["axis"]} if self._finished else {"mode": "w"}
+        with _naming(self._path):
+            point.assign_attrs(self._attributes | {_FINISHED: self._finished}).to_zarr(self._path, **how, **_OPTIONS)
+            for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
+                for file in self._path.glob(pattern):
+                    _sync_to_disk(file)
+            zarr.open_group(self._path, mode="r+").attrs[_FINISHED] = self._finished + 1
+        self._finished += 1
+
+    def _open(self) -> None:
+        """Go on with the values of an earlier run, without what a killed one left."""
+        import zarr
+
+        if not (self._path / "zarr.json").exists():
+            raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this sweep")
+        group = zarr.open_group(self._path, mode="r+")
+        check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
+        self._finished = int(group.attrs[_FINISHED])  # type: ignore[arg-type]
+        if self._finished == self._attributes["count"]:
+            return
+        # A store that is not writable fails before anything is computed.
+        with tempfile.TemporaryFile(dir=self._path):
+            pass
+        for unfinished in self._path.rglob(_UNFINISHED):
+            unfinished.unlink()
+        for _, array in group.arrays():
+            dimensions = getattr(array.metadata, "dimension_names", None) or ()
+            if self._attributes["axis"] in dimensions and array.shape[0] > self._finished:
+                array.resize((self._finished, *array.shape[1:]))
+
+
+def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, Any], *, but: Sequence[str] = ()) -> None:
+    """Raise a ValueError that names the difference if attributes are of another sweep; those of files have other types."""
+    for name, value in wanted.items():
+        if name not in but and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
+            raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
+
+
+def _sync_to_disk(file: Path) -> None:
+    if file.is_file():
+        with file.open("rb+") as opened:
+            os.fsync(opened.fileno())
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Add the path of the store to errors of the operating system that name no file, such as that of a full disk."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is None or error.filename is not None:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error

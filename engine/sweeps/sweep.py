@@ -1,0 +1,260 @@
+"""Sweeps: maps at many energies, or values of a parameter, measured one after the other into one labelled dataset."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from engine.execution import DEFAULT_EXECUTION, Execution, shows_progress
+from engine.exits.exit_rows import exit_curves
+from engine.potentials.outcomes import Outcome, read_outcomes
+from engine.results.result import Result
+from engine.sweeps.measures import SweepPoint, compute_point
+from engine.sweeps.spec import EXTENT, SweepSpec
+from engine.sweeps.store import check_same_sweep, open_store
+from engine.validation import checks_types
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
+    """The values of a sweep measured so far, in ascending order.
+
+    Attributes
+    ----------
+    dataset
+        The measures along the first dimension, which is named "h" or after the parameter; shares also have the dimension
+        "outcome", 0 for bounded orbits, and maps those of their axes. The attributes are the request.
+    """
+
+    dataset: xr.Dataset = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """The name of what varies."""
+        return str(self.dataset.attrs["axis"])
+
+    @property
+    def symbol(self) -> str:
+        """The symbol of what varies."""
+        return str(self.dataset.attrs["symbol"])
+
+    @property
+    def values(self) -> np.ndarray:
+        """(n,) energies h, or values of the parameter."""
+        return np.asarray(self.dataset[self.name].values)
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """What shares are of, after bounded orbits."""
+        return read_outcomes(self.dataset.attrs["outcomes"])
+
+    @property
+    def complete(self) -> bool:
+        """Whether all values have been measured."""
+        return self.values.size == int(self.dataset.attrs["count"])
+
+    @property
+    def nbytes(self) -> int:
+        """Size in bytes."""
+        return int(self.dataset.nbytes)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A measure as an array, by the name of its variable."""
+        return np.asarray(self.dataset[name].values)
+
+    def interval(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper ends of a measure: of its 95 % interval, or one standard error away; the measure itself without any."""
+        if f"{name}_low" in self.dataset:
+            return self[f"{name}_low"], self[f"{name}_high"]
+        error = self[f"{name}_error"] if f"{name}_error" in self.dataset else 0.0
+        return self[name] - error, self[name] + error
+
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """All numbers by name, the energy or the parameter first; shares by outcome, ``share_0`` of bounded orbits."""
+        found = {self.name: self.values}
+        for name in map(str, self.dataset.data_vars):
+            if self.dataset[name].dims == (self.name,):
+                found[name] = self[name]
+            elif self.dataset[name].dims == (self.name, "outcome"):
+                found |= {f"{name}_{code}": share for code, share in enumerate(self[name].T)}
+        return found
+
+    def to_xarray(self) -> xr.Dataset:
+        """The dataset, which can be written as NetCDF and Zarr."""
+        return self.dataset
+
+    def describe(self) -> str:
+        """How much is measured."""
+        attributes = self.dataset.attrs
+        return f"{self.values.size} of {attributes['count']} values of {self.symbol} on {attributes['plane']}."
+
+
+class Kept(Protocol):
+    """Where the measured values are: in memory, or in a store."""
+
+    def read(self) -> xr.Dataset:
+        """All of them, in ascending order."""
+
+    def append(self, point: xr.Dataset) -> None:
+        """Add one."""
+
+
+@shows_progress("sweep")
+@checks_types(
+    spec=SweepSpec,
+    store=(str, os.PathLike, type(None)),
+    earlier=(Sweep, type(None)),
+    on_frame=(Callable, type(None)),
+    measure=(Callable, type(None)),
+    execution=Execution,
+)
+def compute_sweep(
+    spec: SweepSpec,
+    store: str | os.PathLike[str] | None = None,
+    *,
+    earlier: Sweep | None = None,
+    on_frame: Callable[[Sweep], None] | None = None,
+    measure: Callable[[SweepPoint], xr.Dataset] | None = None,
+    execution: Execution = DEFAULT_EXECUTION,
+) -> Sweep:
+    """Compute the maps of a sweep one after the other, each on all workers, and what is measured on them.
+
+    The order is from coarse to fine, so that curves take shape early, and ascending in a store.
+
+    Parameters
+    ----------
+    spec
+        The request.
+    store
+        Folder of a Zarr group (format 3): new, empty, or of an earlier call with the same request, which is resumed. Each value
+        is on the disk before the next one is computed, and only the map of one value is in memory. None for a sweep in memory.
+    earlier
+        A sweep in memory whose values are not measured again, such as that of an interrupted call, which `on_frame` received, or
+        of a file (`open_result`); its request must be the same but for `values` and `refine`.
+    on_frame
+        Called in this thread after each value with the values so far.
+    measure
+        Replaces `compute_point`, for example to use a cache.
+    execution
+        How the computation runs.
+
+    Returns
+    -------
+    The `Sweep`, whose maps are bit-identical to those of `compute_map`. That of a store is read from it on access.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        When cancelled; a store keeps the finished values.
+    ValueError
+        When no exit is defined at one of the values, `earlier` is of another request, or the store holds another sweep or other
+        files.
+    OSError
+        When the store cannot be written to; finished values stay valid. BlockingIOError when another process computes into it,
+        with one sentence that names the process.
+
+    Examples
+    --------
+    >>> from escape_explorer import CASES, Plane, SweepSpec, compute_sweep
+    >>> spec = SweepSpec(CASES["III"], Plane.X_PX, (0.4, 0.5, 0.6), (40, 40), t_max=1e3, measures=("shares", "basin_entropy"))
+    >>> compute_sweep(spec).to_pandas()[["h", "share_1", "share_2", "s_b"]].round(3)
+         h  share_1  share_2    s_b
+    0  0.4    0.354    0.354  0.585
+    1  0.5    0.399    0.399  0.494
+    2  0.6    0.441    0.441  0.314
+    """
+    if spec.along is None:
+        for energy in (spec.values[0], spec.values[-1]):
+            exit_curves(spec.potential, energy)
+    run = partial(_measure_all, spec, on_frame=on_frame, measure=measure, execution=execution)
+    if store is None:
+        return run(_InMemory(spec, earlier), _coarse_to_fine(list(spec.values)))
+    with open_store(Path(store), spec.attributes()) as kept:
+        return run(kept, list(spec.values))
+
+
+def _measure_all(
+    spec: SweepSpec,
+    kept: Kept,
+    order: Sequence[float],
+    *,
+    on_frame: Callable[[Sweep], None] | None,
+    measure: Callable[[SweepPoint], xr.Dataset] | None,
+    execution: Execution,
+) -> Sweep:
+    """Measure the values that are missing, those of the request in the given order, and keep them."""
+    found = kept.read()
+    while (value := _next_value(spec, found, order)) is not None:
+        part = execution.part(found.sizes[spec.name], spec.count)
+        part.report(lambda: 0.0)
+        point = spec.point(value)
+        kept.append(measure(point) if measure is not None else compute_point(point, execution=part))
+        found = kept.read()
+        if on_frame is not None:
+            on_frame(Sweep(found))
+    execution.report(lambda: 1.0)
+    return Sweep(found)
+
+
+class _InMemory:
+    """Measured values in memory."""
+
+    def __init__(self, spec: SweepSpec, earlier: Sweep | None) -> None:
+        self._name, self._attributes = spec.name, spec.attributes()
+        self._points = [] if earlier is None else _known_points(spec, earlier, self._attributes)
+
+    def append(self, point: xr.Dataset) -> None:
+        self._points.append(point)
+
+    def read(self) -> xr.Dataset:
+        # Slow to import.
+        import xarray as xr
+
+        if not self._points:
+            return xr.Dataset(coords={self._name: np.zeros(0)}, attrs=self._attributes)
+        joined: xr.Dataset = xr.concat(
+            self._points, self._name, data_vars="all", coords="minimal", compat="override", join="override",
+            combine_attrs="override",
+        )  # fmt: skip
+        return joined.sortby(self._name).assign_attrs(self._attributes)
+
+
+def _known_points(spec: SweepSpec, earlier: Sweep, attributes: Mapping[str, object]) -> list[xr.Dataset]:
+    """The points of an earlier sweep: those of the values of the request, and then some to refine them."""
+    check_same_sweep("earlier", earlier.dataset.attrs, attributes, but=EXTENT)
+    values = earlier.values.tolist()
+    inside = [value for value in values if value not in spec.values]
+    chosen = {*spec.values, *inside[: spec.count - len(spec.values)]}
+    return [earlier.dataset.isel({spec.name: [place]}) for place, value in enumerate(values) if value in chosen]
+
+
+def _next_value(spec: SweepSpec, found: xr.Dataset, order: Sequence[float]) -> float | None:
+    """The value to measure next: those of the request, then where the shares change most; None at the end."""
+    values = found[spec.name].values
+    missing = (value for value in order if value not in values)
+    if (first := next(missing, None)) is not None:
+        return first
+    if values.size >= spec.count:
+        return None
+    changes = np.abs(np.diff(found["share"].values, axis=0)).max(axis=1)
+    steepest = int(np.argmax(changes))
+    return float(0.5 * (values[steepest] + values[steepest + 1]))
+
+
+def _coarse_to_fine(values: Sequence[float]) -> list[float]:
+    """The ends first and then repeatedly the midpoints, so that the curves take shape early."""
+    count = len(values)
+    order, step = [0, count - 1], 1 << (count - 1).bit_length()
+    while step > 1:
+        step //= 2
+        order += range(step, count, 2 * step)
+    return [values[index] for index in dict.fromkeys(order)]

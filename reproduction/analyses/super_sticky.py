@@ -1,0 +1,130 @@
+"""Super-sticky orbits: chaotic orbits that are still bounded at t_max and escape long after (Zotos 2014, section 4.3).
+
+They stay near the outermost invariant tori, move through chains of islands and cantori, and escape late or not within any
+practical integration time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine import EscapeMap, Fate, MapSpec, Regularity, RegularityMap, classify_orbits
+from engine.execution import DEFAULT_EXECUTION, Execution
+from engine.maps.pixels import MirrorPixels
+
+
+@dataclass(frozen=True, eq=False)
+class SuperStickySearch:
+    """The chaotic bounded starts of a map, integrated beyond its t_max.
+
+    The starts are ordered row by row. If the map is mirror symmetric, both mirror images are listed but only one of each pair
+    was integrated: the other escapes at the same time through the opposite channel.
+
+    Attributes
+    ----------
+    spec
+        The map's request.
+    bounded
+        Number of starts that are bounded until the map's t_max, regular ones included.
+    x, ordinate
+        (n,) coordinates of the starts on the plane.
+    states
+        (n, 4) x, y, px, py of the starts.
+    fate, escape_time, crossings
+        (n,) as in `engine.Outcomes`, counted from the start; `Fate.BOUNDED` for orbits that do not escape by `t_max`.
+    images
+        Number of starts per integrated orbit: 2 for a mirror symmetric map, else 1.
+    t_max
+        Integration time, dimensionless.
+    """
+
+    spec: MapSpec
+    bounded: int
+    x: np.ndarray
+    ordinate: np.ndarray
+    states: np.ndarray
+    fate: np.ndarray
+    escape_time: np.ndarray
+    crossings: np.ndarray
+    images: int
+    t_max: float
+
+    @property
+    def chaotic_share(self) -> float:
+        """Share of the map's bounded starts that are chaotic; NaN if there are no bounded starts."""
+        return self.fate.size / self.bounded if self.bounded else float("nan")
+
+    @property
+    def escapers(self) -> np.ndarray:
+        """(m,) array indices of the orbits that escape, in order of escape time."""
+        escaped = np.flatnonzero(self.fate >= 1)
+        in_order: np.ndarray = escaped[np.argsort(self.escape_time[escaped], kind="stable")]
+        return in_order
+
+    def describe(self) -> str:
+        """The result in two sentences."""
+        if not self.fate.size:
+            return f"None of the {self.bounded} bounded starts is chaotic."
+        counted = ", both mirror images counted" if self.images > 1 else ""
+        found = f"{self.fate.size} of the {self.bounded} bounded starts are chaotic ({100 * self.chaotic_share:.1f} %{counted})."
+        return f"{found} {self._describe_escapers()}"
+
+    def _describe_escapers(self) -> str:
+        escapers = self.escapers
+        if not escapers.size:
+            return f"None of them leaves by t = {self.t_max:.4g}."
+        channels, counts = np.unique(self.fate[escapers], return_counts=True)
+        by_channel = ", ".join(f"{count} through channel {channel}" for channel, count in zip(channels, counts, strict=True))
+        times = self.escape_time[escapers]
+        return (
+            f"{escapers.size} of them leave by t = {self.t_max:.4g} ({by_channel}): the first at t = {times[0]:.6g}, "
+            f"half of these by {np.median(times):.6g}, the last at {times[-1]:.6g}."
+        )
+
+
+def find_super_sticky_orbits(
+    escape_map: EscapeMap, regularity: RegularityMap, t_max: float, *, execution: Execution = DEFAULT_EXECUTION
+) -> SuperStickySearch:
+    """Integrate the chaotic bounded orbits of a map until they escape or a much longer t_max.
+
+    Parameters
+    ----------
+    escape_map
+        A complete map on a slice of one energy.
+    regularity
+        The complete result of `compute_regularity` for the same map.
+    t_max
+        Integration time from the start, dimensionless. The last orbit of Zotos (2014) escapes at 3.5e6.
+    execution
+        How the computation runs.
+
+    Returns
+    -------
+    `SuperStickySearch`, bit-identical for every executor. At such times rounding errors have grown to order 1: which orbit
+    escapes when is arbitrary, but how many escape is not.
+
+    Raises
+    ------
+    concurrent.futures.CancelledError
+        When cancelled.
+    """
+    spec = escape_map.spec
+    assert spec.common_energy is not None
+    pixels = np.flatnonzero(regularity.character.ravel() == Regularity.CHAOTIC)
+    x, ordinate = escape_map.coordinates(pixels)
+    states = spec.start_states(x, ordinate)
+    mirror = MirrorPixels(spec, escape_map.x, escape_map.ordinate)
+    firsts = mirror.firsts_of(pixels)
+    integrated = np.isin(pixels, firsts)
+    found = classify_orbits(spec.potential, spec.common_energy, states[integrated], t_max, execution=execution)
+    execution.raise_if_cancelled()
+    place = np.searchsorted(firsts, np.minimum(pixels, mirror.partner[pixels]))
+    fate = found.fate[place]
+    if mirror.symmetric:
+        fate = np.where(integrated, fate, spec.potential.mirror_channels[fate])
+    return SuperStickySearch(
+        spec, int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)), x, ordinate, states, fate,
+        found.escape_time[place], found.crossings[place], images=2 if mirror.symmetric else 1, t_max=t_max,
+    )  # fmt: skip
