@@ -14,7 +14,7 @@ from engine.maps.compute import run_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.measures.basin_entropy import compute_basin_entropy
-from engine.measures.decay_law_fits import MIN_RESAMPLES, fit_decay_laws
+from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.measures.wada import compute_wada_test
@@ -131,7 +131,7 @@ def compute_curve_point(
     """
     if frame is None:
         frame = run_map(spec.map_spec, execution.part(0, 2))
-    point = _evaluate_map(spec, require_complete(frame), execution)
+    point = _evaluate_map(spec, require_complete(frame))
     open_channels = spec.map_spec.potential.open_channels(spec.map_spec.common_energy or 0.0)
     if not (spec.exponent and open_channels):
         return point
@@ -139,9 +139,9 @@ def compute_curve_point(
     return replace(point, exponent=found.exponent, exponent_low=found.low, exponent_high=found.high)
 
 
-def _evaluate_map(spec: CurvePointSpec, frame: EscapeMap, execution: Execution) -> CurvePoint:
+def _evaluate_map(spec: CurvePointSpec, frame: EscapeMap) -> CurvePoint:
     statistics = compute_statistics(frame)
-    rate, slowest, fastest = _find_decay_rate(statistics, spec.map_spec.t_max, execution)
+    rate, slowest, fastest = _find_decay_rate(statistics, spec.map_spec.t_max)
     shares = [0.0] * (spec.outcomes + 1)
     for fate, number in enumerate(spec.numbers):
         shares[number] = statistics.shares[fate]
@@ -167,9 +167,9 @@ def _evaluate_map(spec: CurvePointSpec, frame: EscapeMap, execution: Execution) 
     )
 
 
-def _find_decay_rate(statistics: EscapeStatistics, t_max: float, execution: Execution) -> tuple[float, float, float]:
+def _find_decay_rate(statistics: EscapeStatistics, t_max: float) -> tuple[float, float, float]:
     """The rate of the exponential law and its interval; NaN where it does not describe the escapes."""
-    fit = fit_decay_laws(statistics, t_max, resamples=MIN_RESAMPLES, execution=execution).exponential
+    fit = fit_decay_laws(statistics, t_max).exponential
     return (fit.rate, fit.low, fit.high) if fit is not None and fit.plausible else (math.nan, math.nan, math.nan)
 
 

@@ -122,7 +122,7 @@ def test_late_escapes_and_boundaries_are_measured_at_each_energy() -> None:
     spec = CurvesSpec(CASES["III"], Plane.X_PX, (0.45,), (112, 112), 1e4, exponent=False)
     (point,) = compute_curves(spec).points
     escapes = compute_map(spec.point(0.45).map_spec)
-    fit = fit_decay_laws(compute_statistics(escapes), 1e4, resamples=500).exponential
+    fit = fit_decay_laws(compute_statistics(escapes), 1e4).exponential
     assert fit is not None
     assert (point.decay_rate, point.decay_low, point.decay_high) == (fit.rate, fit.low, fit.high)
     assert point.wada_distance == compute_wada_test(escapes).radius_99
