@@ -9,12 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.visitors import ENVIRONMENT
 from tests.app.other_loop import run_on_new_loop
 from tests.app.server.mounted_routes import mounted_routes
 from tests.browser.served_app import RunningApp, running_app
 from tests.fuzz.random_requests import RandomRequests
-from tests.fuzz.test_protocol import open_page, resting_memory, tracebacks
+from tests.fuzz.test_protocol import SMALL_CACHE, open_page, resting_memory, tracebacks
 
 log = logging.getLogger(__name__)
 
@@ -25,8 +24,8 @@ LARGEST_GROWTH = 0.15
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    for name, value in {**ENVIRONMENT, "ESCAPE_EXPLORER_PAGES_PER_ADDRESS": "10"}.items():
-        monkeypatch.setenv(name, value)
+    monkeypatch.setenv(*SMALL_CACHE)
+    monkeypatch.setenv("ESCAPE_EXPLORER_PAGES_PER_ADDRESS", "10")
     output = tmp_path / "log"
     with running_app(output, "--unused-session-lifetime", "2000", "--check-unused-sessions", "500") as app:
         yield app, output
