@@ -7,18 +7,20 @@ Run: uv run python -m benchmarks.peers
 
 from __future__ import annotations
 
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import numba
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
-from benchmarks.scaling import one_core
 from engine import CASES, MapSpec, Plane, Potential, compute_map, start_states
-from engine.exits.exit_rows import exit_curves
-from engine.taylor.kernels.events import outside_channel
+from engine.exits.exit_rows import exit_curves, exit_gates
+from engine.taylor.kernels.events import crossed_exit
 from tests.peers import taylor_heyoka
 from tests.peers.exit_lines import exit_lines
 
@@ -26,6 +28,18 @@ MAPS = (("I", 0.19), ("III", 0.45))
 T_MAX = 1000.0
 SAMPLES = {"heyoka": 300, "scipy": 12, "numba": 2000}
 HEYOKA_TOLERANCE, SCIPY_TOLERANCE, NUMBA_TOLERANCE = 2.2e-16, 1e-13, 1e-11
+
+
+@contextmanager
+def one_core() -> Iterator[ThreadPoolExecutor]:
+    """A pool with a single thread, on the same core as the calling thread."""
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(cores)})
+    try:
+        with ThreadPoolExecutor(1) as executor:
+            yield executor
+    finally:
+        os.sched_setaffinity(0, cores)
 
 
 def starts_of(spec: MapSpec) -> tuple[np.ndarray, np.ndarray]:
@@ -69,7 +83,7 @@ A, B, E5 = dop853.A[:12, :12].copy(), dop853.B.copy(), dop853.E5.copy()
 
 
 @numba.njit(fastmath=True)
-def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves):
+def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves, gates):
     """Fates by an adaptive Runge-Kutta method of order 8 that tests for exits and crossings after each step."""
     fate = np.zeros(states.shape[0], np.int64)
     crossings = np.zeros(states.shape[0], np.int64)
@@ -99,10 +113,10 @@ def runge_kutta(exponents, coefficients, states, t_max, tolerance, curves):
                 size = max(size, abs(error[c]) / tolerance)
             if size <= 1.0:
                 crossings[n] += s[1] < 0.0 and new[1] >= 0.0
+                channel = crossed_exit(s[0], s[1], new[0], new[1], curves, gates)
                 s[:] = new
                 k[0] = k[12]
                 t += h
-                channel = outside_channel(s[0], s[1], curves)
                 if channel > 0:
                     fate[n] = channel
                     break
@@ -130,7 +144,7 @@ def by_numba(potential: Potential, energy: float, states: np.ndarray) -> np.ndar
     exponents = np.array([term[:2] for term in potential.terms])
     coefficients = np.array([term[2] for term in potential.terms])
     after, curves = states.copy(), exit_curves(potential, energy)
-    fate = runge_kutta(exponents, coefficients, after, T_MAX, NUMBA_TOLERANCE, curves)[0]
+    fate = runge_kutta(exponents, coefficients, after, T_MAX, NUMBA_TOLERANCE, curves, exit_gates(curves[None]))[0]
     bounded = fate == 0
     worst = np.max(np.abs(potential.energy(after[bounded]) / energy - 1)) if bounded.any() else np.nan
     print(f"(numba: worst energy error of a bounded orbit {worst:.1e})")

@@ -21,7 +21,7 @@ from engine.storage.cache_files import CACHE_VARIABLE
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.kernels import propagate
 from engine.taylor.kernels.events import NOT_COMPUTED
-from engine.taylor.source import recurrence
+from engine.taylor.source import polynomial_recurrence, recurrence
 
 T_MAX = 1e5
 ORBITS = 64
@@ -49,7 +49,7 @@ def measure(case: str, order: int, tolerance: float) -> tuple[float, float, floa
 def _measure(case: str, order: int, tolerance: float, cache: str) -> tuple[float, float, float]:
     os.environ[CACHE_VARIABLE] = cache
     potential = CASES[case]
-    recurrence.ORDER = propagate.ORDER = order
+    polynomial_recurrence.ORDER = recurrence.ORDER = propagate.ORDER = order
     kernels = load_kernels(potential.terms, potential.channels)
     curves = closed_exits(potential)[None]
     gates = exit_gates(curves)

@@ -72,7 +72,7 @@ def follow_ensemble(
         with cancellable_run(threads) as run:
             outcomes = classify_orbits(potential, energy, starts, t_max, execution=run.start_stage("orbits"))
             run.execution.raise_if_cancelled()
-            laws = fit_decay_laws(outcomes, execution=run.start_stage("decay laws"))
+            laws = fit_decay_laws(outcomes)
             written = {} if output is None else contents(output, potential, starts, outcomes, drawing, run)
         files = write_files(written)
     _print_result(compute_statistics(outcomes), laws, compute_flux(potential, energy), files, as_json)

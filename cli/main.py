@@ -12,7 +12,6 @@ import typer
 
 from cli import (
     curves_command,
-    deep_map_command,
     ensemble_command,
     lyapunov_command,
     map_command,
@@ -32,7 +31,6 @@ INVALID_REQUEST, FAILED, INTERRUPTED = 2, 1, 130
 
 program = typer.Typer(name=NAME, no_args_is_help=False, pretty_exceptions_enable=False, rich_markup_mode="rich")
 program.command("map", epilog=map_command.EXAMPLES)(map_command.draw_map)
-program.command("deep-map", epilog=deep_map_command.EXAMPLES)(deep_map_command.draw_deep_map)
 program.command("orbit", epilog=orbit_command.EXAMPLES)(orbit_command.follow_orbit)
 program.command("lyapunov", epilog=lyapunov_command.EXAMPLES)(lyapunov_command.list_lyapunov_orbits)
 program.command("measures", epilog=measures_command.EXAMPLES)(measures_command.measure_basins)

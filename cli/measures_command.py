@@ -24,7 +24,7 @@ _ENTROPY = ("s_b", "s_b_error", "s_bb", "s_bb_error", "boxes", "boundary_boxes",
 _MERGING = ("basins", "radius", "radius_99", "boundary_pixels")
 _EXPONENT = ("exponent", "low", "high", "dimension", "amplitude", "misfit", "separations", "pairs", "uncertain", "used")
 _LAWS = ("preferred", "settled", "t_low", "t_high", "escapes", "escapes_in_all", "ratio", "ratio_low", "ratio_high")
-_FIT = ("rate", "low", "high", "distance", "p_value")
+_FIT = ("rate", "low", "high", "p_value")
 
 
 def measure_basins(
@@ -63,10 +63,9 @@ def _measure(frame: EscapeMap, exponent: bool, run: RunContext) -> dict[str, dic
     """Return the numbers of each measure with a sentence, by name."""
     from engine import compute_basin_entropy, compute_statistics, compute_uncertainty_exponent, compute_wada_test, fit_decay_laws
 
-    execution = run.start_stage("entropy, boundaries and decay laws")
     entropy = compute_basin_entropy(frame)
     merging = compute_wada_test(frame)
-    laws = fit_decay_laws(compute_statistics(frame), execution=execution)
+    laws = fit_decay_laws(compute_statistics(frame))
     measures = {"basin_entropy": _numbers(entropy, _ENTROPY), "merging": _numbers(merging, _MERGING)}
     measures["escape_laws"] = _numbers(laws, _LAWS) | {
         name: None if fit is None else {one: getattr(fit, one) for one in _FIT}

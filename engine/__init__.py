@@ -9,7 +9,7 @@ These are the public names of the library. All results show themselves in notebo
   `sample_starts`, `trace_zero_velocity_curve`
 - orbits: `integrate_orbit`, `classify_orbits`, `find_lyapunov_orbits`, `compute_birkhoff_digits`, `judge_orbit`,
   `evaluate_indicators`, `compute_separation`, `find_divergent_start`, `compute_flux`
-- maps of escapes: `MapSpec`, `compute_map`, `compute_deep_map`, `compute_regularity`, `compute_trust`,
+- maps of escapes: `MapSpec`, `compute_map`, `compute_regularity`, `compute_trust`,
   `compute_origin_fates`, `find_stable_manifolds`
 - basins and statistics: `compute_basin_entropy`, `compute_wada_test`, `compute_uncertainty_exponent`, `compute_statistics`,
   `fit_decay_laws`
@@ -26,7 +26,6 @@ from engine.execution import Execution
 from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits, find_multipliers
 from engine.invariant_sets.stable_manifolds import StableManifolds, find_stable_manifolds
 from engine.maps.compute import compute_map
-from engine.maps.deep_map import DeepMap, compute_deep_map
 from engine.maps.origin_fates import OriginFateMap, compute_origin_fates
 from engine.maps.regularity import RegularityMap, compute_regularity
 from engine.maps.result import EscapeMap
@@ -85,7 +84,6 @@ __all__ = [
     "Certificate",
     "Coordinate",
     "DecayLaws",
-    "DeepMap",
     "Direction",
     "DivergentStart",
     "EscapeFlux",
@@ -126,7 +124,6 @@ __all__ = [
     "classify_orbits",
     "compute_basin_entropy",
     "compute_birkhoff_digits",
-    "compute_deep_map",
     "compute_flux",
     "compute_map",
     "compute_origin_fates",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import math
 import os
 import reprlib
 import sys
@@ -170,14 +171,13 @@ def run_parts(
     indices: np.ndarray,
     select: Callable[[np.ndarray], tuple[Any, ...]],
     execution: Execution,
-    least: int = _LEAST_PART,
 ) -> Iterator[tuple[np.ndarray, Any]]:
     """Run ``work(*select(part))`` in parallel for the parts of an index array; each part of `indices` with its result.
 
-    least: about the smallest part that is worth a task. Parts that never ran because of a cancellation are left out. `work` must
+    Parts that never ran because of a cancellation are left out. `work` must
     be a module-level function, so that it can be pickled for other processes, and should release the GIL.
     """
-    count = min(2 * execution.workers, -(-indices.size // least))
+    count = min(2 * execution.workers, math.ceil(indices.size / _LEAST_PART))
     parts = np.array_split(indices, count) if count else []
     futures = [execution.submit(work, *select(part)) for part in parts]
     for part, future in zip(parts, futures, strict=True):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from engine import DeepMap, EscapeMap, Potential, Sweep, Window, compute_statistics
+from engine import EscapeMap, Potential, Sweep, Window, compute_statistics
 from plots.figure_style import FigureFormat, FigureStyle
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
 from plots.orbit_curves import OrbitCurves, initial_state
@@ -38,18 +38,6 @@ def map_figure_bytes(
         format,
         {name: str(value) for name, value in frame.provenance().items()},
     )
-
-
-def deep_map_figure_bytes(result: DeepMap) -> bytes:
-    """PNG file of the basins of a deep map, with its provenance in its metadata."""
-    from matplotlib.figure import Figure
-
-    def draw() -> Figure:
-        figure = Figure(layout="constrained")
-        result.plot(figure.subplots())
-        return figure
-
-    return _file(draw, FigureFormat.PNG, {name: str(value) for name, value in result.provenance().items()})
 
 
 def orbits_figure_bytes(

@@ -17,7 +17,6 @@ from matplotlib.figure import Figure
 from engine import (
     BirkhoffDigits,
     DecayLaws,
-    DeepMap,
     EscapeFlux,
     EscapeMap,
     EscapeStatistics,
@@ -44,7 +43,7 @@ from engine.slices.planes import SPACE
 from engine.slices.section import SECTION
 from plots.curve_figures import draw_decay_laws, draw_escape_times, draw_line, draw_shares
 from plots.figure_axes import RENDER_LOCK, add_panel_legend, label_axes, name_panel, patches, set_font, style_axes
-from plots.image_columns import fate_codes, passage_column
+from plots.image_columns import passage_column
 from plots.map_analyses import MapAnalyses
 from plots.map_figure import draw_limits, draw_manifolds, draw_picture, draw_pixels, picture_entries, show_window
 from plots.map_images import TITLES
@@ -97,7 +96,7 @@ def to_holoviews(result: Result) -> Any:
     require_package("holoviews", "page")
     import holoviews as hv
 
-    if isinstance(result, EscapeMap | DeepMap | RegularityMap | TrustMap | OriginFateMap):
+    if isinstance(result, EscapeMap | RegularityMap | TrustMap | OriginFateMap):
         return hv.Dataset(result.to_xarray()).to(hv.Image, list(result.spec.plane.axis_names))
     table = result.to_pandas()
     if result.row_dimension:
@@ -142,16 +141,6 @@ def _draw_map(result: EscapeMap, axes: Axes, palette: Palette, *, picture: str =
     draw_picture(panel, result, picture, palette)
     if entries := picture_entries(result, picture, palette, MapAnalyses()):
         _add_legend_below(panel, entries)
-
-
-@_draw.register
-def _draw_deep_map(result: DeepMap, axes: Axes, palette: Palette) -> None:
-    half, outcomes = 0.5 * result.width, result.spec.outcomes
-    pixels = rgba(palette.fate_colours)[fate_codes(result.fate, outcomes)]
-    axes.imshow(pixels, extent=(-half, half, -half, half), origin="lower", interpolation="none")
-    abscissa, ordinate = result.spec.plane.axis_symbols
-    label_axes(axes, f"{abscissa} from the centre", f"{ordinate} from the centre")
-    axes.legend(handles=patches(palette.legend_entries(outcomes)), fontsize="small")
 
 
 def _add_legend_below(axes: Axes, entries: Iterable[Entry]) -> None:

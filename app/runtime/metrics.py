@@ -24,10 +24,6 @@ class ServerMetrics:
         self.pages_refused = self._counter(
             "pages_refused", "Page requests refused because the server was full, overloaded or stopping"
         )
-        self.link_pictures_refused = self._counter(
-            "link_pictures_refused",
-            "Requests for pictures of links refused because there were too many or the server was not ready",
-        )
         self.connections_refused = self._counter("connections_refused", "Connections closed because there were too many")
         self.messages_delayed = self._counter("messages_delayed", "Messages delayed because their page took more than its share")
         self.log_records = self._counter("log_records", "Warnings and errors in the log", "level", "exception")

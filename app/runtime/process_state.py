@@ -37,8 +37,6 @@ class ProcessState:
         Returns the open Bokeh sessions; none until the server sets it.
     sockets
         Number of open WebSockets by address.
-    link_pictures
-        Number of requests for the picture of a link under way, by address.
     jobs
         Background jobs of all sessions.
     limited
@@ -60,7 +58,6 @@ class ProcessState:
     settings: Settings = field(default_factory=Settings)
     sessions: Callable[[], Iterable[Any]] = tuple
     sockets: Counter[str] = field(default_factory=Counter, init=False)
-    link_pictures: Counter[str] = field(default_factory=Counter, init=False)
     jobs: Jobs = field(init=False)
     limited: LimitedProcess = field(default_factory=LimitedProcess, init=False)
     load: LoadMonitor = field(default_factory=LoadMonitor, init=False)

@@ -83,8 +83,6 @@ class Settings:
         Maximum number of sessions, and of WebSockets, of one address (IPv6: of one network).
     most_connections
         Maximum number of open connections besides WebSockets; further ones are closed.
-    link_pictures
-        Maximum number of pictures of links under way; 0 for no pictures of links.
     compiled_operations
         Maximum number of compiled operations of the integrators of all potentials but those of the catalogue, about 4 kB
         each; code is never unloaded.
@@ -116,7 +114,6 @@ class Settings:
     most_sessions: int = _setting(200, _integer(1, 100_000))
     pages_per_address: int = _setting(50, _integer(1, 100_000))
     most_connections: int = _setting(500, _integer(1, 100_000))
-    link_pictures: int = _setting(4, _integer(0, 1000))
     compiled_operations: int = _setting(250_000, _integer(50_000, 10**9))
     cache_bytes: int = _setting(512 * MIB, _integer(0, 2**50))
     memory_ceiling: int = _setting(0, _integer(0, 2**50))

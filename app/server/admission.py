@@ -1,11 +1,8 @@
-"""Refuse pages, WebSockets and pictures of links when the server is full or stopping, or an address has its share of them."""
+"""Refuse pages and WebSockets when the server is full or stopping, or an address has its share of them."""
 
 from __future__ import annotations
 
 import http.client
-from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from html import escape
 from typing import Any
 
@@ -13,7 +10,7 @@ from bokeh.protocol.exceptions import ProtocolError
 from bokeh.util.token import get_session_id
 from tornado.web import HTTPError
 
-from app.runtime.health import not_ready_reason, refusal_reason
+from app.runtime.health import refusal_reason
 from app.runtime.process_state import process_state
 from app.runtime.settings import variable_name
 from app.runtime.visitors import network_of
@@ -26,9 +23,6 @@ RETRY_SECONDS = 10
 
 RETRIED = (http.client.TOO_MANY_REQUESTS, http.client.SERVICE_UNAVAILABLE)
 """Statuses of refused pages that may be served later."""
-
-PICTURES_PER_ADDRESS = 2
-"""Most requests for the picture of a link that an address may have under way."""
 
 
 def admit(request: Any) -> None:
@@ -94,39 +88,10 @@ def count_socket(address: str) -> None:
 
 def forget_socket(address: str) -> None:
     """Stop counting a WebSocket."""
-    _forget(process_state().sockets, network_of(address))
-
-
-@contextmanager
-def admitted_picture(network: str) -> Iterator[None]:
-    """Count a request for the picture of a link while the context is active; `network` as of `network_of`.
-
-    Raises
-    ------
-    tornado.web.HTTPError
-        Status 429 or 503 with a sentence as its reason, when there are too many, or the server is not ready.
-    """
-    state = process_state()
-    reason, status = not_ready_reason(state), http.client.SERVICE_UNAVAILABLE
-    if reason is None and state.link_pictures.total() >= state.settings.link_pictures:
-        reason = f"{variable_name('link_pictures')}={state.settings.link_pictures} permits no further picture now."
-    elif reason is None and state.link_pictures[network] >= PICTURES_PER_ADDRESS:
-        reason, status = f"Your address waits for {PICTURES_PER_ADDRESS} pictures already.", http.client.TOO_MANY_REQUESTS
-    if reason is not None:
-        state.metrics.link_pictures_refused.inc()
-        raise HTTPError(status, reason=reason)
-    state.link_pictures[network] += 1
-    try:
-        yield
-    finally:
-        _forget(state.link_pictures, network)
-
-
-def _forget(counts: Counter[str], network: str) -> None:
-    """Count one less of a network."""
-    counts[network] -= 1
-    if not counts[network]:
-        del counts[network]
+    sockets, network = process_state().sockets, network_of(address)
+    sockets[network] -= 1
+    if not sockets[network]:
+        del sockets[network]
 
 
 def _request_of(session: Any) -> Any:

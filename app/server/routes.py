@@ -14,14 +14,13 @@ from tornado.web import HTTPError
 
 from app.browser.module_files import ROUTE as MODULES
 from app.server.endpoints import ROUTES, NotFound
-from app.server.link_pictures import ROUTE as PICTURE
 from app.server.security_headers import SecurityHeaders
 
 # Tornado fails to look for a file with a null character in its name.
 _FILES = "/static/(?!.*%00).*"
 
-OF_PAGE = ("", "/ws", PICTURE, _FILES)
-"""Routes below the path of a page: the page, its WebSocket, its picture and its files."""
+OF_PAGE = ("", "/ws", _FILES)
+"""Routes below the path of a page: the page, its WebSocket and its files."""
 
 OF_SERVER = ("/?", _FILES, MODULES[0], *(path for path, _ in ROUTES))
 """Routes below the server's prefix: the redirect to the page, scripts, styles and modules, and what the operator calls."""

@@ -16,11 +16,8 @@ from panel.io.server import DocHandler, RootHandler, WSHandler
 from tornado.web import HTTPError
 
 from app.browser.module_files import ROUTE as MODULES
-from app.runtime.process_state import process_state
 from app.server.admission import RETRIED, RETRY_SECONDS, refusal_page
 from app.server.endpoints import ROUTES
-from app.server.link_pictures import ROUTE as PICTURE
-from app.server.link_pictures import LinkPictureHandler, picture_address
 from app.server.page_websocket import PageWebSocket
 from app.server.security_headers import SecurityHeaders, add_nonce, new_nonce
 from app.server.session_tokens import issue_token, use_token
@@ -33,10 +30,7 @@ class PageHandler(SecurityHeaders, DocHandler):
         """Create the session of a new token."""
         extra = self.application_context.application.process_request(self.request)
         use_token(self.request, issue_token(self.application, self.request, extra))
-        session = await super().get_session()
-        if process_state().settings.link_pictures:
-            session.document.template_variables["picture_address"] = picture_address(self.request)
-        return session
+        return await super().get_session()
 
     def write_error(self, status_code: int, **kwargs: Any) -> None:
         """Answer with the reason, and let browsers ask again for a page that may be served later."""
@@ -69,7 +63,6 @@ def install_handlers(per_app_patterns: list[Any], toplevel_patterns: list[Any]) 
     modules = (MODULES[0], _secured(MODULES[1]), MODULES[2])
     if all(path != modules[0] for path, *_ in toplevel_patterns):
         toplevel_patterns += [*ROUTES, modules]
-        per_app_patterns.append((PICTURE, LinkPictureHandler))
 
 
 def _secured(handler: type) -> type:

@@ -18,7 +18,6 @@ from app.job_clients.latest_request import LatestRequest
 from app.job_clients.map_requests import MapRequests
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.runtime.disconnects import on_disconnect
-from app.runtime.page_address import page_address
 from app.runtime.process_state import process_state
 from app.runtime.session_callbacks import SessionCallbacks
 from app.runtime.visitors import account_of
@@ -44,7 +43,7 @@ from app.views.panels.accessible_table import AccessibleTable
 from app.views.panels.browser_events import KEYS, PICTURE_KEYS, WINDOW_KEYS, BrowserActions, BrowserEvents, key_legend
 from app.views.panels.controls import ControlActions, Controls
 from app.views.panels.downloads import Downloads
-from app.views.panels.embedding import embed_code
+from app.views.panels.embedding import embed_code, page_address
 from app.views.panels.equations import equations_pane
 from app.views.panels.gallery import Gallery
 from app.views.panels.slice_panel import SlicePanel

@@ -12,7 +12,7 @@ from bokeh.document import Document
 
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
-from app.state.link_picture import picture_of
+from app.state.link_summary import summary_of
 from app.state.permalink import (
     EMBED,
     LINKED,
@@ -53,7 +53,7 @@ class LinkPresenter:
         self.open_link = OpenLink()
         self.history = History()
         self.state = self._first_state()
-        self.picture = picture_of(self._link)
+        self.summary = summary_of(self._link)
         """What programs show of the link in the page's address."""
 
     def connect(

@@ -21,9 +21,6 @@ class Queue(Enum):
     BACKGROUND = "background"
     """The function makes many short calls."""
 
-    IDLE = "idle"
-    """The function makes calls that run one at a time, when no other call waits for a thread."""
-
     LONG_CALL = "long call"
     """The function is one call of up to seconds."""
 

@@ -63,7 +63,7 @@ class _Run:
         """Of the short calls."""
         if self.map_priority is not None:
             return self.map_priority()
-        return Priority.IDLE if self.job.queue is Queue.IDLE else Priority.BACKGROUND
+        return Priority.BACKGROUND
 
 
 class Jobs:
@@ -243,14 +243,11 @@ class Jobs:
         return found
 
     def _create_executors(self, run: _Run) -> Mapping[Queue, QueueExecutor]:
-        calls = long_calls = self._scheduler.executor(run.client, run.priority)
-        if run.job.queue is not Queue.IDLE:
-            long_calls = self._scheduler.executor(run.client, lambda: Priority.LONG_CALL)
+        calls = self._scheduler.executor(run.client, run.priority)
         return {
             Queue.FIRST_FRAME: calls,
             Queue.BACKGROUND: calls,
-            Queue.IDLE: calls,
-            Queue.LONG_CALL: long_calls,
+            Queue.LONG_CALL: self._scheduler.executor(run.client, lambda: Priority.LONG_CALL),
             Queue.LIMITED: self._limited_calls.executor(run.client, lambda: Priority.LONG_CALL),
             Queue.COMPILATION: self._compilations.executor(run.client, lambda: Priority.LONG_CALL),
         }

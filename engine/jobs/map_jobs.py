@@ -112,8 +112,8 @@ def _measure_basins(escape_map: EscapeMap, box: Window | None) -> BasinMeasures:
     return BasinMeasures(entropy, compute_wada_test(*exit_labels(fate, bounded=WADA_COUNTS_BOUNDED)))
 
 
-def _fit_laws(escape_map: EscapeMap, box: Window | None, *, execution: Execution) -> DecayLaws:
-    return fit_decay_laws(compute_statistics(escape_map, box), execution=execution)
+def _fit_laws(escape_map: EscapeMap, box: Window | None) -> DecayLaws:
+    return fit_decay_laws(compute_statistics(escape_map, box))
 
 
 def _measure_point(point: SweepPoint, frame: EscapeMap, *, execution: Execution) -> xr.Dataset:

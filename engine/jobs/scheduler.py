@@ -34,9 +34,6 @@ class Priority(IntEnum):
     UNSETTLED = 3
     """The same for a result that is likely to be replaced before anyone looks at it."""
 
-    IDLE = 4
-    """A call of up to seconds that no page waits for; one runs at a time."""
-
 
 class _Call(NamedTuple):
     executor: QueueExecutor
@@ -99,14 +96,9 @@ class FairScheduler:
 
     @property
     def pending_calls(self) -> int:
-        """Number of calls that no thread has started, without `Priority.IDLE` ones, which delay nobody."""
+        """Number of calls that no thread has started."""
         with self._lock:
-            return sum(
-                len(calls)
-                for queues in self._pending.values()
-                for executor, calls in queues.items()
-                if executor.priority() is not Priority.IDLE
-            )
+            return sum(len(calls) for queues in self._pending.values() for calls in queues.values())
 
     def take_first_frame_wait(self) -> float:
         """Longest time in seconds that a `Priority.FIRST_FRAME` call has waited for a thread since the last call of this method.
@@ -208,9 +200,9 @@ class FairScheduler:
     def _may_start(self, priority: Priority) -> bool:
         if priority is Priority.FIRST_FRAME:
             return True
-        running = self._running[priority]
         if priority is not Priority.LONG_CALL:
-            return not self._background_paused and not (priority is Priority.IDLE and running)
+            return not self._background_paused
+        running = self._running[priority]
         if self._background_paused:
             return running == 0 and time.monotonic() >= self._next_long_call
         return running < max(self.threads - 1, 1)

@@ -1,4 +1,4 @@
-"""Fits of decay laws to escape times: choice of the window, rates with bootstrap intervals, comparison of the laws."""
+"""Fits of decay laws to escape times: choice of the window, rates with standard errors, comparison of the laws."""
 
 from __future__ import annotations
 
@@ -7,63 +7,52 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.dynamics.classification import Outcomes
-from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.maps.stored_maps import MapLike, as_map
-from engine.measures.decay_laws import MIN_ESCAPES, MIN_P_VALUE, DecayLaw, DecayLaws, LawFit, to_unit_time, window_length
-from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
-from engine.measures.truncated_exponential import (
-    fit_steepness_and_distance,
-    kolmogorov_smirnov_distance,
-    max_log_likelihood,
-    quantile,
-    scaled_distance,
-    solve_steepness,
+from engine.measures.decay_laws import (
+    MIN_ESCAPES,
+    MIN_P_VALUE,
+    DecayLaw,
+    DecayLaws,
+    LawFit,
+    cumulative_share,
+    to_unit_time,
+    window_length,
 )
-from engine.validation import checked_array, checked_count, checked_t_max, checks_types, short_repr
+from engine.measures.escape_statistics import EscapeStatistics, compute_statistics, compute_survival
+from engine.validation import checked_array, checked_t_max, short_repr
 
-MIN_RESAMPLES = 500
-"""Fewest bootstrap resamples, which leave 12 beyond each end of a 95 % interval."""
-
-MAX_RESAMPLES = 100_000
-"""Most bootstrap resamples: beyond that the model limits the accuracy of an interval, not the resampling."""
-
-_INTERVAL_PERCENTILES = (2.5, 97.5)
+# Of a normal distribution, for 95 % intervals.
+_DEVIATIONS = 1.96
 # Number of escapes in the next window tried, relative to the current one.
 _WINDOW_RATIO = 0.9
 # Where a law first seems to hold, an undetectable rest of the transient still biases the rate, so the fit uses this share of
-# the escapes, the latest ones. In trials the interval then held the true rate in 94 % of the cases, otherwise in 75 to 90 %.
+# the escapes, the latest ones.
 _SETTLED_SHARE = 0.5
-# Scaled distances above this are not tested: a p value of 0.1 corresponds to 0.99, or less where the truncation is near.
-_MAX_TESTED_DISTANCE = 1.1
-# Sample size for the distribution of the scaled distance, which hardly depends on it.
-_MAX_SAMPLE_SIZE = 250
-# The latest escapes are resampled individually, earlier ones in groups of this share of the escapes after them.
-_SINGLES, _GROUP_SHARE = 128, 0.02
+# Of the polynomials in the test of a law; the first one is almost the score.
+_DEGREES = (2, 3, 4)
+_NORMS = np.sqrt(2.0 * np.array(_DEGREES) + 1.0)
+# Steepness below which the variance is that of the uniform distribution.
+_FLAT = 1e-2
 
 
-@checks_types(execution=Execution)
 def fit_decay_laws(
     statistics: EscapeStatistics | MapLike | Outcomes,
     t_max: float | None = None,
     *,
     window: tuple[float, float] | None = None,
-    resamples: int = 1000,
-    seed: int = 0,
-    execution: Execution = DEFAULT_EXECUTION,
 ) -> DecayLaws:
     """Fit an exponential law and a power law to the escape times in a window, and decide which one holds, if any.
 
     Rates are maximum-likelihood estimates from the escape times inside the window, given that they lie in it, so neither regular
     orbits, which never escape, nor the cutoff at t_max cause a bias. Bit-identical escape times belong to mirror images and count
     once. The others are treated as independent draws although the starts form a grid: where a law held, rates from shifted grids
-    scattered 0.8 to 1.1 times as much as the interval says (docs/escape-laws.md).
+    scattered 0.8 to 1.1 times as much as the interval says (docs/escape-laws.md). A law is ruled out by Neyman's smooth test,
+    with the fitted rate taken into account (Thomas & Pierce 1979, J. Am. Stat. Assoc. 74, 441).
 
     A window chosen automatically ends at t_max. Decreasing numbers of the latest escapes are tried until one law is ruled out
     neither for them nor for their later half, and this half is the window: the rule of Deluca & Corral (2013, Acta Geophys. 61,
-    1351) with an additional margin, and the p value of Clauset, Shalizi & Newman (2009, SIAM Rev. 51, 661). If there is no such
-    window, the one with the smallest Kolmogorov–Smirnov distance is used, as by Clauset et al., and no law is preferred. The laws
-    are compared by their log-likelihood ratio (Vuong 1989, Econometrica 57, 307) with a bootstrap interval instead of a normal
-    one.
+    1351) with an additional margin. If there is no such window, the one with the largest p value is used, and no law is
+    preferred. The laws are compared by their log-likelihood ratio (Vuong 1989, Econometrica 57, 307).
 
     Parameters
     ----------
@@ -74,17 +63,9 @@ def fit_decay_laws(
         largest one that is legal. Later escapes are left out.
     window
         (t_low, t_high), 0 < t_low < t_high ≤ t_max; None to choose it automatically.
-    resamples
-        Number of bootstrap resamples, 500 to 100 000.
-    seed
-        Seed of the random numbers, an integer, 0 or more. The same seed gives the same result.
-    execution
-        How the computation runs.
 
     Raises
     ------
-    concurrent.futures.CancelledError
-        If cancelled.
     ValueError
         If a parameter is out of range.
 
@@ -92,7 +73,7 @@ def fit_decay_laws(
     --------
     >>> from escape_explorer import CASES, MapSpec, Plane, compute_map, compute_statistics, fit_decay_laws
     >>> escapes = compute_map(MapSpec(CASES["II"], Plane.X_PX, 0.2, (80, 80), t_max=1e3))
-    >>> laws = fit_decay_laws(compute_statistics(escapes), resamples=500)
+    >>> laws = fit_decay_laws(compute_statistics(escapes))
     >>> laws.preferred, round(laws.exponential.rate, 3)
     (<DecayLaw.EXPONENTIAL: 'exponential'>, 0.024)
     """
@@ -100,16 +81,23 @@ def fit_decay_laws(
         chosen = statistics if isinstance(statistics, Outcomes) else as_map("statistics", statistics)
         statistics = compute_statistics(chosen)
     t_max = _checked_horizon(statistics, t_max)
-    resamples = checked_count("resamples", resamples, MIN_RESAMPLES, MAX_RESAMPLES)
-    seed = checked_count("seed", seed, 0, 2**63 - 1)
     if window is not None:
         ends = checked_array("window", window)
         if ends.shape != (2,) or not 0.0 < ends[0] < ends[1] <= t_max:
             raise ValueError(f"window={short_repr(window)}: must be (t_low, t_high) with 0 < t_low < t_high ≤ t_max={t_max:g}")
     t_high = t_max if window is None else float(window[1])
-    fitter = _Fitter(statistics, t_high, resamples, seed, execution)
-    t_low, settled = fitter.choose_t_low() if window is None else (float(window[0]), True)
-    return fitter.fit(t_low, settled)
+    all_times = np.unique(statistics.escape_times)
+    times = all_times[(all_times > 0.0) & (all_times <= t_high)]
+    if window is not None:
+        t_low, settled = float(window[0]), True
+    else:
+        t_low, settled = _choose_t_low(times, t_high) if not statistics.undecided else (np.nan, False)
+    sample = _Sample(t_low, t_high, times[times > (t_low if np.isfinite(t_low) else 0.0)])
+    counts = (sample.times.size, all_times.size, statistics.undecided)
+    laws = DecayLaws(*compute_survival(statistics), t_low, t_high, *counts, settled)
+    if counts[0] < MIN_ESCAPES or statistics.undecided or not np.isfinite(t_low):
+        return laws
+    return _compare(laws, sample, statistics)
 
 
 def _checked_horizon(statistics: EscapeStatistics, t_max: float | None) -> float:
@@ -132,121 +120,102 @@ class _Sample:
         """Unit times u of a law."""
         return to_unit_time(law, self.t_low, self.t_high, self.times)
 
-    def mean_unit_times(self) -> np.ndarray:
-        """(2,) means of the unit times, exponential law first."""
-        return np.array([self.unit_times(law).mean() for law in DecayLaw])
+    def p_value(self, law: DecayLaw) -> float:
+        """Probability that a sample of the law deviates as much from its own fit, by Neyman's smooth test.
 
-
-class _Fitter:
-    """Fits to the escapes between any t_low and a fixed t_high."""
-
-    def __init__(self, statistics: EscapeStatistics, t_high: float, resamples: int, seed: int, execution: Execution) -> None:
-        self.statistics, self.t_high, self.resamples, self.seed, self.execution = statistics, t_high, resamples, seed, execution
-        self.all_times = np.unique(statistics.escape_times)
-        self.times = self.all_times[(self.all_times > 0.0) & (self.all_times <= t_high)]
-
-    def choose_t_low(self) -> tuple[float, bool]:
-        """Start of the window, and whether a law holds from there on; (NaN, False) if there are too few escapes."""
-        smallest, t_low = np.inf, float("nan")
-        remaining = 0 if self.statistics.undecided else self.times.size - 1
-        while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
-            sample, later = self.latest(remaining), self.latest(int(remaining * _SETTLED_SHARE))
-            for law in DecayLaw:
-                fit = fit_steepness_and_distance(sample.unit_times(law))
-                if self.may_hold(fit, sample) and self.may_hold(fit_steepness_and_distance(later.unit_times(law)), later):
-                    return later.t_low, True
-                if fit[1] < smallest:
-                    smallest, t_low = fit[1], sample.t_low
-            remaining = int(remaining * _WINDOW_RATIO)
-        return t_low, False
-
-    def may_hold(self, fit: tuple[float, float], sample: _Sample) -> bool:
-        """Whether the sample does not rule out the law with this steepness and distance."""
-        tested = scaled_distance(fit[1], sample.times.size) <= _MAX_TESTED_DISTANCE
-        return tested and self.find_p_value(*fit, sample.times.size) >= MIN_P_VALUE
-
-    def latest(self, count: int) -> _Sample:
-        """The latest `count` escapes; the window begins at the escape before them."""
-        return self.after(float(self.times[-count - 1]))
-
-    def after(self, t_low: float) -> _Sample:
-        """The escapes after `t_low`."""
-        return _Sample(t_low, self.t_high, self.times[np.searchsorted(self.times, t_low, side="right") :])
-
-    def fit(self, t_low: float, settled: bool) -> DecayLaws:
-        """Both laws fitted to the escapes after `t_low`; no fits if there are too few."""
-        sample = self.after(t_low if np.isfinite(t_low) else 0.0)
-        counts = (sample.times.size, self.all_times.size, self.statistics.undecided)
-        laws = DecayLaws(*compute_survival(self.statistics), t_low, self.t_high, *counts, settled)
-        if counts[0] < MIN_ESCAPES or self.statistics.undecided or not np.isfinite(t_low):
-            return laws
-        means = self.resample(sample)
-        exponential, power_law = (self.fit_law(law, sample, means[:, column]) for column, law in enumerate(DecayLaw))
-        ratio = float(_log_likelihood_ratio(sample, sample.mean_unit_times()[None])[0])
-        ratio_low, ratio_high = np.percentile(_log_likelihood_ratio(sample, means), _INTERVAL_PERCENTILES).tolist()
-        preferred = None
-        if settled and exponential.plausible and ratio_low > 0.0:
-            preferred = DecayLaw.EXPONENTIAL
-        elif settled and power_law.plausible and ratio_high < 0.0:
-            preferred = DecayLaw.POWER_LAW
-        return replace(
-            laws, exponential=exponential, power_law=power_law, preferred=preferred,
-            ratio=ratio, ratio_low=ratio_low, ratio_high=ratio_high,
-        )  # fmt: skip
-
-    def fit_law(self, law: DecayLaw, sample: _Sample, means: np.ndarray) -> LawFit:
-        """One law, with the interval from the mean unit times (resamples,) of resampled escapes."""
-        u, length = sample.unit_times(law), window_length(law, sample.t_low, sample.t_high)
-        steepness, distance = fit_steepness_and_distance(u)
-        low, high = (np.percentile(solve_steepness(means), _INTERVAL_PERCENTILES) / length).tolist()
-        p_value = self.find_p_value(steepness, distance, u.size)
-        window = (sample.t_low, sample.t_high)
-        escaped = [int(np.count_nonzero(self.statistics.escape_times <= t)) for t in window]
-        survival = (1.0 - count / self.statistics.decided for count in escaped)
-        return LawFit(law, steepness / length, low, high, distance, p_value, *window, *survival)
-
-    def find_p_value(self, steepness: float, distance: float, count: int) -> float:
-        """Share of random samples of the law that are as far from their own fit (parametric bootstrap).
-
-        The size of these samples is limited: the distance is scaled as by Stephens (1974, J. Am. Stat. Assoc. 69, 730) for the
-        exponential distribution, which makes its distribution almost independent of the sample size.
+        Under the law, the means of the Legendre polynomials of the cumulative shares are normally distributed around 0. The fit
+        reduces their covariance by the part along the score u − ⟨u⟩.
         """
-        self.execution.raise_if_cancelled()
-        size = min(count, _MAX_SAMPLE_SIZE)
-        shares = np.random.default_rng(self.seed).random((self.resamples, size))
-        samples = np.sort(quantile(abs(steepness), shares), axis=1)
-        fitted = solve_steepness(samples.mean(axis=1))
-        scaled = scaled_distance(kolmogorov_smirnov_distance(fitted[:, None], samples), size)
-        return float(np.mean(scaled >= scaled_distance(distance, count)))
+        from scipy import special
 
-    def resample(self, sample: _Sample) -> np.ndarray:
-        """(resamples, 2) mean unit times of both laws for bootstrap resamples of the escapes.
+        u = self.unit_times(law)
+        shares = cumulative_share(_fit_steepness(u), u)
+        polynomials = np.polynomial.legendre.legvander(2.0 * shares - 1.0, _DEGREES[-1])[:, _DEGREES] * _NORMS
+        score = u - u.mean()
+        along = score @ polynomials
+        covariance = np.eye(len(_DEGREES)) - np.outer(along, along) / (u.size * (score @ score))
+        means = polynomials.mean(axis=0)
+        return float(special.chdtrc(len(_DEGREES), u.size * means @ np.linalg.solve(covariance, means)))
 
-        Escapes close in time are resampled in groups, except the latest ones, on which the means depend most. Multinomial counts
-        of about a hundred groups replace one count per escape, with the same spread to a few parts in ten thousand.
-        """
-        starts = _group_starts(sample.times.size)
-        sizes = np.diff(starts, append=sample.times.size)
-        group_means = [np.add.reduceat(sample.unit_times(law), starts) / sizes for law in DecayLaw]
-        counts = np.random.default_rng(self.seed).multinomial(sample.times.size, sizes / sample.times.size, self.resamples)
-        means: np.ndarray = counts @ np.column_stack(group_means) / sample.times.size
-        return means
+    def log_likelihoods(self, law: DecayLaw) -> np.ndarray:
+        """(n,) logarithms of the largest likelihood of a law, up to a constant that both laws have in common."""
+        from scipy import special
 
-
-def _group_starts(count: int) -> np.ndarray:
-    """Start indices of groups of `count` increasing times: single times at the end, larger groups towards the beginning."""
-    ends = [count]
-    while ends[-1] > 0:
-        ends.append(ends[-1] - max(1, int(_GROUP_SHARE * (count - ends[-1] - _SINGLES))))
-    starts: np.ndarray = np.maximum(np.array(ends[:0:-1]), 0)
-    return starts
+        u = self.unit_times(law)
+        steepness = _fit_steepness(u)
+        k, forward = abs(steepness), u if steepness > 0.0 else 1.0 - u
+        # The Jacobian du/dt of the unit time linear in ln t is 1 / (t · length).
+        jacobian = 0.0 if law is DecayLaw.EXPONENTIAL else np.log(self.times)
+        likelihoods: np.ndarray = (
+            -np.log(special.exprel(-k)) - k * forward - np.log(window_length(law, self.t_low, self.t_high)) - jacobian
+        )
+        return likelihoods
 
 
-def _log_likelihood_ratio(sample: _Sample, means: np.ndarray) -> np.ndarray:
-    """(n,) maximum log-likelihood per escape, exponential minus power law, for (n, 2) mean unit times."""
-    length, log_length = (window_length(law, sample.t_low, sample.t_high) for law in DecayLaw)
-    exponential = max_log_likelihood(means[:, 0]) - np.log(length)
-    # The Jacobian du/dt of the unit time linear in ln t is 1 / (t · log_length).
-    power_law = max_log_likelihood(means[:, 1]) - np.log(log_length) - np.log(sample.t_low) - log_length * means[:, 1]
-    ratio: np.ndarray = exponential - power_law
-    return ratio
+def _choose_t_low(times: np.ndarray, t_high: float) -> tuple[float, bool]:
+    """Start of the window, and whether a law holds from there on; (NaN, False) if there are too few escapes."""
+    largest, t_low = 0.0, float("nan")
+    remaining = times.size - 1
+    while int(remaining * _SETTLED_SHARE) >= MIN_ESCAPES:
+        sample, later = (_latest(times, t_high, count) for count in (remaining, int(remaining * _SETTLED_SHARE)))
+        for law in DecayLaw:
+            p_value = sample.p_value(law)
+            if p_value >= MIN_P_VALUE and later.p_value(law) >= MIN_P_VALUE:
+                return later.t_low, True
+            if p_value >= largest:
+                largest, t_low = p_value, sample.t_low
+        remaining = int(remaining * _WINDOW_RATIO)
+    return t_low, False
+
+
+def _latest(times: np.ndarray, t_high: float, count: int) -> _Sample:
+    """The latest `count` escapes; the window begins at the escape before them."""
+    return _Sample(float(times[-count - 1]), t_high, times[-count:])
+
+
+def _compare(laws: DecayLaws, sample: _Sample, statistics: EscapeStatistics) -> DecayLaws:
+    """Both laws fitted to a sample, and the one that holds and is significantly more likely."""
+    escaped = [int(np.count_nonzero(statistics.escape_times <= t)) for t in (sample.t_low, sample.t_high)]
+    survival = [1.0 - count / statistics.decided for count in escaped]
+    exponential, power_law = (_fit_law(law, sample, *survival) for law in DecayLaw)
+    differences = sample.log_likelihoods(DecayLaw.EXPONENTIAL) - sample.log_likelihoods(DecayLaw.POWER_LAW)
+    ratio, half_width = float(differences.mean()), _DEVIATIONS * float(differences.std()) / np.sqrt(differences.size)
+    preferred = None
+    if laws.settled and exponential.plausible and ratio > half_width:
+        preferred = DecayLaw.EXPONENTIAL
+    elif laws.settled and power_law.plausible and ratio < -half_width:
+        preferred = DecayLaw.POWER_LAW
+    return replace(
+        laws, exponential=exponential, power_law=power_law, preferred=preferred,
+        ratio=ratio, ratio_low=ratio - half_width, ratio_high=ratio + half_width,
+    )  # fmt: skip
+
+
+def _fit_law(law: DecayLaw, sample: _Sample, survival_low: float, survival_high: float) -> LawFit:
+    """One law. The standard error of the rate is valid even if the law does not hold (White 1982, Econometrica 50, 1)."""
+    u, length = sample.unit_times(law), window_length(law, sample.t_low, sample.t_high)
+    steepness = _fit_steepness(u)
+    half_width = _DEVIATIONS * float(u.std()) / (np.sqrt(u.size) * _variance(steepness)) / length
+    rate = steepness / length
+    window = (sample.t_low, sample.t_high)
+    return LawFit(law, rate, rate - half_width, rate + half_width, sample.p_value(law), *window, survival_low, survival_high)
+
+
+def _fit_steepness(u: np.ndarray) -> float:
+    """Maximum-likelihood steepness k of a density ∝ exp(−k u) on 0 ≤ u ≤ 1, of either sign.
+
+    It solves ½ ₁F₁(2; 3; −k) / ₁F₁(1; 2; −k) = 1/k − 1/(exp k − 1) = mean of u; the left form is accurate for small k too.
+    u ↔ 1 − u changes the sign of k and nothing else.
+    """
+    from scipy import optimize, special
+
+    mean = float(u.mean())
+    lower = min(mean, 1.0 - mean)
+    steepness = optimize.brentq(lambda k: 0.5 * special.hyp1f1(2.0, 3.0, -k) / special.exprel(-k) - lower, 0.0, 2.0 / lower)
+    return float(np.copysign(steepness, 0.5 - mean))
+
+
+def _variance(steepness: float) -> float:
+    """Variance of u."""
+    k = abs(steepness)
+    return 1.0 / k**2 - float(np.exp(-k) / np.expm1(-k) ** 2) if k > _FLAT else 1.0 / 12.0

@@ -1,7 +1,7 @@
 """Decay laws of the escapes from a map: exponential, power law or neither, as numbers, curves and sentences.
 
 Both laws are truncated exponentials in a unit time u that runs from 0 at t_low to 1 at t_high: linear in t for the exponential
-law, linear in ln t for the power law. One estimator, one distance and one bootstrap therefore serve both.
+law, linear in ln t for the power law. One estimator and one test therefore serve both.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from engine.measures.truncated_exponential import cumulative_share
 from engine.results.result import Result
 from engine.results.wording import format_count, format_whole
 
@@ -20,7 +19,7 @@ MIN_ESCAPES = 100
 """Fewest escapes in a window for a fit, which determine the rate to about 20 %. Choosing a window takes twice as many."""
 
 MIN_P_VALUE = 0.1
-"""Laws with a smaller p value are ruled out (Clauset, Shalizi & Newman 2009, section 4.1)."""
+"""Laws with a smaller p value are ruled out (Clauset, Shalizi & Newman 2009, SIAM Rev. 51, 661, section 4.1)."""
 
 
 class DecayLaw(StrEnum):
@@ -42,11 +41,9 @@ class LawFit:
         κ of exp(−κ (t − t_low)) per unit of time, or γ of (t / t_low)^(−γ), dimensionless; negative if escapes become more
         frequent.
     low, high
-        95 % bootstrap interval of the rate at fixed t_low.
-    distance
-        Kolmogorov–Smirnov distance of the escape times from the fitted law, 0 to 1.
+        95 % interval of the rate at fixed t_low.
     p_value
-        Share of samples of the fitted law that are as far from their own fit, 0 to 1.
+        Probability that a sample of the law deviates as much from its own fit, 0 to 1.
     t_low, t_high
         Window of time.
     survival_low, survival_high
@@ -57,7 +54,6 @@ class LawFit:
     rate: float
     low: float
     high: float
-    distance: float
     p_value: float
     t_low: float
     t_high: float
@@ -102,7 +98,7 @@ class DecayLaws(Result):
     preferred
         The law that describes these escapes: not ruled out and significantly more likely than the other; otherwise None.
     ratio, ratio_low, ratio_high
-        Log-likelihood per escape of the exponential law minus the one of the power law, and its 95 % bootstrap interval;
+        Log-likelihood per escape of the exponential law minus the one of the power law, and its 95 % interval;
         NaN without fits.
     """
 
@@ -157,7 +153,10 @@ class DecayLaws(Result):
         possible = [fit.law for fit in (exponential, power_law) if fit.plausible]
         if len(possible) == 2:
             return "The data do not decide between the two laws"
-        return f"Only the {possible[0]} may hold, but it is not significantly more likely" if possible else "Neither law holds"
+        if possible:
+            return f"Only the {possible[0]} may hold, but it is not significantly more likely"
+        ruled_out = max(exponential.p_value, power_law.p_value) < MIN_P_VALUE
+        return "Neither law holds" if ruled_out else "These escapes do not show a decay"
 
 
 def _describe_fit(symbol: str, fit: LawFit) -> str:
@@ -181,3 +180,13 @@ def to_unit_time(law: DecayLaw, t_low: float, t_high: float, t: np.ndarray) -> n
     """Unit time u of a law at times t, 0 at t_low and 1 at t_high."""
     elapsed: np.ndarray = t - t_low if law is DecayLaw.EXPONENTIAL else np.log(t / t_low)
     return elapsed / window_length(law, t_low, t_high)
+
+
+def cumulative_share(steepness: float, u: np.ndarray) -> np.ndarray:
+    """Cumulative distribution function at u of a density ∝ exp(−k u) on 0 ≤ u ≤ 1, where the steepness k has either sign."""
+    from scipy import special
+
+    k = abs(steepness)
+    share: np.ndarray = u * special.exprel(-k * u) / special.exprel(-k)
+    # With exp k divided out, which overflows.
+    return np.exp(-k * (1.0 - u)) * share if steepness < 0.0 else share

@@ -18,7 +18,7 @@ from engine.maps.compute import run_map
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
 from engine.measures.basin_entropy import compute_basin_entropy
-from engine.measures.decay_law_fits import MIN_RESAMPLES, fit_decay_laws
+from engine.measures.decay_law_fits import fit_decay_laws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import WORK, compute_uncertainty_exponent
 from engine.measures.wada import compute_wada_test
@@ -189,8 +189,7 @@ def _measure_wada(measured: MeasuredMap) -> Variables:
 
 def _measure_decay_rate(measured: MeasuredMap) -> Variables:
     """Exponential law of late escapes, see `fit_decay_laws`; NaN where it is ruled out or the escapes are too few."""
-    t_max, execution = measured.frame.spec.t_max, measured.execution
-    fit = fit_decay_laws(measured.statistics, t_max, resamples=MIN_RESAMPLES, execution=execution).exponential
+    fit = fit_decay_laws(measured.statistics, measured.frame.spec.t_max).exponential
     found = (fit.rate, fit.low, fit.high) if fit is not None and fit.plausible else (math.nan,) * 3
     return _with_interval("decay_rate", found, "rate of the exponential law of late escapes")
 

@@ -12,8 +12,7 @@ import inspect
 import linecache
 import sys
 import threading
-from collections.abc import Callable, Hashable, Mapping
-from fractions import Fraction
+from collections.abc import Hashable
 from types import ModuleType
 from typing import Any
 
@@ -23,13 +22,10 @@ from numba.core.dispatcher import Dispatcher
 from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Expression
 from engine.taylor.jit.compiled_operations import compiled_operations
-from engine.taylor.jit.decorator import exact_kernel, kernel
-from engine.taylor.jit.double_double import VECTOR, lanes_of_pairs
+from engine.taylor.jit.decorator import kernel
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.jit.llvm_emitter import straight_line, table_reader
-from engine.taylor.kernels import deep, fixed_step, interior, periodic_shooting, propagate, section_passages
-from engine.taylor.source.cauchy_products import Monomial
-from engine.taylor.source.deep_step import generate_deep_step
+from engine.taylor.kernels import fixed_step, interior, periodic_shooting, propagate, section_passages
 from engine.taylor.source.recurrence import Definition, GeneratedCode, generate_code
 from engine.taylor.source.series import REACH, Setting
 
@@ -172,23 +168,9 @@ def _outline(definition: Definition) -> Hashable:
     return make_graph((definition,))[0] if isinstance(definition, Expression) else frozenset((i, j) for i, j, _ in definition)
 
 
-def load_deep_propagation(coefficients: Mapping[Monomial, Fraction]) -> Callable[..., None]:
-    """`propagate_deeply` for V = Σ c x^i y^j with exact coefficients {(i, j): c}, to be called from `todo` on."""
-    with _lock:
-        code, table = generate_deep_step(tuple(coefficients.items()), VECTOR)
-        _, generated = _define_module(code, exact_kernel, lanes_of_pairs)
-    bound = _BoundKernel(deep.propagate_deeply, (generated["deep_step"],), table)
-    return functools.partial(bound, code.structure.can_hide)
-
-
 @functools.cache
-def _define_module(
-    code: GeneratedCode, decorator: Callable[..., Any] = kernel, write: Callable[..., Any] = straight_line
-) -> tuple[str, dict[str, GeneratedKernel]]:
-    """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled.
-
-    decorator, write: what compiles the kernels, and what makes a function of a program.
-    """
+def _define_module(code: GeneratedCode) -> tuple[str, dict[str, GeneratedKernel]]:
+    """Execute generated source as a module named after a hash of it; returns its name and its kernels, not yet compiled."""
     compiled_operations.add(code.digest, code.operations)
     name = f"kernels_{code.digest[:16]}"
     module = ModuleType(name)
@@ -196,8 +178,8 @@ def _define_module(
     sys.modules[name] = module
     source = "\n\n".join(function.kernel for function in code.functions)
     linecache.cache[f"<{name}>"] = (len(source), None, source.splitlines(keepends=True), f"<{name}>")
-    programs = {function.program.name: write(function.program) for function in code.functions}
-    vars(module).update(kernel=decorator, read_table=table_reader(len(code.entries)), **programs)
+    programs = {function.program.name: straight_line(function.program) for function in code.functions}
+    vars(module).update(kernel=kernel, read_table=table_reader(len(code.entries)), **programs)
     exec(compile(source, f"<{name}>", "exec"), vars(module))
     return name, {
         function.name: GeneratedKernel(getattr(module, function.name), len(function.program.operations))

@@ -104,7 +104,7 @@ def draw_survival(case: str, shelf: MapShelf) -> Figure:
     panels = list(figure.subplots(1, len(energies), sharex=True))
     for axes, energy in zip(panels, energies, strict=True):
         statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
-        draw_decay_laws(axes, fit_decay_laws(statistics, execution=shelf.execution), shelf.quality.t_max)
+        draw_decay_laws(axes, fit_decay_laws(statistics), shelf.quality.t_max)
         label_axes(axes, "$t$", "$S(t)$" if axes is panels[0] else "")
     name_panels(panels, [f"$h = {energy:.2f}$" for energy in energies])
     return figure

@@ -63,7 +63,7 @@ def write_laws(shelf: MapShelf) -> str:
     for case in CASES:
         for energy in three_energies(case):
             statistics = compute_statistics(shelf.map(case, Plane.X_PX, energy))
-            laws = fit_decay_laws(statistics, execution=shelf.execution)
+            laws = fit_decay_laws(statistics)
             verdict = str(laws.preferred) if laws.preferred is not None else "none"
             rows.append((case, f"{energy:g}", verdict, laws.describe()))
     return "\n\n".join([_LAWS, write_rows(("case", "h", "law", "in full"), rows)])

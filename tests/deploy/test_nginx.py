@@ -224,7 +224,7 @@ def test_other_routes_are_not_public(path: str, proxy_before_two: Proxy) -> None
     assert ask(proxy_before_two, path, authorization())[0] == 404
 
 
-@pytest.mark.parametrize("path", ["/static/js/bokeh.min.js", "/app/static/gallery/owl.png", "/app/picture.png", "/favicon.ico"])
+@pytest.mark.parametrize("path", ["/static/js/bokeh.min.js", "/app/static/gallery/owl.png", "/favicon.ico"])
 def test_files_of_the_page_are_public(path: str, proxy_before_two: Proxy) -> None:
     assert ask(proxy_before_two, path, authorization())[0] == 200
 

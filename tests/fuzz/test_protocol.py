@@ -13,7 +13,6 @@ from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 
 from benchmarks.simulated_sessions import Channel
-from benchmarks.visitors import ENVIRONMENT
 from tests.app.other_loop import run_on_new_loop
 from tests.browser.served_app import RunningApp, running_app
 from tests.engine.jobs.inbox import wait_until
@@ -30,6 +29,8 @@ VISITORS = 4
 # A map that takes little time.
 LINK = "?case=I&h=0.3&resolution=48&t_max=100"
 PARTS = 3
+SMALL_CACHE = ("ESCAPE_EXPLORER_CACHE_BYTES", str(32 * 2**20))
+"""A setting of the server: its cache of results is full after the first visitors."""
 
 
 class Visitor:
@@ -124,8 +125,7 @@ async def open_page(address: str) -> None:
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    for name, value in ENVIRONMENT.items():
-        monkeypatch.setenv(name, value)
+    monkeypatch.setenv(*SMALL_CACHE)
     # Reached in the first half of the long run.
     monkeypatch.setenv("ESCAPE_EXPLORER_COMPILED_OPERATIONS", "50000")
     log = tmp_path / "log"

@@ -9,13 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.visitors import ENVIRONMENT
 from tests.app.other_loop import run_on_new_loop
 from tests.app.server.mounted_routes import mounted_routes
 from tests.browser.served_app import RunningApp, running_app
-from tests.engine.jobs.inbox import wait_until
 from tests.fuzz.random_requests import RandomRequests
-from tests.fuzz.test_protocol import open_page, resting_memory, tracebacks
+from tests.fuzz.test_protocol import SMALL_CACHE, open_page, resting_memory, tracebacks
 
 log = logging.getLogger(__name__)
 
@@ -26,8 +24,8 @@ LARGEST_GROWTH = 0.15
 
 @pytest.fixture
 def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    for name, value in {**ENVIRONMENT, "ESCAPE_EXPLORER_PAGES_PER_ADDRESS": "10"}.items():
-        monkeypatch.setenv(name, value)
+    monkeypatch.setenv(*SMALL_CACHE)
+    monkeypatch.setenv("ESCAPE_EXPLORER_PAGES_PER_ADDRESS", "10")
     output = tmp_path / "log"
     with running_app(output, "--unused-session-lifetime", "2000", "--check-unused-sessions", "500") as app:
         yield app, output
@@ -79,16 +77,3 @@ def test_random_requests_leave_no_memory_behind(served: tuple[RunningApp, Path])
     assert tracebacks(output) == []
     assert {status for status in {*answers, *later} if status.startswith(b"5")} <= {b"503", b"505"}
     assert late < (1.0 + LARGEST_GROWTH) * early
-
-
-@pytest.mark.slow
-def test_pictures_of_random_links_end_with_their_clients(served: tuple[RunningApp, Path]) -> None:
-    app, output = served
-    # Clients that close their side of the connection at once.
-    answers = attack(app, RandomRequests(["/app/picture.png"], seed=8), 2000)
-    log.info("%s", answers)
-    wait_until(lambda: app.figure("jobs_in_flight") == 0)
-    run_on_new_loop(lambda: asyncio.wait_for(open_page(app.address), ANSWER_SECONDS))
-    assert tracebacks(output) == []
-    assert b"400" in answers
-    assert {status for status in answers if status.startswith(b"5")} <= {b"503", b"505"}

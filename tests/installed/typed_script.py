@@ -53,7 +53,7 @@ def measure(potential: Potential, energy: float) -> tuple[BasinEntropy, WadaTest
     assert_type(escapes, EscapeMap)
     assert_type(escapes.fractions(), dict[int, float])
     assert_type(compute_regularity(escapes), RegularityMap)
-    assert_type(fit_decay_laws(compute_statistics(escapes, EDGES), resamples=500), DecayLaws)
+    assert_type(fit_decay_laws(compute_statistics(escapes, EDGES)), DecayLaws)
     return compute_basin_entropy(escapes), compute_wada_test(escapes)
 
 

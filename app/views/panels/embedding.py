@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from typing import Any
 
 from app.state.permalink import write_link
 from app.state.view_state import ViewState
@@ -12,6 +13,14 @@ NOT_ALLOWED = "This server lets no other page embed it."
 
 # Of the frame, in pixels; pictures are square.
 _SIDE = 600
+
+
+def page_address(request: Any) -> str:
+    """The absolute address of the page that a request asks for, without parameters.
+
+    Host and scheme are those of the request, or with ``--use-xheaders`` those that the proxy states.
+    """
+    return f"{request.protocol}://{request.host}{request.path}"
 
 
 def embed_code(address: str, state: ViewState) -> str:

@@ -16,16 +16,7 @@ _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {
 
 def kernel(function: Callable[..., Any]) -> Any:
     """The function, compiled or loaded from the cache at its first call with arguments of some types."""
-    return _cached(function, _OPTIONS)
-
-
-def exact_kernel(function: Callable[..., Any]) -> Any:
-    """The same without fused multiply-adds other than those written, for arithmetic that computes its rounding errors."""
-    return _cached(function, {**_OPTIONS, "fastmath": False})
-
-
-def _cached(function: Callable[..., Any], options: dict[str, Any]) -> Any:
-    compiled: Any = njit(**options)(function)
+    compiled: Any = njit(**_OPTIONS)(function)
     # Numba's own option `cache=True` sets this attribute to a cache of its own, see `KernelCache`.
     compiled._cache = KernelCache(function)
     return compiled

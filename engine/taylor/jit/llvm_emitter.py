@@ -8,7 +8,6 @@ instructions on vectors make the functions of `engine.taylor.jit.webassembly`.
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
@@ -24,7 +23,7 @@ _NUMBA_TYPES = {_FLOAT: types.float64, _INT: types.int64}
 _FLAGS = ("contract",)
 _FLOAT_OPERATIONS = {"+": "fadd", "-": "fsub", "*": "fmul", "/": "fdiv"}
 _INTRINSICS = {"abs": "llvm.fabs", "sqrt": "llvm.sqrt"}
-INT_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
+_INT_OPERATIONS = {"+": "add", "-": "sub", "*": "mul", ">>": "ashr"}
 
 
 def straight_line(program: StraightLine) -> Any:
@@ -75,20 +74,11 @@ def _llvm_type(given: Any) -> Any:
     return _INT if given == types.int64 else _FLOAT
 
 
-def write_program(
-    program: StraightLine,
-    builder: ir.IRBuilder,
-    passed: list[Any],
-    lanes: int = 1,
-    operate: Callable[..., Any] | None = None,
-    constant: Callable[..., Any] | None = None,
-) -> list[Any]:
+def write_program(program: StraightLine, builder: ir.IRBuilder, passed: list[Any], lanes: int = 1) -> list[Any]:
     """Append the instructions of a program; returns its results.
 
     passed: the program's parameters; the table may be any sequence of values. With two or more `lanes` all values are vectors.
-    operate, constant: what writes an operation and a constant; None for those on doubles.
     """
-    operate, constant = operate or _operate, constant or _constant
     parameters = dict(zip(program.parameters, passed, strict=True))
     table = parameters[TABLE]
     floats, ints = (_FLOAT, _INT) if lanes == 1 else (ir.VectorType(_FLOAT, lanes), ir.VectorType(_INT, lanes))
@@ -98,11 +88,11 @@ def write_program(
             case "input", (name,):
                 values.append(parameters[name])
             case "constant", (number,):
-                values.append(constant(ints if isinstance(number, int) else floats, number))
+                values.append(_constant(ints if isinstance(number, int) else floats, number))
             case "entry", (index,):
                 values.append(table[index] if isinstance(table, list) else builder.extract_value(table, index))
             case _:
-                values.append(operate(symbol, builder, floats, ints, [values[index] for index in operands]))
+                values.append(_operate(symbol, builder, floats, ints, [values[index] for index in operands]))
     return [values[index] for index in program.results]
 
 
@@ -110,19 +100,19 @@ def _constant(kind: Any, number: float) -> Any:
     return ir.Constant(kind, [number] * kind.count if isinstance(kind, ir.VectorType) else number)
 
 
-def find_intrinsic(name: str, module: ir.Module, floats: Any, operands: int = 1) -> Any:
+def _find_intrinsic(name: str, module: ir.Module, floats: Any) -> Any:
     """An intrinsic function of doubles or of vectors, which `declare_intrinsic` does not know; one instruction, never a call."""
     if not isinstance(floats, ir.VectorType):
         return module.declare_intrinsic(name, [floats])
     name = f"{name}.v{floats.count}f64"
-    return module.globals.get(name) or ir.Function(module, ir.FunctionType(floats, [floats] * operands), name)
+    return module.globals.get(name) or ir.Function(module, ir.FunctionType(floats, [floats]), name)
 
 
 def _operate(symbol: str, builder: ir.IRBuilder, floats: Any, ints: Any, operands: list[Any]) -> Any:
     is_float = operands[0].type == floats
     match symbol:
         case "abs" | "sqrt":
-            return builder.call(find_intrinsic(_INTRINSICS[symbol], builder.module, floats), operands)
+            return builder.call(_find_intrinsic(_INTRINSICS[symbol], builder.module, floats), operands)
         case "bits_of":
             return builder.bitcast(*operands, ints)
         case "double_of":
@@ -135,4 +125,4 @@ def _operate(symbol: str, builder: ir.IRBuilder, floats: Any, ints: Any, operand
             return builder.fcmp_ordered(symbol, *operands, flags=_FLAGS) if is_float else builder.icmp_signed(symbol, *operands)
         case _ if is_float:
             return getattr(builder, _FLOAT_OPERATIONS[symbol])(*operands, flags=_FLAGS)
-    return getattr(builder, INT_OPERATIONS[symbol])(*operands)
+    return getattr(builder, _INT_OPERATIONS[symbol])(*operands)

@@ -10,7 +10,6 @@ import functools
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from fractions import Fraction
 from typing import Any, NamedTuple
 
 from engine.polynomials import derivative
@@ -85,19 +84,17 @@ class PolynomialStructure(NamedTuple):
         """V of a polynomial is smooth everywhere."""
         return False
 
-    def orbit(
-        self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS, order: int = ORDER
-    ) -> tuple[Series, Series]:
+    def orbit(self, program: StraightLine, _remainders: Mapping[str, Value] = NO_REMAINDERS) -> tuple[Series, Series]:
         """The recurrence with the products for the equations of motion only."""
         products = _plan(self.monomials, _GRADIENT)
-        series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates, order)
+        series = _recurrence(program, self.monomials, products, self.difference, self.setting.rotates)
         return series[X], series[Y]
 
     def hessian(self, program: StraightLine) -> Hessian:
         """Each entry from the products for the variational equations, too."""
         products = _plan(self.monomials, _GRADIENT_AND_HESSIAN)
         scales = find_scales(products)
-        series = _recurrence(program, self.monomials, products, self.tangent_difference, self.setting.rotates, ORDER)
+        series = _recurrence(program, self.monomials, products, self.tangent_difference, self.setting.rotates)
 
         def entry(axes: tuple[int, int]) -> Callable[[int], Value]:
             derived = _formed_derivative(self.monomials, axes, self.tangent_difference)
@@ -118,10 +115,6 @@ class PolynomialStructure(NamedTuple):
         """Multiples of the coefficients."""
         polynomial = _sorted(terms)
         return [-1.0 / divisor * (polynomial[term] * multiple) for term, multiple, divisor in entries]
-
-    def tabulate_exactly(self, coefficients: Mapping[Monomial, Fraction], entries: Sequence[Entry]) -> list[Fraction]:
-        """The same without rounding."""
-        return [-coefficients[term] * Fraction(multiple) / divisor for term, multiple, divisor in entries]
 
 
 def _derivative(monomials: Iterable[Monomial], axes: Sequence[int]) -> _Derivative:
@@ -178,9 +171,8 @@ def _recurrence(
     products: Sequence[Product],
     difference: _Difference,
     rotates: bool,
-    order: int,
 ) -> dict[Monomial, list[Value]]:
-    """The series of x and y to an order and of `products`, where a difference of two squares is stored as the first of them."""
+    """The series of x and y and of `products`, where a difference of two squares is stored as the first of them."""
     series: dict[Monomial, list[Value]] = {
         X: [program.input("x0"), program.input("x1")],
         Y: [program.input("y0"), program.input("y1")],
@@ -191,7 +183,7 @@ def _recurrence(
     if difference is not None:
         one, other = difference
         products = [p for p in products if p not in difference]
-    for k in range(order - 1):
+    for k in range(ORDER - 1):
         for p in products:
             series[p.monomial].append(cauchy(series[p.left], series[p.right], k))
         if difference is not None:

@@ -131,41 +131,40 @@ class GeneratedCode:
         return read_only(np.array([values[entry] for entry in self.entries], dtype=float))
 
 
-def step_size(program: StraightLine, x: Series, y: Series, structure: Structure) -> Value:
+def _step_size(program: StraightLine, x: Series, y: Series, structure: Structure) -> Value:
     """The h whose 16th power times a norm of the last coefficients is the tolerance, without call, square root or branch.
 
     The norm contains three orders of both coordinates, so that a step is not too long when one coefficient happens to vanish.
     This suits a well of one frequency. Where frequencies differ from place to place, a first step h sets units of time and
     length in which the second is found: h is 0.35, and the orbit moves by 1 or so in a unit of time. So steps and their errors
-    shrink near bodies. NaN marks an orbit that has broken down. For series of order 35 it is the 32nd power.
+    shrink near bodies. NaN marks an orbit that has broken down.
     """
     last, before, earlier = (abs(x[-k]) + abs(y[-k]) for k in range(1, _ORDERS_OF_NORM + 1))
-    shift = (len(x) - _ORDERS_OF_NORM - 1).bit_length() - 1
     norm = last + before + _EARLIER_WEIGHT * earlier
-    h = _root_of_tolerance(program, norm, shift)
+    h = _root_of_tolerance(program, norm)
     longest: Value | float = LONGEST_STEP
     if structure.has_many_scales:
         unit = h * (1.0 / _USUAL_STEP)
         scaled = _EARLIER_WEIGHT * earlier + unit * (before + unit * last)
         speed, force = abs(x[1]) + abs(y[1]), abs(x[2]) + abs(y[2])
-        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled, speed + unit * force), shift)
+        h = _root_of_tolerance(program, _CAUTION * program.apply("/", scaled, speed + unit * force))
         longest = 1.0 / (speed + program.apply("sqrt", force) + _LEAST_SPEED)
     h = where(h < longest, h, longest)
     return where(norm < structure.largest_norm, h, math.nan)
 
 
-def _root_of_tolerance(program: StraightLine, norm: Value, shift: int) -> Value:
-    """(tolerance / norm)^(1/16) for a shift of 4, up to 6 % too large, the same on every machine; a shift of 5 is the 32nd root.
+def _root_of_tolerance(program: StraightLine, norm: Value) -> Value:
+    """(tolerance / norm)^(1/16), up to 6 % too large, the same on every machine.
 
     The bits of a double, read as an integer, are its binary logarithm with a piecewise linear mantissa, and a shift by four
     divides that by 16.
     """
     one = 1023 << 52
     bits = program.apply("bits_of", norm * (1.0 / program.input("tolerance")))
-    return program.apply("double_of", (one + (one >> shift)) - (bits >> shift))
+    return program.apply("double_of", (one + one // 16) - (bits >> 4))
 
 
-def horner(series: Series, h: Value) -> tuple[Value, Value]:
+def _horner(series: Series, h: Value) -> tuple[Value, Value]:
     """The value and the time derivative of a series at h."""
     slope = series[-1]
     value = slope * h + series[-2]
@@ -176,13 +175,13 @@ def horner(series: Series, h: Value) -> tuple[Value, Value]:
 
 
 def _end_of_step(series: Series, h: Value, remainder: Value | None) -> tuple[Value, Value, list[Value]]:
-    """As `horner`, and with a remainder, which is added to the first coefficient, the remainder of the value.
+    """As `_horner`, and with a remainder, which is added to the first coefficient, the remainder of the value.
 
     It is what the last sum drops, found without error (Knuth's TwoSum).
     """
     if remainder is None:
-        return *horner(series, h), []
-    change, slope = horner([remainder, *series[1:]], h)
+        return *_horner(series, h), []
+    change, slope = _horner([remainder, *series[1:]], h)
     end = series[0] + change
     rounded = end - series[0]
     return end, slope, [(series[0] - (end - rounded)) + (change - rounded)]
@@ -231,7 +230,7 @@ def _step(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
     program = StraightLine("_step", table)
     remainders = {axis: program.input(f"{axis}_remainder") for axis in "xy"} if structure.carries_remainders else {}
     x, y = structure.orbit(program, remainders)
-    h = step_size(program, x, y, structure)
+    h = _step_size(program, x, y, structure)
     x_end, px_end, x_remainder = _end_of_step(x, h, remainders.get("x"))
     y_end, py_end, y_remainder = _end_of_step(y, h, remainders.get("y"))
     hidden = flag_hidden_crossings(y, y_end, h) if structure.can_hide else program.constant(0)
@@ -256,8 +255,8 @@ def _fixed_step(structure: Structure, table: dict[Any, int]) -> GeneratedFunctio
     program = StraightLine("_fixed_step", table)
     x, y = structure.orbit(program)
     h = program.input("h")
-    x_end, px_end = horner(x, h)
-    y_end, py_end = horner(y, h)
+    x_end, px_end = _horner(x, h)
+    y_end, py_end = _horner(y, h)
     # The sums are left to the loop: within the program they make it up to a sixth slower.
     writes: dict[str, Value | str] = {
         "sums[0, i] +=": "weight*(x0*x0)",
@@ -289,7 +288,7 @@ def _tangent(structure: Structure, table: dict[Any, int]) -> GeneratedFunction:
         if structure.setting.rotates:
             add_coriolis(program, u, v)
     h = program.input("h")
-    (u_end, pu_end), (v_end, pv_end) = horner(u, h), horner(v, h)
+    (u_end, pu_end), (v_end, pv_end) = _horner(u, h), _horner(v, h)
     reads = {**_START, "u0": "wx[i]", "v0": "wy[i]", "u1": "wpx[i]", "v1": "wpy[i]", "h": "duration[i]"}
     writes = {"wx[i] =": u_end, "wy[i] =": v_end, "wpx[i] =": pu_end, "wpy[i] =": pv_end}
     return _lane_loop(program, "duration, x, y, px, py, wx, wy, wpx, wpy", reads, writes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,10 +15,8 @@ from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
 from app.server.admission import (
     LONGEST_LINK,
-    PICTURES_PER_ADDRESS,
     RETRY_SECONDS,
     admit,
-    admitted_picture,
     check_session,
     count_socket,
     forget_socket,
@@ -32,7 +29,7 @@ TOKEN = generate_jwt_token(generate_session_id())
 @pytest.fixture
 def state(monkeypatch: pytest.MonkeyPatch) -> ProcessState:
     """A server with three places, two of them for one address."""
-    settings = Settings(most_sessions=3, pages_per_address=2, link_pictures=3)
+    settings = Settings(most_sessions=3, pages_per_address=2)
     monkeypatch.setattr(process_state_module, "_started", state := ProcessState(settings))
     return state
 
@@ -115,37 +112,3 @@ def test_addresses_without_websockets_are_forgotten(state: ProcessState) -> None
     count_socket("192.0.2.1")
     forget_socket("192.0.2.1")
     assert state.sockets == {}
-
-
-def ask_for_picture(pictures: ExitStack, network: str) -> int:
-    """Status of a request for the picture of a link, which stays under way."""
-    try:
-        pictures.enter_context(admitted_picture(network))
-    except HTTPError as refusal:
-        return refusal.status_code
-    return 200
-
-
-def test_pictures_under_way_are_limited(state: ProcessState) -> None:
-    state.kernels_ready.set()
-    with ExitStack() as pictures:
-        assert [ask_for_picture(pictures, f"192.0.2.{number}") for number in range(4)] == [200, 200, 200, 503]
-    with ExitStack() as pictures:
-        assert ask_for_picture(pictures, "192.0.2.9") == 200
-
-
-def test_pictures_of_one_address_are_limited(state: ProcessState) -> None:
-    state.kernels_ready.set()
-    with ExitStack() as pictures:
-        assert [ask_for_picture(pictures, "192.0.2.1") for _ in range(PICTURES_PER_ADDRESS + 1)] == [
-            200
-        ] * PICTURES_PER_ADDRESS + [429]
-        assert ask_for_picture(pictures, "192.0.2.2") == 200
-
-
-def test_a_full_server_sends_no_picture(state: ProcessState) -> None:
-    state.kernels_ready.set()
-    state.sessions = lambda: [session_of(f"192.0.2.{number}") for number in range(3)]
-    with ExitStack() as pictures:
-        assert ask_for_picture(pictures, "192.0.2.9") == 503
-    assert state.metrics.registry.get_sample_value("escape_explorer_link_pictures_refused_total") == 1

@@ -23,7 +23,6 @@ import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from app.browser.module_files import ADDRESS
-from app.server.log_format import LONGEST_MESSAGE
 from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
 
@@ -31,6 +30,7 @@ ROOT = Path(__file__).parents[3]
 START_SECONDS = 240
 # Bounded orbits, which take longer than any test.
 LONG_MAP = {"case": "III", "h": "0.26", "resolution": "900", "t_max": "1e+06", "plane": "x_y"}
+MARKUP = {"V": '"><script>1</script>', "h": "0.25"}
 
 
 @dataclass
@@ -152,7 +152,7 @@ def test_routes_that_the_page_does_not_need_are_refused(path: str, served: Serve
     [
         ("/app", "elsewhere.example:80", 421),
         ("/", "elsewhere.example", 421),
-        ("/app/picture.png", "127.0.0.1.elsewhere.example", 421),
+        ("/app", "127.0.0.1.elsewhere.example", 421),
         ("/static/js/bokeh.min.js", "localhost:1", 200),
         # Probes ask for whatever host their network gives them.
         ("/liveness", "elsewhere.example", 200),
@@ -163,21 +163,6 @@ def test_other_hosts_are_refused(path: str, host: str, status: int, served: Serv
     assert served.metric("sessions_created_total") == 0
 
 
-@pytest.mark.parametrize("opening", ["exp(", "√(", "√", "("])
-@pytest.mark.parametrize("more", [{}, {"plane": "x,a=1:2"}], ids=["formula", "formula and plane"])
-def test_a_nested_formula_is_answered_with_few_lines_in_the_log(opening: str, more: dict[str, str], served: Served) -> None:
-    text = opening * 40 + "x" + ")" * 40 * opening.count("(")
-    written = served.log.stat().st_size
-    status, answer, _ = served.get(f"/app/picture.png?{urlencode({'case': 'typed', 'V': text, **more})}")
-    # The line of a request is written before the next one is answered.
-    served.get("/liveness")
-    lines = served.log.read_bytes()[written:].decode().splitlines()
-    assert (status, len(answer) < 300) == (400, True)
-    # Others say how late the event loop was.
-    assert len([line for line in lines if "loop_watch" not in line]) == 1
-    assert all(len(json.loads(line)["message"]) <= LONGEST_MESSAGE for line in lines)
-
-
 def test_token_of_another_server_is_refused(served: Served) -> None:
     token = generate_jwt_token(generate_session_id(), signed=False, extra_payload={"arguments": {"h": ["0" * 2**20]}})
     assert upgrade(served, token, f"http://localhost:{served.port}") == 403
@@ -185,7 +170,7 @@ def test_token_of_another_server_is_refused(served: Served) -> None:
 
 
 def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
-    opened = [served.get(f"/app?{urlencode(LONG_MAP)}") for _ in range(2)]
+    opened = [served.get(f"/app?{urlencode(link)}") for link in (LONG_MAP, MARKUP)]
     assert [status for status, _, _ in opened] == [200, 200]
     served.pages = [page for _, page, _ in opened]
     for _, page, headers in opened:
@@ -198,6 +183,11 @@ def test_full_server_refuses_pages_with_a_sentence(served: Served) -> None:
     assert served.get("/readiness")[0] == 503
     assert served.metric("sessions_open") == 2
     assert served.metric("pages_refused_total") == 1
+
+
+def test_texts_of_a_link_are_no_markup_in_the_head_of_its_page(served: Served) -> None:
+    assert "<script>1" not in served.pages[1]
+    assert 'property="og:description" content="Typed potential on the plane (x, px) at h = 0.25: ' in served.pages[1]
 
 
 def test_websocket_of_another_origin_is_refused(served: Served) -> None:

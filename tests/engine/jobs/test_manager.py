@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
 from weakref import ref
@@ -272,33 +272,6 @@ def test_orbits_do_not_wait_for_a_compilation() -> None:
     jobs.request(SEARCH, inbox.result, inbox.error)
     assert inbox.done.wait(30)
     end.set()
-
-
-def wait_for(begun: threading.Event, end: threading.Event) -> str:
-    """A call that lasts until `end` is set."""
-    begun.set()
-    end.wait(30)
-    return "waited"
-
-
-def call_and_use(begun: threading.Event, end: threading.Event, *, find_result: Callable[[Job[str]], str]) -> str:
-    return find_result(Job(wait_for, (begun, end), queue=Queue.LONG_CALL))
-
-
-def test_long_calls_that_an_idle_job_needs_are_idle_too() -> None:
-    jobs, begun = Jobs(threads=2), [threading.Event(), threading.Event()]
-    end, inboxes = threading.Event(), [Inbox(), Inbox()]
-    for event, inbox in zip(begun, inboxes, strict=True):
-        jobs.request(Job(call_and_use, (event, end), queue=Queue.IDLE), inbox.result, inbox.error, client=inbox)
-    wait_until(lambda: any(event.is_set() for event in begun))
-    # A page's call does not wait for them.
-    own = Inbox()
-    jobs.request(Job(str, ("own",), queue=Queue.LONG_CALL), own.result, own.error)
-    assert own.done.wait(30)
-    assert sum(event.is_set() for event in begun) == 1
-    end.set()
-    assert all(inbox.done.wait(30) for inbox in inboxes)
-    assert [inbox.results for inbox in inboxes] == [["waited"], ["waited"]]
 
 
 def test_one_compilation_runs_at_a_time() -> None:

@@ -155,39 +155,11 @@ def unsettled() -> Priority:
     return Priority.UNSETTLED
 
 
-def idle() -> Priority:
-    return Priority.IDLE
-
-
-def test_unsettled_calls_run_after_background_calls_and_idle_calls_last() -> None:
+def test_unsettled_calls_run_after_background_calls() -> None:
     recorder = Recorder()
-    last = recorder.submit(recorder.executor("a", idle), "a1", "a2")
-    others = recorder.submit(recorder.executor("b", unsettled), "b1", "b2")
-    background = recorder.submit(recorder.executor("c"), "c1", "c2")
-    assert recorder.run(*last, *others, *background) == ["c1", "c2", "b1", "b2", "a1", "a2"]
-
-
-def test_one_idle_call_runs_at_a_time() -> None:
-    scheduler, begun, end = FairScheduler(ThreadPoolExecutor(3)), threading.Semaphore(0), threading.Event()
-
-    def wait_for_end() -> None:
-        begun.release()
-        end.wait(SECONDS)
-
-    calls = [scheduler.executor(client, idle).submit(wait_for_end) for client in "ab"]
-    assert begun.acquire(timeout=SECONDS)
-    # The free threads run other calls.
-    scheduler.executor("c", unsettled).submit(int).result(SECONDS)
-    assert not begun.acquire(blocking=False)
-    end.set()
-    assert not wait(calls, SECONDS).not_done
-
-
-def test_idle_calls_do_not_count_as_waiting() -> None:
-    recorder = Recorder()
-    calls = recorder.submit(recorder.executor("a", idle), "a1", "a2")
-    assert recorder.scheduler.pending_calls == 0
-    recorder.run(*calls)
+    last = recorder.submit(recorder.executor("a", unsettled), "a1", "a2")
+    background = recorder.submit(recorder.executor("b"), "b1", "b2")
+    assert recorder.run(*last, *background) == ["b1", "b2", "a1", "a2"]
 
 
 def test_unsettled_calls_are_paused_with_background_calls() -> None:

@@ -1,8 +1,5 @@
 from __future__ import annotations
 
-import threading
-from concurrent.futures import CancelledError
-
 import numpy as np
 import pytest
 from scipy import optimize, stats
@@ -21,7 +18,6 @@ from engine import (
     find_lyapunov_orbits,
     fit_decay_laws,
 )
-from engine.execution import Execution
 from engine.exits.interior import find_outside_channels
 from engine.measures.decay_laws import DecayLaw, LawFit
 from engine.measures.escape_statistics import MAX_SURVIVAL_POINTS, compute_survival
@@ -63,7 +59,7 @@ def both(laws: DecayLaws) -> tuple[LawFit, LawFit]:
 
 
 def fit(times: np.ndarray, window: tuple[float, float] | None = WINDOW) -> DecayLaws:
-    return fit_decay_laws(statistics_of(times), T_HIGH, window=window, resamples=500)
+    return fit_decay_laws(statistics_of(times), T_HIGH, window=window)
 
 
 @pytest.fixture(scope="module")
@@ -150,8 +146,7 @@ def test_increasingly_frequent_escapes_have_a_negative_rate() -> None:
     times = exponential_times(2000, window=SHORT)
     forward, backward = (both(fit(sample, SHORT))[0] for sample in (times, sum(SHORT) - times))
     assert (backward.low, backward.rate, backward.high) == pytest.approx((-forward.high, -forward.rate, -forward.low), rel=0.05)
-    assert backward.distance == pytest.approx(forward.distance, rel=1e-9)
-    assert backward.p_value == forward.p_value
+    assert backward.p_value == pytest.approx(forward.p_value, rel=1e-6)
 
 
 def test_bounded_orbits_do_not_affect_the_rates() -> None:
@@ -192,8 +187,8 @@ def test_intervals_agree_with_the_bootstrap_of_scipy() -> None:
     expected = stats.bootstrap(
         (times,), lambda t, axis: 1.0 / np.log(t / T_LOW).mean(axis=axis), n_resamples=10_000, method="percentile", rng=1
     ).confidence_interval
-    fitted = both(fit_decay_laws(statistics_of(times), T_HIGH, window=WINDOW, resamples=10_000))[1]
-    assert (fitted.low, fitted.high) == pytest.approx((expected.low, expected.high), rel=3e-3)
+    fitted = both(fit_decay_laws(statistics_of(times), T_HIGH, window=WINDOW))[1]
+    assert (fitted.low, fitted.high) == pytest.approx((expected.low, expected.high), rel=1e-2)
 
 
 def test_p_values_of_the_true_law_are_uniform(many: tuple[float, list[LawFit]]) -> None:
@@ -203,15 +198,8 @@ def test_p_values_of_the_true_law_are_uniform(many: tuple[float, list[LawFit]]) 
 
 
 def test_p_values_of_large_samples_are_uniform() -> None:
-    """For samples larger than those of the parametric bootstrap."""
     p_values = [both(fit(exponential_times(5000, seed)))[0].p_value for seed in range(30)]
     assert np.mean(np.array(p_values) < 0.5) == pytest.approx(0.5, abs=0.3)
-
-
-def test_the_distance_is_the_kolmogorov_smirnov_distance(exponential: DecayLaws) -> None:
-    fitted, _ = both(exponential)
-    expected = stats.ks_1samp(exponential_times(5000), lambda t: 1.0 - np.exp(-fitted.rate * (t - T_LOW)), method="asymp")
-    assert fitted.distance == pytest.approx(expected.statistic, abs=1e-9)
 
 
 # The choice of the window.
@@ -260,6 +248,7 @@ def test_uniform_escapes_do_not_decay() -> None:
     fitted, _ = both(laws)
     assert fitted.low < 0.0 < fitted.high
     assert laws.preferred is None
+    assert laws.describe().startswith("These escapes do not show a decay (")
 
 
 def test_a_short_window_does_not_decide_between_the_laws() -> None:
@@ -307,7 +296,7 @@ def test_the_curve_of_a_law_agrees_with_the_survival(name: str, times: np.ndarra
     laws = fit_decay_laws(statistics_of(times, bounded=5000), T_HIGH, window=WINDOW)
     fitted: LawFit = getattr(laws, name)
     inside = (laws.times >= T_LOW) & (laws.times <= T_HIGH)
-    assert np.max(np.abs(fitted.curve(laws.times[inside]) - laws.survival[inside])) <= 0.5 * fitted.distance + 1e-3
+    assert np.max(np.abs(fitted.curve(laws.times[inside]) - laws.survival[inside])) <= 0.01
     assert fitted.curve([T_LOW, T_HIGH]).tolist() == [fitted.survival_low, fitted.survival_high] == [1.0, 0.5]
     assert np.isnan(fitted.curve([0.9 * T_LOW, 1.1 * T_HIGH])).all()
 
@@ -323,8 +312,6 @@ def test_the_curve_of_a_law_agrees_with_the_survival(name: str, times: np.ndarra
         ({"window": (5.0, 5.0)}, r"window=\(5.0, 5.0\)"),
         ({"window": (1.0, 2e4)}, "t_max=10000"),
         ({"window": (float("nan"), 5.0)}, "window="),
-        ({"resamples": 499}, "resamples=499"),
-        ({"seed": -1}, "seed=-1"),
     ],
 )
 def test_parameters_out_of_range_are_named(changed: dict[str, object], message: str) -> None:
@@ -335,8 +322,8 @@ def test_parameters_out_of_range_are_named(changed: dict[str, object], message: 
 
 def test_t_max_is_that_of_the_map() -> None:
     statistics = compute_statistics(compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.6, (60, 60), t_max=50.0)))
-    assert fit_decay_laws(statistics, resamples=500).describe() == fit_decay_laws(statistics, 50.0, resamples=500).describe()
-    assert fit_decay_laws(statistics, 20.0, resamples=500).t_high == 20.0
+    assert fit_decay_laws(statistics).describe() == fit_decay_laws(statistics, 50.0).describe()
+    assert fit_decay_laws(statistics, 20.0).t_high == 20.0
     with pytest.raises(ValueError, match=r"t_max=51: must be at most 50, the integration time of the statistics"):
         fit_decay_laws(statistics, 51.0)
 
@@ -344,13 +331,6 @@ def test_t_max_is_that_of_the_map() -> None:
 def test_statistics_of_unknown_duration_need_a_t_max() -> None:
     with pytest.raises(ValueError, match=r"t_max=inf: must be above 0 and at most"):
         fit_decay_laws(statistics_of(exponential_times(200)))
-
-
-def test_a_cancelled_fit_raises() -> None:
-    cancel = threading.Event()
-    cancel.set()
-    with pytest.raises(CancelledError):
-        fit_decay_laws(statistics_of(exponential_times(500)), T_HIGH, execution=Execution(cancel=cancel))
 
 
 # The dynamics.
@@ -395,7 +375,7 @@ def test_the_initial_decay_is_the_flux_through_the_exits() -> None:
 
 
 def test_rates_of_shifted_grids_scatter_like_independent_samples() -> None:
-    """Rates from sixteen grids, shifted by fractions of a pixel, scatter as much as the bootstrap interval of one of them."""
+    """Rates from sixteen grids, shifted by fractions of a pixel, scatter as much as the interval of one of them."""
     whole, side, rng = MapSpec(CASES["II"], Plane.X_PX, 0.3).find_window(), 80, np.random.default_rng(7)
     pixel = (whole.x_high - whole.x_low) / side
     fits = []

@@ -245,7 +245,7 @@ def test_orbits_that_are_no_map_are_counted() -> None:
     assert counted.channel_counts == tuple(int((outcomes.fate == channel).sum()) for channel in range(1, 5))
     assert (counted.starts, counted.t_max) == (500, 50.0)
     np.testing.assert_array_equal(counted.escape_times, outcomes.escape_time[outcomes.fate > 0])
-    assert fit_decay_laws(outcomes, resamples=500).t_high == 50.0
+    assert fit_decay_laws(outcomes).t_high == 50.0
 
 
 def test_orbits_that_are_no_map_have_no_window() -> None:

@@ -55,7 +55,7 @@ RESULTS: dict[str, Callable[[], Result | None]] = {
     "digits": lambda: compute_birkhoff_digits(POTENTIAL, (0.1, 0.0, 0.05, 0.3), 2e3),
     "divergent start": lambda: find_divergent_start(POTENTIAL, Plane.X_PX, 0.2, 0.1, 0.0, 50.0),
     "statistics": lambda: compute_statistics(compute_map(SPEC)),
-    "decay laws": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC)), resamples=500),
+    "decay laws": lambda: fit_decay_laws(compute_statistics(compute_map(SPEC))),
     "entropy": lambda: compute_basin_entropy(compute_map(SPEC)),
     "Wada test": lambda: compute_wada_test(compute_map(SPEC)),
 }

@@ -37,7 +37,7 @@ RESULTS: dict[str, Callable[[], Result]] = {
     "manifolds": lambda: find_stable_manifolds(III, 0.36, images=1),
     "review": lambda: review_potential(III),
     "statistics": lambda: compute_statistics(compute_map(SPEC)),
-    "decay laws": lambda: fit_decay_laws(compute_map(SPEC), resamples=500),
+    "decay laws": lambda: fit_decay_laws(compute_map(SPEC)),
     "outcomes": lambda: classify_orbits(III, 0.36, sample_starts(III, 0.36, 5), t_max=20.0),
 }
 
