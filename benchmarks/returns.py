@@ -24,7 +24,7 @@ SHARES = (0.1, 0.5, 0.9)
 
 def count_returns(potential: Potential, orbit: LyapunovOrbit, states: np.ndarray) -> int:
     """Of states (n, 4) on an exit, those that come back."""
-    times = np.linspace(0.0, AFTER * potential.exact_time_unit, TIMES)
+    times = np.linspace(0.0, AFTER * potential.well.exact_time_unit, TIMES)
     saddle = potential.saddles[orbit.channel - 1]
     width = np.ptp(np.column_stack([orbit.x, orbit.y]) @ saddle) / np.hypot(*saddle)
     # Without exits: collisions and a large escape radius only.
@@ -43,11 +43,11 @@ def count_returns(potential: Potential, orbit: LyapunovOrbit, states: np.ndarray
 def exit_states(potential: Potential, energy: float) -> list[tuple[LyapunovOrbit, np.ndarray]]:
     """For each exit its orbit and the states (n, 4) of random orbits that leave through it."""
     starts = sample_starts(potential, energy, STARTS, seed=1)
-    outcomes = classify_orbits(potential, energy, starts, UNTIL * potential.exact_time_unit)
+    outcomes = classify_orbits(potential, energy, starts, UNTIL * potential.well.exact_time_unit)
     found = []
     for orbit in find_lyapunov_orbits(potential, energy):
         leaving = np.flatnonzero(outcomes.fate == orbit.channel)
-        just_before = outcomes.escape_time[leaving, None] - 1e-9 * potential.exact_time_unit
+        just_before = outcomes.escape_time[leaving, None] - 1e-9 * potential.well.exact_time_unit
         paths = sample_orbits(potential, starts[leaving], just_before)
         found.append((orbit, np.column_stack([paths.x[:, 0], paths.y[:, 0], paths.px[:, 0], paths.py[:, 0]])))
     return found

@@ -120,7 +120,9 @@ def draw_shares(
         if code == Fate.BOUNDED:
             line: dict[str, Any] = {"color": PAPER.bounded, "linewidth": 2.2, "label": PAPER.outcomes[Fate.BOUNDED].label}
         else:
-            dashed = potential.mirror_in_x and code <= len(potential.outcomes) and potential.mirror_channels[code] < code
+            dashed = (
+                potential.well.mirror_in_x and code <= len(potential.outcomes) and potential.well.mirror_channels[code] < code
+            )
             entry = PAPER.entry(code, outcomes)
             line = {"color": entry.colour, "linewidth": 1.7, "label": entry.label}
             line |= {"linestyle": _DASHED, "zorder": 3} if dashed else {}

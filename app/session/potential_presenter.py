@@ -156,9 +156,9 @@ class PotentialPresenter:
         if before.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
             # Without exits there is no depth.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
-        depth = before.review.escape_energy - before.potential.bottom
-        multiple = (self._state.energy - before.potential.bottom) / depth
-        energy = round(float(reviewed.potential.energy_at(multiple)), energies.decimals + 1)
+        depth = before.review.escape_energy - before.potential.well.bottom
+        multiple = (self._state.energy - before.potential.well.bottom) / depth
+        energy = round(float(reviewed.potential.well.energy_at(multiple)), energies.decimals + 1)
         return energy if energy < reviewed.review.highest_energy else None
 
     def _follow(self) -> None:

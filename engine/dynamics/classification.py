@@ -109,7 +109,7 @@ def classify_orbits(
     ([1, 1, 1], [45.7, 2.03, 1.82])
     """
     states = _checked_states(potential, energy, states)
-    t_max = checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
+    t_max = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
     units, well = potential.units, potential.in_well_units
     well_energy = energy / units.energy
     curves = exit_curves(well, well_energy)[None]

@@ -96,8 +96,8 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
             curves[energy] = _curves(potential, energy)
         return curves[energy]
 
-    highest = min([highest, *(merger.energy for merger in potential.channel_mergers)])
-    saddles = enumerate(potential.saddle_energies.tolist(), start=1)
+    highest = min([highest, *(merger.energy for merger in potential.well.channel_mergers)])
+    saddles = enumerate(potential.well.saddle_energies.tolist(), start=1)
     return tuple(_tabulate(curves_at, channel, saddle, highest) for channel, saddle in saddles)
 
 

@@ -52,7 +52,7 @@ def find_outside_starts(
     over_saddles = np.ascontiguousarray(curves[:, : potential.channels])
     if (over_saddles[..., events.REACH] >= 0.0).any():
         nearest = _finder(potential.form, potential)(x, y, energy, over_saddles, curve_row)
-        outside = np.take_along_axis(potential.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
+        outside = np.take_along_axis(potential.well.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
     if potential.escape_radius is None and not potential.centres:
         return outside
     allowed = potential.value(x, y) <= energy

@@ -51,7 +51,7 @@ class DeepStarts:
 
     def __init__(self, spec: MapSpec) -> None:
         potential, plane = spec.potential, spec.plane
-        if not isinstance(potential.form, PolynomialForm) or potential.setting.needs_whole_steps:
+        if not isinstance(potential.form, PolynomialForm) or potential.well.setting.needs_whole_steps:
             raise ValueError(f"potential={potential.name}: must be a polynomial, at rest and without centres, in a deep map")
         if plane.decided not in MOMENTA or not all(plane.free_axes):
             raise ValueError(f"plane={plane.title}: must have no axis but x, y, px, py or a direction in these, in a deep map")

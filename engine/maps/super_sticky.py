@@ -154,7 +154,9 @@ def _search(escape_map: EscapeMap, regularity: RegularityMap, t_max: float, exec
     if mirror.symmetric:
         firsts = np.flatnonzero(pixels < partner)
         batch.copy_to_images(
-            firsts, np.searchsorted(pixels, partner[firsts]), spec.potential.mirror_numbers(spec.energies(x, ordinate)[firsts])
+            firsts,
+            np.searchsorted(pixels, partner[firsts]),
+            spec.potential.well.mirror_numbers(spec.energies(x, ordinate)[firsts]),
         )
     outcomes = collect_outcomes(spec.potential, spec.energies(x, ordinate), batch)
     return SuperStickySearch(
@@ -199,5 +201,5 @@ def _check(escape_map: EscapeMap, regularity: RegularityMap, t_max: float) -> No
         raise ValueError(f"escape_map: is on {escape_map.spec.plane.title}; must be on a slice without an axis h")
     if regularity.spec != escape_map.spec or not regularity.complete:
         raise ValueError("regularity: must be complete and of the same map")
-    if checked_t_max(t_max, unit=lambda: escape_map.spec.potential.exact_time_unit) < escape_map.spec.t_max:
+    if checked_t_max(t_max, unit=lambda: escape_map.spec.potential.well.exact_time_unit) < escape_map.spec.t_max:
         raise ValueError(f"t_max={t_max}: must be at least the t_max of the map, {escape_map.spec.t_max:g}")

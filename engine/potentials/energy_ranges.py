@@ -61,12 +61,15 @@ def energy_range(potential: Potential) -> EnergyRange:
     """The range in multiples of the depth of the well, which is above 0; with an escape radius around the critical energies."""
     if potential.escape_radius is not None:
         return _range_around_critical_energies(potential)
-    escape, depth = potential.escape_energy, potential.escape_energy - potential.bottom
+    escape, depth = potential.escape_energy, potential.escape_energy - potential.well.bottom
     span = max(_BELOW_HIGHEST * (review_potential(potential).highest_energy - escape), _NARROWEST * depth)
-    first, high = min(potential.energy_at(_FIRST), escape + 0.5 * span), min(potential.energy_at(HIGHEST_SHOWN), escape + span)
+    first, high = (
+        min(potential.well.energy_at(_FIRST), escape + 0.5 * span),
+        min(potential.well.energy_at(HIGHEST_SHOWN), escape + span),
+    )
     # Enough decimals to keep all of these distinct.
     decimals = max(2 - math.floor(math.log10(depth)), 1 - math.floor(math.log10(high - escape)))
-    low, first, high = (round(energy, decimals) for energy in (potential.energy_at(_LOW), first, high))
+    low, first, high = (round(energy, decimals) for energy in (potential.well.energy_at(_LOW), first, high))
     return EnergyRange(low, high, (), first, decimals)
 
 
@@ -83,12 +86,12 @@ def critical_energies(potential: Potential) -> tuple[float, ...]:
 
 def depth_levels(potential: Potential, multiples: Sequence[float]) -> list[float]:
     """Energies at multiples of the depth of the well; none with an escape radius, where no well has a depth."""
-    return [potential.energy_at(multiple) for multiple in multiples] if potential.escape_radius is None else []
+    return [potential.well.energy_at(multiple) for multiple in multiples] if potential.escape_radius is None else []
 
 
 def _range_around_critical_energies(potential: Potential) -> EnergyRange:
     """From below the lowest critical point to above the highest one, where all of the plane is allowed."""
-    energies = np.array([point.energy for point in review_potential(potential).critical_points] or [potential.bottom])
+    energies = np.array([point.energy for point in review_potential(potential).critical_points] or [potential.well.bottom])
     span = max(float(np.ptp(energies)), _LEAST_SPREAD * float(np.abs(energies).max()), _NARROWEST * potential.units.energy)
     decimals = 2 - math.floor(math.log10(span))
     ends = energies.min() - 0.5 * span, energies.max() + 0.5 * span, np.median(energies)

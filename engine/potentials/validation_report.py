@@ -16,8 +16,9 @@ from engine.potentials.forms.critical_points import NotIsolatedError
 from engine.potentials.forms.exit_saddles import DescentError
 from engine.potentials.hill_region import is_open_below, is_open_without_saddle
 from engine.potentials.merged_channels import name_channels
-from engine.potentials.potential import EQUAL_ENERGY_TOLERANCE, Potential
+from engine.potentials.potential import Potential
 from engine.potentials.singularity_check import singularity_refusal
+from engine.potentials.well import EQUAL_ENERGY_TOLERANCE
 from engine.results.result import Result
 from engine.validation import checks_types
 
@@ -134,7 +135,7 @@ def review_potential(potential: Potential) -> PotentialReview:
         critical_points=points,
         escape_energy=potential.escape_energy if points or potential.escape_radius is not None else float("inf"),
         channels=potential.channels if points else 0,
-        highest_energy=potential.channel_mergers[0].energy if points and potential.channel_mergers else float("inf"),
+        highest_energy=potential.well.channel_mergers[0].energy if points and potential.well.channel_mergers else float("inf"),
         mirror_in_x=potential.form.mirror_in_x,
         mirror_in_y=potential.form.mirror_in_y,
         rotations=potential.form.count_rotations(),
@@ -152,7 +153,7 @@ def _critical_points_or_refusal(potential: Potential) -> tuple[tuple[CriticalPoi
         return _known_critical_points(potential), None
     try:
         # Both follow lines of steepest descent or ascent, which may fail.
-        points, _ = _critical_points(potential), potential.channel_mergers
+        points, _ = _critical_points(potential), potential.well.channel_mergers
     except DescentError as error:
         return (), f"Which saddles are exits of the well is not known. {error}"
     except UndecidedError as error:
@@ -177,7 +178,7 @@ def _known_critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
 def _critical_points(potential: Potential) -> tuple[CriticalPoint, ...]:
     points = [
         CriticalPoint(x, y, _kind(potential, x, y, index), float(potential.value(x, y)), _channel(potential, x, y))
-        for (x, y), index in zip(potential.critical_points.tolist(), potential.critical_indices.tolist(), strict=True)
+        for (x, y), index in zip(potential.critical_points.tolist(), potential.well.critical_indices.tolist(), strict=True)
     ]
     return tuple(sorted(points, key=lambda point: math.hypot(point.x, point.y)))
 
@@ -263,7 +264,7 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     remarks = [_MOVED.format(*potential.origin)] if any(potential.origin) else []
     if potential.escape_radius is not None:
         return tuple(remarks)
-    energies = potential.saddle_energies
+    energies = potential.well.saddle_energies
     if np.ptp(energies) > EQUAL_ENERGY_TOLERANCE * potential.units.energy:
         order = np.argsort(energies, kind="stable")
         listed = ", ".join(f"{k + 1} above {energies[k]:.6g}" for k in order)
@@ -275,8 +276,8 @@ def _remarks(potential: Potential, points: tuple[CriticalPoint, ...]) -> tuple[s
     if wells:
         places = ", ".join(f"({point.x:.6g}, {point.y:.6g})" for point in wells)
         remarks.append(f"There are other wells, at {places}: an orbit that enters one counts as escaped but may return.")
-    if potential.channel_mergers:
-        lowest = potential.channel_mergers[0]
+    if potential.well.channel_mergers:
+        lowest = potential.well.channel_mergers[0]
         merged = name_channels(lowest.channels)
         remarks.append(f"The exits are separate up to h = {lowest.energy:.6g}; above it some are one exit, {merged}.")
     if not potential.form.mirror_in_y:

@@ -111,7 +111,7 @@ def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place:
     points[place] = np.zeros(_LINE_POINTS)
     states = line.states(potential, common_energy(energy), *points)
     states = states[np.isfinite(states).all(axis=1)]
-    symmetries = ((potential.mirror_in_x, [0, 2]), (potential.mirror_in_y, [1, 3]))
+    symmetries = ((potential.well.mirror_in_x, [0, 2]), (potential.well.mirror_in_y, [1, 3]))
     return bool(states.size) and any(symmetric and not states[:, pair].any() for symmetric, pair in symmetries)
 
 
@@ -144,7 +144,7 @@ def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Windo
 
 def _exact_unit(axis: Axis, potential: Potential) -> float:
     """The unit of an axis with the exact unit of time, so that the shape of a square does not depend on the user's units."""
-    units = WellUnits(potential.units.length, potential.exact_time_unit)
+    units = WellUnits(potential.units.length, potential.well.exact_time_unit)
     if isinstance(axis, Direction):
         return 1.0 / float(np.hypot.reduce([value / c.unit(units) for c, value in axis.components.items()]))
     return axis.unit(units)

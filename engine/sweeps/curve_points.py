@@ -132,7 +132,7 @@ def compute_curve_point(
     if frame is None:
         frame = run_map(spec.map_spec, execution.part(0, 2))
     point = _evaluate_map(spec, require_complete(frame), execution)
-    open_channels = spec.map_spec.potential.open_channels(spec.map_spec.common_energy or 0.0)
+    open_channels = spec.map_spec.potential.well.open_channels(spec.map_spec.common_energy or 0.0)
     if not (spec.exponent and open_channels):
         return point
     found = compute_uncertainty_exponent(spec.map_spec, work=_WORK, execution=execution.part(1, 2))

@@ -122,7 +122,7 @@ def find_divergent_start(
     h = _checked_energy(plane, energy, x, ordinate)
     if plane.parameter is not None:
         potential, plane = plane.potential_at(potential, x, ordinate), plane.line((x, ordinate)[plane.parameter_axis or 0])
-    t_max, units = checked_t_max(t_max, unit=lambda: potential.exact_time_unit), potential.units
+    t_max, units = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit), potential.units
     nearest = _MIN_DISTANCE * units.length
     furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
     if not furthest > nearest:

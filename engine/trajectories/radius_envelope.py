@@ -85,7 +85,7 @@ def compute_radius_envelope(
     ValueError
         If a parameter is out of range, or the start lies outside.
     """
-    start, t_max = checked_state("state", state), checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
+    start, t_max = checked_state("state", state), checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
     units, well = potential.units, potential.in_well_units
     start, t_max = start / units.state, t_max / units.time

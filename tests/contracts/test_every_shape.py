@@ -50,7 +50,7 @@ def test_descent_from_a_saddle_reaches_the_origin_on_one_side_only(potential: Po
     for channel, saddle in enumerate(potential.saddles, start=1):
         ends = []
         for side in (-3.0, 3.0):
-            place = saddle + side * stride * potential.outward_directions[channel - 1]
+            place = saddle + side * stride * potential.well.outward_directions[channel - 1]
             for _ in range(400):
                 slope = np.array(potential.gradient(*place))
                 place = place - stride * slope / np.hypot(*slope)

@@ -161,7 +161,7 @@ def test_an_orbit_in_a_frame_that_rotates_the_other_way_is_the_mirror_image() ->
 
 def test_no_orbit_is_found_where_the_family_cannot_be_followed() -> None:
     well = three_body(EARTH_MOON).in_well_units
-    assert find_periodic_orbit(well, (well.saddle_energies[0] + 20.0), L2) is None
+    assert find_periodic_orbit(well, (well.well.saddle_energies[0] + 20.0), L2) is None
 
 
 def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:

@@ -73,7 +73,7 @@ def test_sum_of_indices_is_the_winding_number(seed: int, degree: int) -> None:
 
 @pytest.mark.parametrize("n", [3, 5, 8, 9, 10, 12])
 def test_a_family_with_n_exits_has_a_saddle_for_each(n: int) -> None:
-    indices = channel_family(n).critical_indices
+    indices = channel_family(n).well.critical_indices
     assert (np.count_nonzero(indices == -1), indices.sum()) == (n, 1 - n)
 
 

@@ -24,7 +24,7 @@ NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4
 def exits(potential: Potential) -> np.ndarray:
     """(n, 2) the saddles that lead out."""
     points = potential.critical_points
-    return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.critical_indices)]
+    return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.well.critical_indices)]
 
 
 def test_a_saddle_with_the_origin_below_on_both_sides_is_no_exit() -> None:
@@ -38,7 +38,7 @@ def test_a_saddle_between_two_other_wells_is_no_exit() -> None:
 def test_the_hill_lies_beside_the_saddle_behind_it() -> None:
     points = RING.critical_points
     hill, saddle = np.argsort(points[:, 0])[1:]
-    beside = find_maxima_beside(RING.form.downhill, RING.hessian, points, RING.critical_indices, np.array([saddle]))
+    beside = find_maxima_beside(RING.form.downhill, RING.hessian, points, RING.well.critical_indices, np.array([saddle]))
     assert np.flatnonzero(beside).tolist() == [hill]
 
 
