@@ -17,7 +17,7 @@ from numba import njit
 from benchmarks.throughput import multiplications
 from engine import CASES, Plane, Potential, start_states
 from engine.exits.exit_rows import closed_exits, exit_gates
-from engine.potentials.catalogue import channel_family
+from engine.potentials.known_potentials import channel_family
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES
 from engine.taylor.kernels.events import NOT_COMPUTED

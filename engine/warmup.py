@@ -23,8 +23,8 @@ from engine.maps.compute import run_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.compiled import kernels_of
+from engine.potentials.known_potentials import POTENTIALS
 from engine.potentials.potential import Potential
 from engine.slices.section import SECTION
 from engine.taylor.bound_kernels import is_generated

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine import PotentialReview
-from engine.potentials.energy_ranges import HIGHEST_SHOWN
+from engine.potentials.review.energy_ranges import HIGHEST_SHOWN
 from engine.validation import LARGEST_NUMBER
 from plots.palette import MOST_CHANNELS, MOST_COLLISIONS
 

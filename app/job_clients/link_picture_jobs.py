@@ -10,11 +10,12 @@ from functools import partial
 from typing import Any
 
 from app.state.link_picture import SIDE, LinkPicture
-from app.state.system_review import SystemReview, review_job
+from app.state.system_review import review_job
 from engine import EscapeMap, Execution
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.maps.compute import run_map
+from engine.potentials.review.potential_review import SystemReview
 from engine.warmup import is_ready_for_maps
 from plots.palette import PALETTES
 

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.state.permalink import fit_to_system, linked_system, refused_link
-from app.state.system_review import SystemReview
+from app.state.system_review import map_energy
 from app.state.view_state import ViewState
 from engine import MapSpec, Slice, System, Window
 from engine.potentials.formulas.formula_parser import formula_letters
+from engine.potentials.review.potential_review import SystemReview
 from engine.potentials.system import TYPED
 from engine.results.wording import format_number
+from plots.accepted_potentials import refusal
 
 LONGEST_FORMULA = 80
 """Largest number of characters of a formula in a title."""
@@ -74,14 +76,15 @@ class LinkPicture:
         reviewed
             The review of the system.
         """
-        if reviewed.problem is not None:
-            raise ValueError(refused_link(reviewed.problem))
+        problem = refusal(reviewed)
+        if problem is not None:
+            raise ValueError(refused_link(problem))
         shown, problems = fit_to_system({} if self.energy is None else {"energy": self.energy}, reviewed)
         if problems:
             raise ValueError(" ".join(problems))
         potential = reviewed.potential
         t_max = min(self.t_max, LONGEST_TIME * potential.units.time)
-        return MapSpec(potential, self.plane, reviewed.energy_on(self.plane, shown["energy"]), (SIDE, SIDE), self.window, t_max)
+        return MapSpec(potential, self.plane, map_energy(reviewed, self.plane, shown["energy"]), (SIDE, SIDE), self.window, t_max)
 
 
 def picture_of(values: Mapping[str, Any]) -> LinkPicture:

@@ -10,9 +10,9 @@ from numpy.polynomial import chebyshev
 from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel, disc, escape_circle
 from engine.exits.lyapunov_orbits import UndefinedExitsError, find_lyapunov_orbits
-from engine.potentials.hill_region import check_closed_well
 from engine.potentials.potential import Potential
-from engine.potentials.singularity_check import check_defined
+from engine.potentials.review.hill_region import check_closed_well
+from engine.potentials.review.singularity_check import check_defined
 from engine.potentials.well_units import nearest_power_of_two
 from engine.taylor.kernels import events
 

@@ -17,7 +17,6 @@ from engine.expressions.nodes import Expression
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.form import Form
 from engine.potentials.forms.polynomial_form import PolynomialForm, checked_form
-from engine.potentials.names import ByName
 from engine.potentials.outcomes import Centre, Outcome, checked_radius
 from engine.potentials.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.potentials.well import Well
@@ -335,16 +334,3 @@ class Potential(Result):
         changed = ", ".join(f"{symbol}={value:g}" for symbol, value in symbols if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
         return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)
-
-
-_HARMONIC = ((2, 0, 0.5), (0, 2, 0.5))
-
-CASES: Mapping[str, Potential] = ByName(
-    "case",
-    {
-        "I": Potential("I", (*_HARMONIC, (1, 2, -1.0))),
-        "II": Potential("II", (*_HARMONIC, (3, 0, -1.0 / 3.0), (1, 2, 1.0))),
-        "III": Potential("III", (*_HARMONIC, (2, 2, -1.0))),
-    },
-)
-"""The three cases of Zotos (2014): V = (x² + y²)/2 + V1 with V1 = −x y², −x (x²/3 − y²) and −x² y²."""

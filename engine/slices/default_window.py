@@ -9,7 +9,7 @@ import numpy as np
 from engine.exits.interior import find_outside_channels
 from engine.exits.lyapunov_orbits import find_lyapunov_orbits
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import review_potential
+from engine.potentials.review.potential_review import review_potential
 from engine.potentials.well_units import WellUnits
 from engine.slices.axes import ANGLES, MOMENTA, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy

@@ -9,7 +9,7 @@ import sympy
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import PointKind, review_potential
+from engine.potentials.review.potential_review import PointKind, review_potential
 from tests.contracts.potentials import each_potential
 
 X, Y = sympy.symbols("x y")

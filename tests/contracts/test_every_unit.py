@@ -44,7 +44,7 @@ from engine import (
     trace_zero_velocity_curve,
 )
 from engine.maps.super_sticky import find_super_sticky_orbits
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.potentials.well_units import WellUnits
 from engine.sweeps.curve_points import CurvePointSpec, compute_curve_point
 from engine.trajectories.radius_envelope import compute_radius_envelope

@@ -8,9 +8,9 @@ import pytest
 
 from app.state.link_picture import LONGEST_TIME, SIDE, LinkPicture, picture_of
 from app.state.permalink import read_link
-from app.state.system_review import review_system
 from engine import CASES, MapSpec, Plane
-from engine.potentials.energy_ranges import PAPER_ENERGIES
+from engine.potentials.catalogue import PAPER_ENERGIES
+from engine.potentials.review.potential_review import review_system
 
 
 def picture(link: str) -> LinkPicture:
@@ -35,7 +35,7 @@ def test_a_link_without_energy_shows_the_first_one_of_its_system() -> None:
 
 def test_an_axis_of_energies_has_those_of_the_page() -> None:
     low, high = spec("case=II&plane=x_h").energy
-    assert (low, high) == pytest.approx((1 / 6, review_system(picture("case=II").system).shown_energies.high))
+    assert (low, high) == pytest.approx((1 / 6, review_system(picture("case=II").system).energies.high))
 
 
 @pytest.mark.parametrize(

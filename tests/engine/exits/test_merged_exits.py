@@ -18,7 +18,7 @@ from engine import (
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.exits.exit_tables import tabulate_exits
 from engine.exits.interior import find_outside_channels
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.slices.parameter_family import Member
 from engine.taylor.kernels.events import crossed_exit, exit_distance
 from tests.peers.dop853 import equations

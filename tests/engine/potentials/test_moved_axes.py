@@ -7,7 +7,7 @@ import pytest
 
 from engine import MapSpec, Plane, compute_map, parse_formula, review_potential
 from engine.potentials.formulas.formula_tokens import FormulaError
-from engine.potentials.potential import CASES
+from engine.potentials.known_potentials import CASES
 from engine.potentials.stored_potential import describe_potential, read_potential
 
 CALDERA = "5(x² + y²) + 3y + 0.3(x⁴ + y⁴ − 6x²y²)"

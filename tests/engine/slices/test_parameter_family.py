@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, ParameterAxis, Potential, System
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.slices import parameter_family
 from engine.slices.parameter_family import ManyExitsError, ParameterFamily
 

@@ -9,7 +9,7 @@ from engine.potentials.forms import exit_saddles
 from engine.potentials.forms.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import review_potential
+from engine.potentials.review.potential_review import review_potential
 from tests.fuzz.test_random_wells import random_well
 
 # A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.

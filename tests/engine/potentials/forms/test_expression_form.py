@@ -8,7 +8,6 @@ import pytest
 from engine import CASES, Fate, Plane, Potential, classify_orbits, compute_map, parse_formula, review_potential, start_states
 from engine.expressions.nodes import from_terms
 from engine.maps.spec import MapSpec
-from engine.potentials.energy_ranges import energy_range
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.formulas.formula_writer import write_formula
 
@@ -92,7 +91,7 @@ def test_the_name_of_a_typed_potential_is_its_formula() -> None:
 
 
 def test_a_constant_shifts_the_range_of_energies() -> None:
-    plain, shifted = (energy_range(parse_formula(f"½r² − 2x²y exp(−y²){constant}")) for constant in ("", " − 1"))
+    plain, shifted = (review_potential(parse_formula(f"½r² − 2x²y exp(−y²){constant}")).energies for constant in ("", " − 1"))
     for name in ("low", "first", "high"):
         assert getattr(shifted, name) + 1.0 == pytest.approx(getattr(plain, name), abs=1e-12)
     assert shifted.decimals == plain.decimals
