@@ -6,7 +6,6 @@ import functools
 
 import numpy as np
 
-from engine.potentials.forms.stationary_points import SINGULAR_RATIO
 from engine.potentials.potential import Potential
 
 # The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
@@ -30,18 +29,12 @@ def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
 def check_closed_well(potential: Potential) -> None:
     """Raise ValueError unless a potential without exits has a well at the origin that no orbit leaves."""
     points = potential.critical_points
-    at_rest = bool((points == 0.0).all(axis=1).any())
-    if not (at_rest and potential.well.is_minimum and not _is_flat(potential)) or is_open_without_saddle(potential, points):
+    is_regular = (points == 0.0).all(axis=1) & (potential.well.critical_indices > 0.0)
+    if not (is_regular.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
         raise ValueError(
             f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
             "escape; review_potential says more"
         )
-
-
-def _is_flat(potential: Potential) -> bool:
-    """Whether the well at the origin is degenerate."""
-    lowest, highest = np.linalg.eigvalsh(potential.hessian_matrix(0.0, 0.0))
-    return bool(lowest <= SINGULAR_RATIO * highest)
 
 
 def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:

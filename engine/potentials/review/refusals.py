@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from engine.potentials.forms.common_roots import UndecidedError
-from engine.potentials.forms.critical_points import NotIsolatedError
-from engine.potentials.forms.exit_saddles import DescentError
+from engine.potentials.forms.point_searches import DescentError, NotIsolatedError, UndecidedError
 from engine.potentials.potential import Potential
 from engine.potentials.review.classified_points import (
     CriticalPoint,

@@ -8,7 +8,8 @@ import sympy
 
 from engine import Potential, channel_family, parse_formula, review_potential
 from engine.polynomials import Terms
-from engine.potentials.forms.critical_points import NotIsolatedError, find_critical_points
+from engine.potentials.forms.critical_points import find_critical_points
+from engine.potentials.forms.point_searches import NotIsolatedError
 from tests.fuzz.test_random_wells import random_well
 
 X, Y = sympy.symbols("x y")

@@ -7,9 +7,8 @@ import pytest
 
 from engine import CASES, parse_formula, review_potential
 from engine.expressions.nodes import from_terms
-from engine.potentials.forms.common_roots import UndecidedError
-from engine.potentials.forms.critical_points import NotIsolatedError
 from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.point_searches import NotIsolatedError, UndecidedError
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.forms.stationary_points import MOST_POINTS
 from engine.potentials.potential import Potential
