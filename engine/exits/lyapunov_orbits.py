@@ -178,13 +178,18 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     ()
     """
     units = potential.units
-    scaled = checked_number("energy", energy) / units.energy
-    try:
-        orbits = _find_orbits(potential.in_well_units, scaled)
-    except _SearchError as error:
-        stated = scaled * potential.in_well_units.well.stated_units.energy
-        raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
+    orbits = find_orbits_in_well_units(potential.in_well_units, checked_number("energy", energy) / units.energy)
     return tuple(replace(_restored(orbit, units), potential=potential) for orbit in orbits)
+
+
+def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """As `find_lyapunov_orbits`, of a potential in units of its well; errors state the energy in those in which it was given."""
+    try:
+        orbits = _find_orbits(potential, energy)
+    except _SearchError as error:
+        stated = energy * potential.well.stated_units.energy
+        raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
+    return tuple(replace(orbit, potential=potential) for orbit in orbits)
 
 
 def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:

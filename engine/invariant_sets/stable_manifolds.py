@@ -18,7 +18,7 @@ from typing import ClassVar
 import numpy as np
 
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import LENGTH, MOMENTUM
@@ -171,7 +171,7 @@ def find_stable_manifolds(
     potential, energy = potential.in_well_units, given_energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum
     spacing = _PointSpacing.for_window(whole.scaled(*factors), part.scaled(*factors) if part is not None else None)
-    orbits = {orbit.channel: orbit for orbit in find_lyapunov_orbits(potential, energy)}
+    orbits = {orbit.channel: orbit for orbit in find_orbits_in_well_units(potential, energy)}
     mirror = potential.well.mirror_in_x and window is None
     image = potential.well.mirror_numbers(energy) if mirror else np.arange(potential.channels + 1)
     firsts = [channel for channel in orbits if channel <= image[channel]]

@@ -171,18 +171,19 @@ def _collect(
     starts: DeepStarts,
 ) -> DeepMap:
     """The map of orbits that have ended, or of a cancelled computation."""
-    ended, escaped, unit = orbits.fate >= Fate.BOUNDED, orbits.fate > 0, spec.potential.units.time
+    ended, escaped = orbits.fate >= Fate.BOUNDED, orbits.fate > 0
     errors = np.full(orbits.t.size, np.nan)
     errors[ended] = list(starts.energy_errors(orbits.state[ended]))
     shape = spec.resolution[::-1]
     x, ordinate = (np.array([float(offset) for offset in axis]) for axis in axes)
-    return DeepMap(
+    found = DeepMap(
         spec, place, width, x, ordinate,
         fate=orbits.fate.reshape(shape),
-        escape_time=np.where(escaped, unit * orbits.exit_time, np.nan).reshape(shape),
+        escape_time=np.where(escaped, orbits.exit_time, np.nan).reshape(shape),
         crossings=np.where(escaped, orbits.exit_crossings, orbits.crossings).astype(np.int32).reshape(shape),
         energy_error=errors.reshape(shape), complete=not bool(np.any(orbits.fate == Fate.NOT_COMPUTED)),
     )  # fmt: skip
+    return spec.potential.units.restore(found)
 
 
 def _checked_centre(centre: Any) -> tuple[Fraction, Fraction]:

@@ -6,8 +6,8 @@ import functools
 
 import numpy as np
 
-from engine.exits.interior import find_outside_channels
-from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.exits.interior import find_outside_in_well_units
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.potentials.potential import Potential
 from engine.potentials.review.potential_review import review_potential
 from engine.potentials.well_units import WellUnits
@@ -200,7 +200,7 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
         points = [side.ravel() for side in np.meshgrid(*sides)]
         states = plane.states(potential, highest_energy(energy), *points)
         exists = np.flatnonzero(np.isfinite(states).all(axis=1))
-        inside = exists[find_outside_channels(potential, highest_energy(energy), *states[exists, :2].T) == 0]
+        inside = exists[find_outside_in_well_units(potential, highest_energy(energy), *states[exists, :2].T) == 0]
         if not inside.size:
             return [(0.0, 0.0), (0.0, 0.0)]
         for place, axis in enumerate(plane.axes):
@@ -278,7 +278,7 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, he
 
 def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Whether points are allowed and not beyond an exit; the discs of centres are gaps in an interior and count as inside."""
-    outside = find_outside_channels(potential, energy, x, y)
+    outside = find_outside_in_well_units(potential, energy, x, y)
     in_disc = (outside > potential.channels) & (outside <= potential.channels + len(potential.centres))
     inside: np.ndarray = ~(potential.value(x, y) > energy) & ((outside == 0) | in_disc)
     return inside
@@ -321,7 +321,7 @@ def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, n
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():
         return np.empty(0), np.empty(0)
-    orbits = find_lyapunov_orbits(potential, energy)
+    orbits = find_orbits_in_well_units(potential, energy)
     return np.concatenate([x, *(orbit.x for orbit in orbits)]), np.concatenate([y, *(orbit.y for orbit in orbits)])
 
 

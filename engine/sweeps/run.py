@@ -88,7 +88,7 @@ def run_sweep(
     {'h': 2, 'px': 20, 'x': 20}
     """
     for energy in (spec.energies[0], spec.energies[-1]):
-        exit_curves(spec.potential, energy)
+        exit_curves(spec.potential.in_well_units, energy / spec.potential.units.energy)
     path = Path(store)
     sweep = _find_store(spec, path)
     if sweep is None or sweep.pending():

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from engine.dynamics.classification import Outcomes, classify_orbits
+from engine.dynamics.classification import Outcomes, classify_in_well_units
 from engine.dynamics.fates import Fate
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.compiled import kernels_of
@@ -89,7 +89,7 @@ def compute_radius_envelope(
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
     units, well = potential.units, potential.in_well_units
     start, t_max = start / units.state, t_max / units.time
-    outcome = classify_orbits(well, float(well.energy(start)), start[None], t_max, execution=execution.in_this_thread())
+    outcome = classify_in_well_units(well, float(well.energy(start)), start[None], t_max, execution.in_this_thread())
     execution.raise_if_cancelled()
     if outcome.fate[0] == Fate.OUTSIDE:
         raise ValueError(f"state={short_repr(state)}: lies beyond an exit, in a body or beyond the escape radius; must be inside")
