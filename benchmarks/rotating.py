@@ -44,7 +44,7 @@ class Run(NamedTuple):
 def bounded_starts(potential: Potential, energy: float) -> np.ndarray:
     """(ORBITS, 4) starts that do not end, in units of the well; around a body further away than 20 radii of its disc."""
     wide = [type(c)(c.x, c.y, KEPT_APART * c.radius, c.name) for c in potential.centres]
-    kept_apart, t_max = potential.with_outcomes(wide, potential.escape_radius), DURATION * potential.exact_time_unit
+    kept_apart, t_max = potential.with_outcomes(wide, potential.escape_radius), DURATION * potential.well.exact_time_unit
     found = np.empty((0, 4))
     for seed in itertools.count():
         starts = sample_starts(potential, energy, 20 * ORBITS, seed=seed)
@@ -89,7 +89,7 @@ def main() -> None:
     for name, energy in SYSTEMS:
         potential = POTENTIALS[name]
         well, level = potential.in_well_units, energy / potential.units.energy
-        states, duration = bounded_starts(potential, energy), DURATION * potential.exact_time_unit / potential.units.time
+        states, duration = bounded_starts(potential, energy), DURATION * potential.well.exact_time_unit / potential.units.time
         by_engine(well, level, states, 10.0)
         pairs: dict[str, list[tuple[Run, Run, float]]] = {"equal": [], f"{SMALL:g}": []}
         for _ in range(REPEATS):

@@ -37,30 +37,29 @@ def describe_potential(
 
 def _list_catalogue(as_json: bool) -> None:
     from cli.output import print_json, print_table
+    from engine import POTENTIALS
     from engine.potentials.catalogue import CATALOGUE
 
     if as_json:
         names = ("name", "title", "formula", "description", "reference")
         print_json({"potentials": [{name: getattr(entry, name) for name in names} for entry in CATALOGUE.values()]})
         return
-    rows = [(entry.name, entry.formula, f"{entry.potential.escape_energy:.6g}") for entry in CATALOGUE.values()]
+    rows = [(entry.name, entry.formula, f"{POTENTIALS[entry.name].escape_energy:.6g}") for entry in CATALOGUE.values()]
     print_table(("name", "V(x, y)", "escape energy"), rows)
 
 
 def _print_result(found: PotentialReview, as_json: bool) -> None:
     from cli.output import print_json, print_sentences, print_table
-    from engine import write_formula
 
     points: list[dict[str, Any]] = [
         {"kind": point.kind.value, "x": point.x, "y": point.y, "energy": point.energy, "channel": point.channel}
         for point in found.critical_points
     ]
-    formula = write_formula(found.potential)
     if as_json:
         numbers = {"escape_energy": found.escape_energy, "channels": found.channels, "highest_energy": found.highest_energy}
-        print_json({"formula": formula, **numbers, "critical_points": points, "remarks": list(found.remarks)})
+        print_json({"formula": found.formula, **numbers, "critical_points": points, "remarks": list(found.remarks)})
         return
-    print_sentences(f"V = {formula}: {found.channels} channels above h = {found.escape_energy:.12g}.")
+    print_sentences(f"V = {found.formula}: {found.channels} channels above h = {found.escape_energy:.12g}.")
     rows = [
         (one["kind"], f"({one['x']:.9g}, {one['y']:.9g})", f"{one['energy']:.9g}", str(one["channel"] or "")) for one in points
     ]

@@ -37,13 +37,13 @@ from engine.measures.decay_laws import DecayLaws
 from engine.measures.escape_statistics import EscapeStatistics, compute_statistics
 from engine.measures.uncertainty_exponent import UncertaintyExponent, compute_uncertainty_exponent
 from engine.measures.wada import WadaTest, compute_wada_test
-from engine.potentials.catalogue import POTENTIALS, channel_family
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
+from engine.potentials.known_potentials import CASES, POTENTIALS, channel_family
 from engine.potentials.outcomes import Centre, Outcome
-from engine.potentials.potential import CASES, Potential
+from engine.potentials.potential import Potential
+from engine.potentials.review.potential_review import PotentialReview, review_potential
 from engine.potentials.system import System
-from engine.potentials.validation_report import PotentialReview, review_potential
 from engine.results.result import Result
 from engine.slices.axes import Coordinate, Direction, ParameterAxis
 from engine.slices.default_window import default_window

@@ -5,6 +5,7 @@ A value of a wrong type raises a ValueError too, like one out of range.
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import inspect
 import numbers
@@ -78,6 +79,14 @@ def check_type(name: str, value: Any, kind: Any) -> None:
 def _describe_type(kind: type) -> str:
     article = "an" if kind.__name__[0] in "AEIO" else "a"
     return _TYPE_NAMES.get(kind.__name__, f"{article} {kind.__name__}")
+
+
+def replace_unchecked[T](instance: T, **values: Any) -> T:
+    """As `dataclasses.replace` of a frozen dataclass, without its checks: legal ranges are for the units of the visitor."""
+    replaced = object.__new__(type(instance))
+    for each in dataclasses.fields(instance):  # type: ignore[arg-type]
+        object.__setattr__(replaced, each.name, values.get(each.name, getattr(instance, each.name)))
+    return replaced
 
 
 def checked_flag(name: str, value: Any) -> bool:

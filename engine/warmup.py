@@ -23,8 +23,8 @@ from engine.maps.compute import run_map
 from engine.maps.regularity import compute_regularity
 from engine.maps.result import EscapeMap
 from engine.maps.spec import MapSpec
-from engine.potentials.catalogue import POTENTIALS
 from engine.potentials.compiled import kernels_of
+from engine.potentials.known_potentials import POTENTIALS
 from engine.potentials.potential import Potential
 from engine.slices.section import SECTION
 from engine.taylor.bound_kernels import is_generated
@@ -109,7 +109,7 @@ def _expected_seconds(potential: Potential) -> float:
 def _known_kernels(potential: Potential) -> ModuleType | None:
     """The kernels of a potential; None if they are not generated yet, or cannot be compiled any more."""
     well = potential.in_well_units
-    if not is_generated(well.form.definition, well.setting):
+    if not is_generated(well.form.definition, well.well.setting):
         return None
     try:
         return kernels_of(well)
@@ -185,9 +185,11 @@ def prepare_kernels(potential: Potential) -> None:
     _make_in_turn(lambda: integrate_orbit(potential, _start(potential)[0], _T_MAX * potential.units.time))
     if potential.channels and not potential.centres:
         # Below the escape energy all orbits are bounded, as `compute_regularity` needs.
-        _make_in_turn(lambda: compute_regularity(_compute_small_map(potential, potential.energy_at(0.5)), execution=_EXECUTION))
+        _make_in_turn(
+            lambda: compute_regularity(_compute_small_map(potential, potential.well.energy_at(0.5)), execution=_EXECUTION)
+        )
     if potential.channels and not potential.rotation:
-        _make_in_turn(lambda: find_stable_manifolds(potential, potential.energy_at(1.01), images=1, execution=_EXECUTION))
+        _make_in_turn(lambda: find_stable_manifolds(potential, potential.well.energy_at(1.01), images=1, execution=_EXECUTION))
 
 
 def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> None:
@@ -199,7 +201,7 @@ def reserve_catalogue(operations: CompiledOperations = compiled_operations) -> N
         What has the limit; by default that of this process.
     """
     wells = [potential.in_well_units for potential in POTENTIALS.values()]
-    operations.reserve(generate_code(well.form.definition, **well.setting._asdict()).digest for well in wells)
+    operations.reserve(generate_code(well.form.definition, **well.well.setting._asdict()).digest for well in wells)
 
 
 def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
@@ -208,14 +210,14 @@ def _compute_small_map(potential: Potential, energy: float) -> EscapeMap:
 
 def _open_energy(potential: Potential) -> float:
     """An energy at which orbits can escape."""
-    return potential.energy_at(1.01) if potential.escape_radius is None else potential.bottom + potential.units.energy
+    return potential.well.energy_at(1.01) if potential.escape_radius is None else potential.well.bottom + potential.units.energy
 
 
 def _start(potential: Potential) -> np.ndarray:
     """(1, 4) a state of low energy in the middle of a well, else one at a typical distance."""
-    if potential.has_well and potential.escape_radius is None:
-        return SECTION.plane.states(potential, potential.energy_at(0.5), np.zeros(1), np.zeros(1))
-    return SECTION.plane.states(potential, _open_energy(potential), np.array([potential.typical_radius]), np.zeros(1))
+    if potential.well.is_minimum and potential.escape_radius is None:
+        return SECTION.plane.states(potential, potential.well.energy_at(0.5), np.zeros(1), np.zeros(1))
+    return SECTION.plane.states(potential, _open_energy(potential), np.array([potential.well.typical_radius]), np.zeros(1))
 
 
 def _make_in_turn(*calls: Callable[[], object]) -> None:

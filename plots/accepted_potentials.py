@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine import PotentialReview
-from engine.potentials.energy_ranges import HIGHEST_SHOWN
+from engine.potentials.review.energy_ranges import HIGHEST_SHOWN
 from engine.validation import LARGEST_NUMBER
 from plots.palette import MOST_CHANNELS, MOST_COLLISIONS
 
@@ -17,6 +17,6 @@ def refusal(found: PotentialReview) -> str | None:
         return f"It has {found.channels} channels; the page has colours for {MOST_CHANNELS}."
     if len(potential.centres) > MOST_COLLISIONS:
         return f"It has {len(potential.centres)} centres; the page has colours for {MOST_COLLISIONS}."
-    if potential.escape_radius is None and abs(potential.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
+    if potential.escape_radius is None and abs(potential.well.energy_at(HIGHEST_SHOWN)) > LARGEST_NUMBER:
         return f"Its escape energy is {found.escape_energy:.6g}; the page shows energies up to {LARGEST_NUMBER:g}."
     return None

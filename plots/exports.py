@@ -9,7 +9,6 @@ from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 from engine import CASES, EscapeMap, MapSpec, Orbit, OrbitVerdict, Plane, Slice, Sweep, System, judge_orbit
-from engine.potentials.catalogue import CATALOGUE
 from engine.potentials.system import TYPED
 from engine.results.extras import require_package
 from plots.map_analyses import NO_ANALYSES, MapAnalyses
@@ -145,11 +144,11 @@ def _slice_names(plane: Slice) -> list[str]:
 
 def _potential_expression(system: System) -> tuple[str, str]:
     """Name to import, and the expression of the potential."""
-    if system.case != TYPED and "epsilon" not in CATALOGUE[system.case].parameters and system.parameters:
+    if system.parameters and not system.entry.is_well:
         return "System", f"System({system.case!r}, parameters={dict(system.parameters)!r}).potential"
     parameters = ", ".join(f"{name}={value!r}" for name, value in system.well_parameters.items())
     changed = f".with_parameters({parameters})" if parameters else ""
-    rotation = system.value_of("rotation") if system.case == TYPED or "epsilon" in CATALOGUE[system.case].parameters else 0.0
+    rotation = system.value_of("rotation") if system.entry.is_well else 0.0
     changed += f".in_rotating_frame({rotation!r})" if rotation else ""
     if system.case == TYPED:
         letters = f", parameters={system.letter_parameters!r}" if system.letter_parameters else ""

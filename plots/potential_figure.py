@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from engine import Potential, Window
-from engine.potentials.energy_ranges import critical_energies, depth_levels
+from engine.potentials.review.energy_ranges import depth_levels
+from engine.potentials.review.potential_review import critical_energies
 from engine.slices.limiting_curves import trace_equipotentials
 from engine.slices.planes import SPACE
 from plots.map_figure import draw_curve, draw_limits

@@ -9,7 +9,7 @@ import numpy as np
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.compared_view import ComparedView
-from app.state.system_review import SystemReview, review_job
+from app.state.system_review import review_job
 from app.state.view_state import ViewState
 from app.views.components.numbers import grouped, percent
 from app.views.maps.map_plots import MapsView
@@ -17,7 +17,9 @@ from engine import EscapeMap, Fate
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job, Queue
 from engine.jobs.map_jobs import map_job
+from engine.potentials.review.potential_review import SystemReview
 from engine.warmup import is_ready_for_maps, prepare_for_maps
+from plots.accepted_potentials import refusal
 
 
 class ComparisonPresenter:
@@ -84,8 +86,8 @@ class ComparisonPresenter:
             return
         if self._reviewed is None or self._reviewed.system != view.system:
             self._review.submit(review_job(view.system))
-        elif self._reviewed.problem is not None:
-            self._refuse_system(self._reviewed.problem)
+        elif (problem := refusal(self._reviewed)) is not None:
+            self._refuse_system(problem)
         elif self._frame is None:
             return
         elif not is_ready_for_maps(self._reviewed.potential):

@@ -24,13 +24,14 @@ from app.state.permalink import (
     without_system,
     write_link,
 )
-from app.state.system_review import SystemReview, is_known, review_catalogue_entry
+from app.state.system_review import is_known, review_catalogue_entry
 from app.state.view_state import PICTURES, ViewState
 from app.views.components.notice import Notice
 from app.views.components.progress import ProgressView
 from app.views.panels.browser_events import BrowserEvents
 from app.views.panels.embedding import OpenLink
 from engine import System
+from engine.potentials.review.potential_review import SystemReview
 
 
 class LinkPresenter:

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 from app.job_clients.latest_request import LatestRequest
 from app.job_clients.locking import Locked
 from app.state.history import History
-from app.state.system_review import SystemReview, is_known, review_catalogue_entry, review_job
+from app.state.system_review import is_known, review_catalogue_entry, review_job
 from app.state.view_state import SYSTEM, ViewState
 from app.views.analysis.potential_panel import NEW_INTEGRATOR, PotentialPanel
 from engine import System
 from engine.jobs.client import JobSubmitter
+from engine.potentials.review.potential_review import SystemReview
 from engine.potentials.system import TYPED
 from engine.warmup import is_ready_for_maps
+from plots.accepted_potentials import refusal
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class PotentialPresenter:
     def open(self, system: System, use: Callable[[SystemReview], object], refuse: Callable[[str], None]) -> bool:
         """Use the system of a link, a preset or the browser's history, or refuse it; returns whether it is under review."""
         known = self._known_review(system)
-        if known is not None and known.problem is None:
+        if known is not None and refusal(known) is None:
             self._drop_opened()
             use(known)
             return False
@@ -130,12 +132,13 @@ class PotentialPresenter:
         self._end(lambda proposal: self._judge(proposal, reviewed))
 
     def _judge(self, proposal: _Proposal, reviewed: SystemReview) -> None:
-        if reviewed.problem is None:
+        problem = refusal(reviewed)
+        if problem is None:
             proposal.use(reviewed)
         elif proposal.refuse is None:
             self.panel.show(reviewed)
         else:
-            proposal.refuse(reviewed.problem)
+            proposal.refuse(problem)
 
     def _end(self, answer: Callable[[_Proposal], None]) -> None:
         """Answer the proposal, if there still is one."""
@@ -151,15 +154,15 @@ class PotentialPresenter:
     def _energy_for(self, reviewed: SystemReview) -> float | None:
         """Energy at the same multiple of the well's depth as before; None if it is too high, or for another known potential."""
         before, energies = self._state.reviewed, reviewed.energies
-        if reviewed.system.case not in (TYPED, before.system.case) or energies is None:
+        if reviewed.system.case not in (TYPED, before.system.case):
             return None
         if before.potential.escape_radius is not None or reviewed.potential.escape_radius is not None:
             # Without exits there is no depth.
             return self._state.energy if energies.low <= self._state.energy <= energies.high else None
-        depth = before.review.escape_energy - before.potential.bottom
-        multiple = (self._state.energy - before.potential.bottom) / depth
-        energy = round(float(reviewed.potential.energy_at(multiple)), energies.decimals + 1)
-        return energy if energy < reviewed.review.highest_energy else None
+        depth = before.escape_energy - before.potential.well.bottom
+        multiple = (self._state.energy - before.potential.well.bottom) / depth
+        energy = round(float(reviewed.potential.well.energy_at(multiple)), energies.decimals + 1)
+        return energy if energy < reviewed.highest_energy else None
 
     def _follow(self) -> None:
         """Follow the view state, unless it follows the panel; a system that is still under review comes too late."""

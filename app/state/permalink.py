@@ -11,7 +11,6 @@ import numpy as np
 
 from app.state.compared_view import ComparedView
 from app.state.link_letters import LETTERS, drop_unknown_letters, letters_in_link, read_letters
-from app.state.system_review import SystemReview
 from app.state.view_state import (
     IMAGE_CHOICES,
     LAYERS,
@@ -27,6 +26,7 @@ from app.state.view_state import (
 from app.state.watched_starts import COUNTS, DEFAULT_STARTS, StartsFrom, WatchedStarts
 from engine import POTENTIALS, Plane, Slice, System, Window
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
+from engine.potentials.review.potential_review import SystemReview
 from engine.potentials.system import RANGES, TYPED
 from engine.slices.slice_text import read_slice, write_slice
 from engine.validation import LARGEST_NUMBER
@@ -217,7 +217,7 @@ def fit_to_system(values: Mapping[str, Any], reviewed: SystemReview) -> tuple[di
     reviewed
         The review of their `linked_system`, which is not refused.
     """
-    lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.shown_energies.first
+    lowest, first = float(reviewed.potential.value(0.0, 0.0)), reviewed.energies.first
     t_max = min(ViewState.param.t_max.default, longest_first_t_max(reviewed.potential))
     shown = {"energy": first, "t_max": t_max} | {name: value for name, value in values.items() if name not in SYSTEM}
     if shown["energy"] > lowest:

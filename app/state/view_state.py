@@ -12,11 +12,13 @@ import param
 
 from app.runtime.process_state import process_state
 from app.state.compared_view import ComparedView
-from app.state.system_review import SystemReview, review_catalogue_entry
+from app.state.system_review import map_energy, review_catalogue_entry
 from app.state.watched_starts import DEFAULT_STARTS, WatchedStarts
 from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.jobs.job import Job, Queue
-from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange
+from engine.potentials.catalogue import PAPER_ENERGIES
+from engine.potentials.catalogue_entry import EnergyRange
+from engine.potentials.review.potential_review import SystemReview
 from engine.potentials.system import TYPED
 from engine.validation import LARGEST_NUMBER
 from plots.map_images import COMPARISON_TITLES, TITLES
@@ -105,7 +107,7 @@ def _is_start(value: Any) -> bool:
 def longest_first_t_max(potential: Potential) -> float:
     """The longest t_max with which a system is first shown: a short one where all bounded orbits are integrated to it."""
     allowed = allowed_t_max().values()
-    longest = np.inf if potential.certifies_tori else _LONGEST_FIRST * potential.exact_time_unit
+    longest = np.inf if potential.certifies_tori else _LONGEST_FIRST * potential.well.exact_time_unit
     return max((each for each in allowed if each <= longest), default=min(allowed))
 
 
@@ -174,7 +176,7 @@ class ViewState(param.Parameterized):
     @property
     def energies(self) -> EnergyRange:
         """The energy range of the chosen system."""
-        return self.reviewed.shown_energies
+        return self.reviewed.energies
 
     @property
     def colours(self) -> Palette:
@@ -188,12 +190,12 @@ class ViewState(param.Parameterized):
 
     def map_spec(self) -> MapSpec:
         """Specification of the map; ValueError if a choice is invalid."""
-        energy = self.reviewed.energy_on(self.plane, self.energy)
+        energy = map_energy(self.reviewed, self.plane, self.energy)
         return MapSpec(self.potential, self.plane, energy, (self.resolution, self.resolution), self.window, self.t_max)
 
     def present_view(self) -> ComparedView:
         """System, plane and energy, to compare others with."""
-        return ComparedView(self.system, self.plane, self.reviewed.energy_on(self.plane, self.energy))
+        return ComparedView(self.system, self.plane, map_energy(self.reviewed, self.plane, self.energy))
 
     def start_state(self, start: Start) -> tuple[float, ...]:
         """x, y, px, py of a start; NaN if it is forbidden."""
@@ -228,7 +230,7 @@ class ViewState(param.Parameterized):
 
     def show_system(self, reviewed: SystemReview, energy: float | None = None) -> None:
         """Select a reviewed system at an energy, by default its initial energy, and remove window and starts."""
-        chosen = reviewed.shown_energies.first if energy is None else energy
+        chosen = reviewed.energies.first if energy is None else energy
         longest = self.t_max if reviewed.system.case == self.case else longest_first_t_max(reviewed.potential)
         self.show(reviewed, energy=chosen, window=None, starts=(), chosen=0, t_max=min(self.t_max, longest))
 

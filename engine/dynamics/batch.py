@@ -135,7 +135,7 @@ class OrbitBatch:
         which, images
             Indices of the same shape.
         numbers
-            (n, outcomes + 1) the image of each fate, see `Potential.mirror_numbers`.
+            (n, outcomes + 1) the image of each fate, see `Well.mirror_numbers`.
         """
         self.state[images] = self.state[which] * [-1.0, 1.0, -1.0, 1.0]
         self.remainder[images] = self.remainder[which] * [-1.0, 1.0]

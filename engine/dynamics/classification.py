@@ -109,19 +109,25 @@ def classify_orbits(
     ([1, 1, 1], [45.7, 2.03, 1.82])
     """
     states = _checked_states(potential, energy, states)
-    t_max = checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
+    t_max = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
     units, well = potential.units, potential.in_well_units
-    well_energy = energy / units.energy
-    curves = exit_curves(well, well_energy)[None]
-    batch = OrbitBatch.from_starts(states / units.state, np.zeros(len(states), np.int64))
+    outcomes = classify_in_well_units(well, energy / units.energy, states / units.state, t_max / units.time, execution)
+    return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy))
+
+
+def classify_in_well_units(
+    potential: Potential, energy: float, states: np.ndarray, t_max: float, execution: Execution
+) -> Outcomes:
+    """As `classify_orbits`, of a potential in units of its well; states are not checked, `t_max` and `outcomes` not set."""
+    curves = exit_curves(potential, energy)[None]
+    batch = OrbitBatch.from_starts(states, np.zeros(len(states), np.int64))
     every_orbit = np.arange(len(states))
-    batch.mark_outside(well, every_orbit, curves, execution=execution)
+    batch.mark_outside(potential, every_orbit, curves, execution=execution)
     propagate_batch(
-        well, curves, batch, every_orbit, t_max / units.time, final=True, execution=execution,
-        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max / units.time)),
+        potential, curves, batch, every_orbit, t_max, final=True, execution=execution,
+        on_tiles=lambda: execution.report(partial(_share_done, batch, t_max)),
     )  # fmt: skip
-    outcomes = units.restore(collect_outcomes(well, np.full(len(states), well_energy), batch))
-    return replace(outcomes, t_max=t_max, outcomes=potential.outcomes_at(energy))
+    return collect_outcomes(potential, np.full(len(states), energy), batch)
 
 
 def _share_done(batch: OrbitBatch, t_max: float) -> float:

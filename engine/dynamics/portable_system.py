@@ -55,7 +55,7 @@ class PortableSystem:
     def to_dict(self) -> dict[str, object]:
         """All of it but the module as lists and numbers."""
         well, units = self.potential.in_well_units, self.potential.units
-        mirror = self.potential.mirror_channels.tolist() if self.potential.mirror_in_x else None
+        mirror = self.potential.well.mirror_channels.tolist() if self.potential.well.mirror_in_x else None
         return {
             "constants": list(self.constants),
             "layout": {
@@ -117,7 +117,7 @@ def make_portable_system(potential: Potential, highest: float) -> PortableSystem
     Takes up to a second the first time for each structure of a potential, and for exits that are not cached.
     """
     well = potential.in_well_units
-    definition, (channels, discs, ring, rotates) = well.form.definition, well.setting
+    definition, (channels, discs, ring, rotates) = well.form.definition, well.well.setting
     code = generate_code(definition, channels, discs=discs, ring=ring, rotates=rotates)
     table, rotation = code.tabulate(definition, well.rotation), code.entries.index(ROTATION) if rotates else None
     exits = tabulate_exits(well, highest / potential.units.energy)

@@ -109,7 +109,7 @@ class _Shot(NamedTuple):
 
 def saddle_axes(potential: Potential, channel: int) -> Axes:
     """The saddle and its unstable direction."""
-    return Axes(potential.saddles[channel - 1], potential.outward_directions[channel - 1])
+    return Axes(potential.saddles[channel - 1], potential.well.outward_directions[channel - 1])
 
 
 def chord_axes(path: np.ndarray) -> Axes:
@@ -152,7 +152,7 @@ def find_from_outside(potential: Potential, energy: float, axes: Axes, size: flo
 
 def continue_in_energy(potential: Potential, energy: float, channel: int) -> BrakeOrbit | None:
     """The orbit over a saddle, followed from small oscillations up to an energy with an adaptive step; None if this fails."""
-    reached = bottom = float(potential.saddle_energies[channel - 1])
+    reached = bottom = float(potential.well.saddle_energies[channel - 1])
     step = _FIRST_ENERGY_STEP * (energy - bottom)
     smallest_step = _SMALLEST_ENERGY_STEP * (energy - bottom)
     orbit: BrakeOrbit | None = None

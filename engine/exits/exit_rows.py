@@ -9,10 +9,10 @@ from numpy.polynomial import chebyshev
 
 from engine.exits.brake_orbits import saddle_axes
 from engine.exits.exit_shapes import absent_channel, closed_channel, disc, escape_circle
-from engine.exits.lyapunov_orbits import UndefinedExitsError, find_lyapunov_orbits
-from engine.potentials.hill_region import check_closed_well
+from engine.exits.lyapunov_orbits import UndefinedExitsError, find_orbits_in_well_units
 from engine.potentials.potential import Potential
-from engine.potentials.singularity_check import check_defined
+from engine.potentials.review.hill_region import check_closed_well
+from engine.potentials.review.singularity_check import check_defined
 from engine.potentials.well_units import nearest_power_of_two
 from engine.taylor.kernels import events
 
@@ -42,9 +42,9 @@ def closed_exits(potential: Potential) -> np.ndarray:
 
 
 def exit_curves(potential: Potential, energy: float) -> np.ndarray:
-    """(outcomes, columns) exits at one energy, for the kernels."""
+    """(outcomes, columns) exits of a potential in units of its well at one energy, for the kernels."""
     curves = closed_exits(potential)
-    for orbit in find_lyapunov_orbits(potential, energy):
+    for orbit in find_orbits_in_well_units(potential, energy):
         curves[orbit.channel - 1] = orbit.curve
         for channel in orbit.others:
             curves[channel - 1] = absent_channel(saddle_axes(potential, channel), potential.saddles[channel - 1])

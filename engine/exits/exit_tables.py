@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.exits.exit_rows import exit_gates
-from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_lyapunov_orbits
+from engine.exits.lyapunov_orbits import exit_curve_over_chord, find_orbits_in_well_units
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.taylor.kernels import events
@@ -96,15 +96,15 @@ def tabulate_exits(potential: Potential, highest: float) -> tuple[ExitTable, ...
             curves[energy] = _curves(potential, energy)
         return curves[energy]
 
-    highest = min([highest, *(merger.energy for merger in potential.channel_mergers)])
-    saddles = enumerate(potential.saddle_energies.tolist(), start=1)
+    highest = min([highest, *(merger.energy for merger in potential.well.channel_mergers)])
+    saddles = enumerate(potential.well.saddle_energies.tolist(), start=1)
     return tuple(_tabulate(curves_at, channel, saddle, highest) for channel, saddle in saddles)
 
 
 def _curves(potential: Potential, energy: float) -> dict[int, np.ndarray]:
     """The exit curves at one energy, by channel; ValueError if one is not a graph over its chord."""
     curves = {}
-    for orbit in find_lyapunov_orbits(potential, energy):
+    for orbit in find_orbits_in_well_units(potential, energy):
         curve = exit_curve_over_chord(orbit)
         if curve is None:
             raise ValueError(f"energy={energy}: exit {orbit.channel} is no smooth graph over its chord")

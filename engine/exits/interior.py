@@ -26,10 +26,14 @@ def find_outside_channels(potential: Potential, energy: float, x: np.ndarray, y:
 
     Beyond the exits it is the channel nearest in direction, in a disc the collision with its centre.
     """
-    units, row = potential.units, np.zeros(x.size, np.int64)
-    places = x.ravel() / units.length, y.ravel() / units.length
-    well, energies = potential.in_well_units, np.full(x.size, energy / units.energy)
-    return find_outside_starts(well, *places, energies, exit_curves(well, energy / units.energy)[None], row).reshape(x.shape)
+    units = potential.units
+    return find_outside_in_well_units(potential.in_well_units, energy / units.energy, x / units.length, y / units.length)
+
+
+def find_outside_in_well_units(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """As `find_outside_channels`, of a potential in units of its well."""
+    energies, curves, row = np.full(x.size, energy), exit_curves(potential, energy)[None], np.zeros(x.size, np.int64)
+    return find_outside_starts(potential, x.ravel(), y.ravel(), energies, curves, row).reshape(x.shape)
 
 
 def find_outside_starts(
@@ -52,7 +56,7 @@ def find_outside_starts(
     over_saddles = np.ascontiguousarray(curves[:, : potential.channels])
     if (over_saddles[..., events.REACH] >= 0.0).any():
         nearest = _finder(potential.form, potential)(x, y, energy, over_saddles, curve_row)
-        outside = np.take_along_axis(potential.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
+        outside = np.take_along_axis(potential.well.exit_numbers(energy), nearest[:, None].astype(np.int64), axis=1)[:, 0]
     if potential.escape_radius is None and not potential.centres:
         return outside
     allowed = potential.value(x, y) <= energy

@@ -178,13 +178,18 @@ def find_lyapunov_orbits(potential: Potential, energy: float) -> tuple[LyapunovO
     ()
     """
     units = potential.units
-    scaled = checked_number("energy", energy) / units.energy
-    try:
-        orbits = _find_orbits(potential.in_well_units, scaled)
-    except _SearchError as error:
-        stated = scaled * potential.in_well_units.stated_units.energy
-        raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
+    orbits = find_orbits_in_well_units(potential.in_well_units, checked_number("energy", energy) / units.energy)
     return tuple(replace(_restored(orbit, units), potential=potential) for orbit in orbits)
+
+
+def find_orbits_in_well_units(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
+    """As `find_lyapunov_orbits`, of a potential in units of its well; errors state the energy in those in which it was given."""
+    try:
+        orbits = _find_orbits(potential, energy)
+    except _SearchError as error:
+        stated = energy * potential.well.stated_units.energy
+        raise UndefinedExitsError(f"energy={stated}: {error} (potential {potential.name})", str(error)) from None
+    return tuple(replace(orbit, potential=potential) for orbit in orbits)
 
 
 def find_known_exits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ...]:
@@ -225,7 +230,7 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
     """The orbits of a potential in units of its well."""
     if potential.rotation:
         _check_separate(potential, energy)
-        channels = potential.open_channels(energy)
+        channels = potential.well.open_channels(energy)
         orbits = tuple(_find_closed_orbit(potential, energy, channel) for channel in channels)
         _check_exits_apart(orbits)
         return orbits
@@ -238,10 +243,10 @@ def _find_orbits(potential: Potential, energy: float) -> tuple[LyapunovOrbit, ..
 def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> tuple[LyapunovOrbit, ...]:
     """Orbits that do not meet, searched at this energy or followed up to it; those of mirror channels are exact mirror images."""
     found: dict[int, LyapunovOrbit] = {}
-    merged = {exit.channels[0]: exit for exit in potential.merged_exits(energy)}
-    numbers = potential.exit_numbers(energy)
-    images = potential.mirror_numbers(energy) if potential.mirror_in_x else numbers
-    for channel in potential.open_channels(energy):
+    merged = {exit.channels[0]: exit for exit in potential.well.merged_exits(energy)}
+    numbers = potential.well.exit_numbers(energy)
+    images = potential.well.mirror_numbers(energy) if potential.well.mirror_in_x else numbers
+    for channel in potential.well.open_channels(energy):
         if numbers[channel] < channel:
             continue
         image = int(images[channel])
@@ -252,7 +257,7 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
             found[channel] = _find_merged(potential, energy, merged[channel])
         else:
             found[channel] = _find_orbit(potential, energy, channel, follow)
-        if image == channel and potential.mirror_in_x:
+        if image == channel and potential.well.mirror_in_x:
             found[channel] = _symmetrized(found[channel])
     orbits = tuple(found.values())
     _check_exits_apart(orbits)
@@ -260,15 +265,15 @@ def _find_separate_orbits(potential: Potential, energy: float, follow: bool) -> 
 
 
 def _check_separate(potential: Potential, energy: float) -> None:
-    for merged in potential.merged_exits(energy):
+    for merged in potential.well.merged_exits(energy):
         raise _SearchError(
             f"{_describe(potential, merged)}, which has no Lyapunov orbit in a rotating frame; choose a lower energy"
         )
 
 
 def _describe(potential: Potential, merged: MergedExit) -> str:
-    lowest = next(each for each in potential.channel_mergers if set(each.channels) <= set(merged.channels))
-    units = potential.stated_units
+    lowest = next(each for each in potential.well.channel_mergers if set(each.channels) <= set(merged.channels))
+    units = potential.well.stated_units
     place = f"({lowest.x * units.length:.6g}, {lowest.y * units.length:.6g})"
     return f"channels {merged.name} are one exit above V = {lowest.energy * units.energy:.6g}, the maximum at {place}"
 
@@ -382,7 +387,7 @@ def exit_curve_over_chord(orbit: LyapunovOrbit) -> np.ndarray | None:
     if potential.rotation:
         return orbit.curve
     path = orbit.half_path.T
-    if chord_axes(path).outward @ potential.outward_directions[orbit.channel - 1] < 0.0:
+    if chord_axes(path).outward @ potential.well.outward_directions[orbit.channel - 1] < 0.0:
         # Mirrored orbits have the well on the other side of their path.
         path = path[:, ::-1]
     curve = curve_along(chord_axes(path), potential.saddles[orbit.channel - 1], path)

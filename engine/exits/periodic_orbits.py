@@ -95,7 +95,7 @@ def find_periodic_orbit(potential: Potential, energy: float, channel: int) -> Pe
         Number of the saddle, from 1.
     """
     saddle = potential.saddles[channel - 1]
-    height = float(potential.saddle_energies[channel - 1])
+    height = float(potential.well.saddle_energies[channel - 1])
     family = _Family(
         potential, np.array([*saddle, 0.0, 0.0]), height, saddle_axes(potential, channel), ridge_bend(potential, channel)
     )

@@ -46,6 +46,17 @@ def derivative(expression: Expression, axis: int) -> Expression:
     raise TypeError(expression)
 
 
+def slopes(expression: Expression) -> tuple[Expression, Expression]:
+    """The derivatives along x and y."""
+    return derivative(expression, 0), derivative(expression, 1)
+
+
+def curvatures(expression: Expression) -> tuple[Expression, Expression, Expression]:
+    """The derivatives along x x, x y and y y."""
+    along_x, along_y = slopes(expression)
+    return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
+
+
 def _factor_derived(factors: tuple[tuple[Expression, float], ...], k: int, axis: int) -> Expression:
     """A product with factor k, b^n, replaced by b^(n − 1) b'."""
     base, n = factors[k]

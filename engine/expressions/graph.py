@@ -6,16 +6,11 @@ share compiled code. It is made for few products and powers, as the series of ea
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from engine.expressions.common_factors import factor_out
-from engine.expressions.nodes import FUNCTIONS, Coordinate, Expression, Function, Product, Sum
+from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum
 
 # Cached graphs, some kB each.
 _GRAPHS = 256
@@ -145,69 +140,3 @@ class _Builder:
     def _append(self, node: Node) -> int:
         self.nodes.append(node)
         return len(self.nodes) - 1
-
-
-def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> list[float]:
-    """The values at one point, as `evaluate` computes them to rounding, in a tenth of the time."""
-    values: list[float] = []
-    try:
-        for node in graph.nodes:
-            values.append(_number_at(node, values, numbers, x, y))
-    except (ArithmeticError, ValueError):
-        # Infinite, or not defined.
-        return [float(value) for value in evaluate(graph, numbers, x, y)]
-    return [values[index] for index in graph.results]
-
-
-def _number_at(node: Node, values: list[float], numbers: Sequence[float], x: float, y: float) -> float:
-    match node.kind:
-        case "product":
-            left, right = node.operands
-            return values[left] * values[right]
-        case "sum":
-            total = numbers[node.numbers[-1]] if len(node.numbers) > len(node.operands) else 0.0
-            for operand, place in zip(node.operands, node.numbers, strict=False):
-                total += numbers[place] * values[operand]
-            return total
-        case "shift":
-            return values[node.operands[0]] + numbers[node.numbers[0]]
-        case "power":
-            return math.pow(values[node.operands[0]], node.exponent)
-        case "x" | "y":
-            return x if node.kind == "x" else y
-    return FUNCTIONS[node.kind](values[node.operands[0]])
-
-
-_UNARY: Mapping[str, Callable[[np.ndarray], np.ndarray]] = MappingProxyType(
-    {"exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos}
-)
-
-
-def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.ndarray]:
-    """The values of the expressions at (x, y), which broadcast; NaN or infinite where one is not defined."""
-    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-    values: list[np.ndarray] = []
-    with np.errstate(all="ignore"):
-        for node in graph.nodes:
-            values.append(_node_value(node, values, numbers, x, y))
-    return [values[index] for index in graph.results]
-
-
-def _node_value(node: Node, values: list[np.ndarray], numbers: Sequence[float], x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    match node.kind:
-        case "x" | "y":
-            return x if node.kind == "x" else y
-        case "sum":
-            constant = numbers[node.numbers[-1]] if len(node.numbers) > len(node.operands) else 0.0
-            total = np.full(x.shape, constant)
-            for operand, place in zip(node.operands, node.numbers, strict=False):
-                total = total + numbers[place] * values[operand]
-            return total
-        case "shift":
-            return np.asarray(values[node.operands[0]] + numbers[node.numbers[0]])
-        case "product":
-            left, right = (values[operand] for operand in node.operands)
-            return np.asarray(left * right)
-        case "power":
-            return np.asarray(np.power(values[node.operands[0]], node.exponent))
-    return np.asarray(_UNARY[node.kind](values[node.operands[0]]))

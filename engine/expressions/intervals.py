@@ -7,11 +7,14 @@ place. Where an expression is not defined on a part of a box, the intervals cont
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from engine.expressions.evaluation import Operations, node_values
 from engine.expressions.graph import Graph, Node
 
 # Relative and absolute widening by which the rounding error of an operation is covered.
@@ -59,16 +62,16 @@ class Enclosure:
 
 def enclose(graph: Graph, numbers: Sequence[float], x: Interval, y: Interval) -> Enclosure:
     """Intervals of the expressions of a graph on boxes x × y."""
-    found: list[Interval] = []
     nowhere, defined = np.zeros(x.low.shape, bool), np.ones(x.low.shape, bool)
     with np.errstate(all="ignore"):
-        for node in graph.nodes:
-            found.append(_widened(node, found, numbers, x, y))
-            if node.kind in ("power", "log"):
-                base = found[node.operands[0]]
-                nowhere |= base.high < 0.0 if _needs_positive(node) else (base.low == 0.0) & (base.high == 0.0)
-                defined &= (base.low > 0.0) | (base.high < 0.0) & (not _needs_positive(node))
-    values = [found[place] for place in graph.results]
+        found = node_values(graph, numbers, x, y, _OPERATIONS)
+    for node in graph.nodes:
+        if node.kind in ("power", "log"):
+            base = found[node.operands[0]]
+            nowhere |= base.high < 0.0 if _needs_positive(node) else (base.low == 0.0) & (base.high == 0.0)
+            defined &= (base.low > 0.0) | (base.high < 0.0) & (not _needs_positive(node))
+    # A constant has one interval for all boxes.
+    values = [Interval(*np.broadcast_arrays(found[place].low, found[place].high, x.low)[:2]) for place in graph.results]
     for value in values:
         defined &= np.isfinite(value.low) & np.isfinite(value.high)
     return Enclosure(values, defined & ~nowhere, nowhere)
@@ -78,56 +81,54 @@ def _needs_positive(node: Node) -> bool:
     return node.kind == "log" or node.exponent != int(node.exponent)
 
 
-def _widened(node: Node, found: list[Interval], numbers: Sequence[float], x: Interval, y: Interval) -> Interval:
-    if node.kind in ("x", "y"):
-        return x if node.kind == "x" else y
-    # The second operand of a sine is a later node, which is not needed.
-    operands = [found[place] for place in node.operands if place < len(found)]
-    if node.kind in ("sum", "shift"):
-        return _sum(node, operands, numbers, x)
-    match node.kind:
-        case "product":
-            low, high = _square(operands[0]) if node.operands[0] == node.operands[1] else _product(*operands)
-        case "power":
-            low, high = _power(operands[0], node.exponent)
-        case "exp":
-            low, high = np.exp(operands[0].low), np.exp(operands[0].high)
-        case "log":
-            low, high = np.log(np.maximum(operands[0].low, 0.0)), np.log(np.maximum(operands[0].high, 0.0))
-        case "sin":
-            low, high = _sine(operands[0], 0.0)
-        case _:
-            low, high = _sine(operands[0], 0.5 * np.pi)
-    low, high = np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high)
-    return Interval(low - _RELATIVE * np.abs(low) - _ABSOLUTE, high + _RELATIVE * np.abs(high) + _ABSOLUTE)
+Ends = tuple[np.ndarray, np.ndarray]
+"""Lower and upper ends."""
 
 
-def _sum(node: Node, operands: list[Interval], numbers: Sequence[float], x: Interval) -> Interval:
-    coefficients = (
-        [numbers[place] for place in node.numbers] if node.kind == "sum" else [1.0, *(numbers[k] for k in node.numbers)]
-    )
-    low = high = np.full(x.low.shape, coefficients[-1] if len(coefficients) > len(operands) else 0.0)
-    size = np.abs(low)
-    for c, operand in zip(coefficients, operands, strict=False):
-        first, last = (operand.low, operand.high) if c >= 0.0 else (operand.high, operand.low)
-        low, high, size = low + c * first, high + c * last, size + abs(c) * operand.size
-    error = _RELATIVE * len(operands) * size + _ABSOLUTE
-    low, high = low - error, high + error
+def _interval(ends: Ends) -> Interval:
+    """Without NaN, for which the whole line is taken."""
+    low, high = ends
     return Interval(np.where(np.isnan(low), -np.inf, low), np.where(np.isnan(high), np.inf, high))
 
 
-def _product(one: Interval, other: Interval) -> tuple[np.ndarray, np.ndarray]:
+def _widened(operation: Callable[..., Ends]) -> Callable[..., Interval]:
+    """An operation on intervals, from one that leaves out its rounding error."""
+
+    @functools.wraps(operation)
+    def widened(*operands: Any) -> Interval:
+        exact = _interval(operation(*operands))
+        low, high = exact.low, exact.high
+        return Interval(low - _RELATIVE * np.abs(low) - _ABSOLUTE, high + _RELATIVE * np.abs(high) + _ABSOLUTE)
+
+    return widened
+
+
+def _linear(constant: float, coefficients: Sequence[float], operands: Sequence[Interval]) -> Interval:
+    low = high = np.asarray(constant)
+    size = np.abs(low)
+    for c, operand in zip(coefficients, operands, strict=True):
+        first, last = (operand.low, operand.high) if c >= 0.0 else (operand.high, operand.low)
+        low, high, size = low + c * first, high + c * last, size + abs(c) * operand.size
+    error = _RELATIVE * len(operands) * size + _ABSOLUTE
+    return _interval((low - error, high + error))
+
+
+@_widened
+def _product(one: Interval, other: Interval) -> Ends:
+    if one is other:
+        return _square(one)
     # A side that is 0 times one that is infinite gives NaN, for which the whole line is taken.
     products = np.array([a * b for a in (one.low, one.high) for b in (other.low, other.high)])
     return products.min(axis=0), products.max(axis=0)
 
 
-def _square(base: Interval) -> tuple[np.ndarray, np.ndarray]:
+def _square(base: Interval) -> Ends:
     least = np.where((base.low <= 0.0) & (base.high >= 0.0), 0.0, np.minimum(np.abs(base.low), np.abs(base.high)))
     return least**2, base.size**2
 
 
-def _power(base: Interval, exponent: float) -> tuple[np.ndarray, np.ndarray]:
+@_widened
+def _power(base: Interval, exponent: float) -> Ends:
     """A power that is not an integer, where the base is not negative, or −1."""
     if exponent == -1.0:
         across = (base.low < 0.0) & (base.high > 0.0)
@@ -138,7 +139,18 @@ def _power(base: Interval, exponent: float) -> tuple[np.ndarray, np.ndarray]:
     return (ends[0], ends[1]) if exponent > 0.0 else (ends[1], ends[0])
 
 
-def _sine(angle: Interval, shift: float) -> tuple[np.ndarray, np.ndarray]:
+@_widened
+def _exp(exponent: Interval) -> Ends:
+    return np.exp(exponent.low), np.exp(exponent.high)
+
+
+@_widened
+def _log(argument: Interval) -> Ends:
+    return np.log(np.maximum(argument.low, 0.0)), np.log(np.maximum(argument.high, 0.0))
+
+
+@_widened
+def _sine(angle: Interval, shift: float = 0.0) -> Ends:
     """sin(angle + shift)."""
     first, last = angle.low + shift, angle.high + shift
     margin = _RELATIVE * (np.abs(first) + np.abs(last) + 1.0)
@@ -152,3 +164,10 @@ def _sine(angle: Interval, shift: float) -> tuple[np.ndarray, np.ndarray]:
     low = np.where(unknown | trough, -1.0, np.minimum(ends[0], ends[2]))
     high = np.where(unknown | crest, 1.0, np.maximum(ends[1], ends[3]))
     return low, high
+
+
+def _cosine(angle: Interval) -> Interval:
+    return _sine(angle, 0.5 * np.pi)
+
+
+_OPERATIONS = Operations[Interval](_linear, _product, _power, {"exp": _exp, "log": _log, "sin": _sine, "cos": _cosine})

@@ -151,7 +151,7 @@ class BoundednessCertifier:
         """Certify orbits enclosed by the invariant curves of some of the given orbits."""
         regular = regular[self._on_section[regular]]
         regular = regular[:: -(-regular.size // _MAX_CURVES_PER_ROUND) or 1]
-        arguments = (self.potential.mirror_in_x, self._entry_points)
+        arguments = (self.potential.well.mirror_in_x, self._entry_points)
         tiles = run_tiles(_find_barriers, self.potential, self.states[regular], *arguments, execution=self._execution)
         found = [barrier for _, tile in tiles for barrier in tile]
         if self._execution.is_cancelled:

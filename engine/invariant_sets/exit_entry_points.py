@@ -8,8 +8,8 @@ import numpy as np
 
 from engine.dynamics.section_points import find_section_points
 from engine.execution import DEFAULT_EXECUTION
-from engine.exits.interior import find_outside_channels
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.exits.interior import find_outside_in_well_units
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.potentials.potential import Potential
 from engine.results.arrays import read_only
 from engine.slices.section import SECTION
@@ -30,7 +30,7 @@ def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, 
     Parameters
     ----------
     potential
-        The `Potential`.
+        The potential in units of its well, `Potential.in_well_units`.
     energy
         h, finite, dimensionless.
 
@@ -44,7 +44,7 @@ def find_entry_points(potential: Potential, energy: float) -> tuple[np.ndarray, 
         If the frame rotates, or exits are not defined at this energy.
     """
     potential.check_at_rest("entry points of exits")
-    return tuple(_entry_points(potential, energy, orbit) for orbit in find_lyapunov_orbits(potential, energy))
+    return tuple(_entry_points(potential, energy, orbit) for orbit in find_orbits_in_well_units(potential, energy))
 
 
 def _entry_points(potential: Potential, energy: float, orbit: LyapunovOrbit) -> np.ndarray:
@@ -68,6 +68,6 @@ def _is_interior(potential: Potential, energy: float, points: np.ndarray) -> np.
     x, px = points.T
     with np.errstate(invalid="ignore"):
         allowed = SECTION.plane.required_energy(potential, x, px) <= energy
-    outside = find_outside_channels(potential, energy, np.where(allowed, x, 0.0), np.zeros_like(x))
+    outside = find_outside_in_well_units(potential, energy, np.where(allowed, x, 0.0), np.zeros_like(x))
     interior: np.ndarray = allowed & (outside == 0)
     return interior

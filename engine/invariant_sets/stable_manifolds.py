@@ -18,7 +18,7 @@ from typing import ClassVar
 import numpy as np
 
 from engine.execution import DEFAULT_EXECUTION, Execution
-from engine.exits.lyapunov_orbits import LyapunovOrbit, find_lyapunov_orbits
+from engine.exits.lyapunov_orbits import LyapunovOrbit, find_orbits_in_well_units
 from engine.invariant_sets.unstable_manifold import UnstableManifold
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import LENGTH, MOMENTUM
@@ -171,9 +171,9 @@ def find_stable_manifolds(
     potential, energy = potential.in_well_units, given_energy / units.energy
     factors = 1.0 / units.length, 1.0 / units.momentum
     spacing = _PointSpacing.for_window(whole.scaled(*factors), part.scaled(*factors) if part is not None else None)
-    orbits = {orbit.channel: orbit for orbit in find_lyapunov_orbits(potential, energy)}
-    mirror = potential.mirror_in_x and window is None
-    image = potential.mirror_numbers(energy) if mirror else np.arange(potential.channels + 1)
+    orbits = {orbit.channel: orbit for orbit in find_orbits_in_well_units(potential, energy)}
+    mirror = potential.well.mirror_in_x and window is None
+    image = potential.well.mirror_numbers(energy) if mirror else np.arange(potential.channels + 1)
     firsts = [channel for channel in orbits if channel <= image[channel]]
     # Each thread waits for the tiles of its channel most of the time.
     with ThreadPoolExecutor(max(len(firsts), 1)) as threads:
@@ -201,7 +201,7 @@ def _find_arcs(orbit: LyapunovOrbit, images: int, spacing: _PointSpacing, execut
     try:
         tube = UnstableManifold.from_orbit(orbit)
     except ValueError as error:
-        raise ValueError(f"energy={orbit.energy * orbit.potential.stated_units.energy}: {error}") from None
+        raise ValueError(f"energy={orbit.energy * orbit.potential.well.stated_units.energy}: {error}") from None
     count = tube.near_passages + images
     passages = _refine(lambda phases: tube.find_passages(phases, count, execution), count, spacing, images * ORBITS_PER_IMAGE)
     arcs = []

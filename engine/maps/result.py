@@ -144,10 +144,7 @@ class EscapeMap(MapResult):
         """The same map with coordinates, energies and times in units of the well, in which its `batch` always is."""
         units, spec = self.spec.potential.units, self.spec.in_well_units()
         x_unit, ordinate_unit = self.spec.plane.axis_units(units)
-        return replace(
-            self, spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit,
-            escape_time=self.escape_time / units.time, horizon=self.horizon / units.time,
-        )  # fmt: skip
+        return replace(units.inverse.restore(self), spec=spec, x=self.x / x_unit, ordinate=self.ordinate / ordinate_unit)
 
     def restored(self, spec: MapSpec) -> EscapeMap:
         """This map, computed in units of the well, in the units of the request from which it was made."""

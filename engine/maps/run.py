@@ -163,7 +163,7 @@ class MapRun:
 
     def _close(self, pixels: np.ndarray) -> None:
         """Mark orbits as bounded whose energy is below every saddle; they need no integration."""
-        closed = self.spec.potential.is_closed_at(self._energy[pixels])
+        closed = self.spec.potential.well.is_closed_at(self._energy[pixels])
         undecided = self._batch.fate[pixels] == Fate.NOT_COMPUTED
         self._batch.mark_bounded(pixels[closed & undecided], Certificate.CLOSED)
 
@@ -234,7 +234,7 @@ class MapRun:
         seconds = self._mirror.partner
         firsts = np.flatnonzero(self._started & (seconds > np.arange(seconds.size)))
         if firsts.size:
-            self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.mirror_numbers(self._energy[firsts]))
+            self._batch.copy_to_images(firsts, seconds[firsts], self.spec.potential.well.mirror_numbers(self._energy[firsts]))
             self._started[seconds[firsts]] = True
         outcomes = collect_outcomes(self.spec.potential, self._energy, self._batch)
         if self._earlier_errors is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import json
 import operator
 from dataclasses import asdict, dataclass
@@ -14,7 +13,6 @@ import numpy as np
 from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
 from engine.potentials.stored_potential import describe_potential
-from engine.potentials.well_units import WellUnits
 from engine.slices.default_window import map_window
 from engine.slices.energies import Energy, common_energy, scaled_energy
 from engine.slices.parameter_family import parameter_family
@@ -24,7 +22,7 @@ from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.taylor.source.recurrence import TOLERANCE
 from engine.taylor.source.series import ORDER
-from engine.validation import check_type, checked_flag, checked_t_max, short_repr
+from engine.validation import check_type, checked_flag, checked_t_max, replace_unchecked, short_repr
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -99,7 +97,7 @@ class MapSpec:
             "energy": plane.checked_energy(self.energy),
             "resolution": _checked_resolution(self.resolution),
             "window": None if self.window is None else checked_window(self.window),
-            "t_max": checked_t_max(self.t_max, unit=lambda: self.potential.exact_time_unit),
+            "t_max": checked_t_max(self.t_max, unit=lambda: self.potential.well.exact_time_unit),
             "certify": checked_flag("certify", self.certify),
             "backward": checked_flag("backward", self.backward),
         }
@@ -140,20 +138,15 @@ class MapSpec:
         """The same map in units of the well, with its window; the legal range of t_max and of energies does not apply to it."""
         units, window = self.potential.units, self.find_window()
         potential = self.potential.reversed_in_time if self.backward else self.potential
-        scaled = copy.copy(self)
-        object.__setattr__(scaled, "window", window)
-        object.__setattr__(scaled, "potential", potential.in_well_units)
-        if units == WellUnits():
-            return scaled
-        for name, value in (
-            ("plane", self.plane.in_well_units(units)),
+        return replace_unchecked(
+            self,
+            potential=potential.in_well_units,
+            plane=self.plane.in_well_units(units),
             # Units are powers of 2, so that factors are exact.
-            ("energy", scaled_energy(self.energy, 1.0 / units.energy)),
-            ("window", window.scaled(*(1.0 / unit for unit in self.plane.axis_units(units)))),
-            ("t_max", self.t_max / units.time),
-        ):
-            object.__setattr__(scaled, name, value)
-        return scaled
+            energy=scaled_energy(self.energy, 1.0 / units.energy),
+            window=window.scaled(*(1.0 / unit for unit in self.plane.axis_units(units))),
+            t_max=self.t_max / units.time,
+        )
 
     def pixel_centres(self) -> tuple[np.ndarray, np.ndarray]:
         """x (columns,) and ordinate (rows,) of the pixel centres."""

@@ -320,7 +320,7 @@ def _find_uncertified(escape_map: EscapeMap) -> np.ndarray:
     """(rows, columns) bool: bounded pixels above the escape energy that have no certificate."""
     spec = escape_map.spec
     energy = spec.energies(*np.meshgrid(escape_map.x, escape_map.ordinate))
-    uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & ~spec.potential.is_closed_at(energy)
+    uncertified: np.ndarray = (escape_map.certificate == Certificate.INTEGRATED) & ~spec.potential.well.is_closed_at(energy)
     return uncertified
 
 
@@ -360,7 +360,7 @@ class _TrustTest:
         curves = np.repeat(closed_exits(potential)[None], energies.size, axis=0)
         for k, energy in enumerate(energies):
             curves[k] = exit_curves(potential, float(energy))
-        closed = np.flatnonzero(potential.is_closed_at(energies[curve_row]))
+        closed = np.flatnonzero(potential.well.is_closed_at(energies[curve_row]))
         reruns = []
         for start, tolerance in zip(perturbation.starts(spec, x, ordinate), perturbation.tolerances, strict=True):
             batch = OrbitBatch.from_starts(spec.start_states(*start), curve_row)

@@ -159,7 +159,7 @@ class _PairSampler:
         self.integrated_time = 0.0
         axis = spec.plane.energy_axis
         self.row_energy = np.array([spec.common_energy]) if axis is None else spec.pixel_centres()[axis]
-        self.is_open = ~spec.potential.is_closed_at(self.row_energy)
+        self.is_open = ~spec.potential.well.is_closed_at(self.row_energy)
         self.curves = self._find_exit_curves()
 
     def _find_exit_curves(self) -> np.ndarray:

@@ -13,10 +13,10 @@ _FIXED_STEP = 1.0 / 3.0
 
 def kernels_of(potential: Potential) -> ModuleType:
     """The compiled kernels of a potential in units of its well, from `load_kernels`."""
-    channels, discs, ring, _ = potential.setting
+    channels, discs, ring, _ = potential.well.setting
     return load_kernels(potential.form.definition, channels, discs=discs, ring=ring, rotation=potential.rotation)
 
 
 def fixed_step_size(potential: Potential) -> float:
     """The time step of fixed-step integration, dimensionless."""
-    return _FIXED_STEP / max(1.0, potential.fastest_frequency)
+    return _FIXED_STEP / max(1.0, potential.well.fastest_frequency)

@@ -9,7 +9,7 @@ from enum import Enum
 
 import numpy as np
 
-from engine.validation import check_type, checked_number
+from engine.validation import check_type, checked_number, replace_unchecked
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 1e-6, 1e6
 """Legal radii of centres and of escape, dimensionless: steps near the singularity of a smaller disc would not change t."""
@@ -48,11 +48,7 @@ class Centre:
     def scaled(self, factor: float) -> Centre:
         """The same centre in other units of length; a power of 2 as factor is exact."""
         # Legal radii are in the units of the system.
-        scaled = object.__new__(Centre)
-        for name, value in (("x", self.x), ("y", self.y), ("radius", self.radius)):
-            object.__setattr__(scaled, name, value * factor)
-        object.__setattr__(scaled, "name", self.name)
-        return scaled
+        return replace_unchecked(self, x=self.x * factor, y=self.y * factor, radius=self.radius * factor)
 
     def contains(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Whether points of any shape lie in its disc."""

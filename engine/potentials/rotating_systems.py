@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from engine.potentials.energy_ranges import EnergyRange
-from engine.potentials.potential_entry import ROTATION, PotentialEntry
+from engine.potentials.catalogue_entry import ROTATION, CatalogueEntry, EnergyRange
 
 # The Moon's share of the mass of Earth and Moon; its radius over its distance is 1737.4 / 384 400.
 _MOON_MASS = 0.0121505856
@@ -12,7 +11,7 @@ _UNIT_ROTATION = {ROTATION: 1.0}
 
 
 ROTATING_ENTRIES = (
-    PotentialEntry(
+    CatalogueEntry(
         "Copenhagen",
         "Copenhagen problem",
         "−(1 − m)/√((x + m)² + y²) − m/√((x + m − 1)² + y²); "
@@ -25,7 +24,7 @@ ROTATING_ENTRIES = (
         ("m",),
         EnergyRange(-2.6, -1.0, (), -1.6),
     ),
-    PotentialEntry(
+    CatalogueEntry(
         "Earth-Moon",
         "Earth–Moon system, at the Moon",
         "−(1 − m)/√((x + 1)² + y²) − m/r − (1 − m)x; centre the Moon (0, 0) 1737.4/384400",
@@ -36,7 +35,7 @@ ROTATING_ENTRIES = (
         ("m",),
         EnergyRange(-1.14, -1.045, (), -1.095, 4),
     ),
-    PotentialEntry(
+    CatalogueEntry(
         "Hill",
         "Hill's problem",
         "−1/r − x² + ½y²; centre the planet (0, 0) 0.001",
@@ -46,7 +45,7 @@ ROTATING_ENTRIES = (
         (),
         EnergyRange(-3.0, -1.0, (), -2.0),
     ),
-    PotentialEntry(
+    CatalogueEntry(
         "Star cluster",
         "Star cluster in a tide",
         "−1/√(r² + c²) − ½(3 − k²)x² + ½y²",
@@ -57,7 +56,7 @@ ROTATING_ENTRIES = (
         ("c", "k"),
         EnergyRange(-3.0, -0.9, (), -1.6),
     ),
-    PotentialEntry(
+    CatalogueEntry(
         "Barred galaxy",
         "Barred galaxy",
         "−400/√(r² + 0.25²) − 7000/√(r² + 3.175²) − 20000/√(r² + 20²) "
@@ -68,7 +67,7 @@ ROTATING_ENTRIES = (
         ("a", ROTATION),
         EnergyRange(-3500.0, -3010.0, (), -3200.0, 1),
     ),
-    PotentialEntry(
+    CatalogueEntry(
         "Logarithmic bar",
         "Rotating logarithmic bar",
         "½ log(x² + y²/q² + c²)",
@@ -78,7 +77,7 @@ ROTATING_ENTRIES = (
         ("q", "c", ROTATION),
         EnergyRange(-1.5, -0.35, (), -0.44),
     ),
-    PotentialEntry(
+    CatalogueEntry(
         "Two Yukawa centres",
         "Two Yukawa centres",
         "−exp(−k√((x + 1)² + y²))/√((x + 1)² + y²) − exp(−k√((x − 1)² + y²))/√((x − 1)² + y²); "

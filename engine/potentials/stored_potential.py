@@ -39,4 +39,4 @@ def read_potential(attributes: Mapping[Any, Any]) -> Potential:
     escape_radius = float(attributes.get("escape_radius", 0.0)) or None
     # The terms are those of the effective potential.
     x, y = json.loads(attributes.get("origin", "[0.0, 0.0]"))
-    return Potential(name, potential.form, "", float(attributes.get("rotation", 0.0)), centres, escape_radius, (x, y))
+    return Potential(name, potential.form, float(attributes.get("rotation", 0.0)), centres, escape_radius, (x, y))

@@ -8,12 +8,11 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from types import MappingProxyType
 
-from engine.potentials.catalogue import CATALOGUE, POTENTIALS
-from engine.potentials.energy_ranges import PAPER_ENERGIES, EnergyRange, energy_range
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue_entry import ROTATION, WELL_PARAMETERS, CatalogueEntry
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, formula_letters, parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.potential import CASES, PARAMETER_RANGES, Potential
-from engine.potentials.potential_entry import ROTATION, WELL_PARAMETERS
+from engine.potentials.potential import PARAMETER_RANGES, Potential
 from engine.validation import check_type
 
 TYPED = "typed"
@@ -60,8 +59,7 @@ class System:
         check_type("case", self.case, str)
         check_type("formula", self.formula, str)
         check_type("parameters", self.parameters, Mapping)
-        if self.case != TYPED:
-            _ = POTENTIALS[self.case]
+        _ = self.entry
         # Sorted, so that the order in which they were chosen changes neither titles nor links.
         places = {name: place for place, name in enumerate(PARAMETERS)}
         ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
@@ -70,6 +68,11 @@ class System:
 
     def __hash__(self) -> int:
         return hash((self.case, self.formula, tuple(self.parameters.items())))
+
+    @property
+    def entry(self) -> CatalogueEntry:
+        """Its entry of the catalogue; of a typed formula what its entry would be."""
+        return CatalogueEntry("", "Typed potential", self.formula) if self.case == TYPED else CATALOGUE[self.case]
 
     @property
     def potential(self) -> Potential:
@@ -84,12 +87,11 @@ class System:
     @property
     def parameter_names(self) -> tuple[str, ...]:
         """The names of all parameters; ValueError if a character of the formula is not understood."""
-        return (*PARAMETERS, *self.letters) if self.case == TYPED else CATALOGUE[self.case].adjustable
+        return (*self.entry.adjustable, *self.letters)
 
     def default_of(self, name: str) -> float:
         """The value of a parameter that is not given."""
-        known: Mapping[str, float] = {ROTATION: 0.0} if self.case == TYPED else CATALOGUE[self.case].parameters
-        return known.get(name, 1.0)
+        return self.entry.parameters.get(name, 1.0)
 
     def range_of(self, name: str) -> tuple[float, float]:
         """The smallest and the largest legal value of a parameter."""
@@ -108,11 +110,10 @@ class System:
         """The same system given by a formula: a well with its coefficients, another system with its letters."""
         if self.case == TYPED:
             return self
-        entry = CATALOGUE[self.case]
-        if "epsilon" in entry.parameters:
-            well = POTENTIALS[self.case].with_parameters(**self.well_parameters)
-            return System(TYPED, write_formula(well, SHOWN_DIGITS), {ROTATION: self.value_of(ROTATION)})
-        return System(TYPED, entry.formula, {**entry.parameters, **self.parameters})
+        if self.entry.is_well:
+            at_rest = self.with_parameter(ROTATION, 0.0).potential
+            return System(TYPED, write_formula(at_rest, SHOWN_DIGITS), {ROTATION: self.value_of(ROTATION)})
+        return System(TYPED, self.entry.formula, {**self.entry.parameters, **self.parameters})
 
     @property
     def well_parameters(self) -> dict[str, float]:
@@ -127,15 +128,14 @@ class System:
     @property
     def title(self) -> str:
         """Name of the potential, with the parameters that are not 1."""
-        name = "Typed potential" if self.case == TYPED else CATALOGUE[self.case].title
         changed = ", ".join(f"{PARAMETERS.get(name, name)} = {value:.6g}" for name, value in self.parameters.items())
-        return f"{name} with {changed}" if changed else name
+        return f"{self.entry.title} with {changed}" if changed else self.entry.title
 
     @property
     def formula_shown(self) -> str:
         """V(x, y) as text, with the values of the parameters; of systems with letters with these, and where axes are moved."""
-        if self.case != TYPED and (not self.parameters or "epsilon" not in CATALOGUE[self.case].parameters):
-            return CATALOGUE[self.case].formula
+        if self.case != TYPED and not (self.parameters and self.entry.is_well):
+            return self.entry.formula
         if self.value_of(ROTATION):
             return self.as_typed.formula
         potential = self.potential
@@ -144,23 +144,14 @@ class System:
             return f"{potential.name}, where x and y count from ({x:.6g}, {y:.6g})"
         return write_formula(potential, SHOWN_DIGITS)
 
-    @property
-    def energies(self) -> EnergyRange:
-        """Energy range of the paper for its cases, else multiples of the escape energy."""
-        if self.case in CASES and not self.parameters:
-            return PAPER_ENERGIES[self.case]
-        if self.case != TYPED and not self.parameters and (known := CATALOGUE[self.case].energies) is not None:
-            return known
-        return energy_range(self.potential)
-
 
 @lru_cache(maxsize=64)
 def _potential(system: System) -> Potential:
-    if system.case == TYPED:
-        plain = parse_formula(system.formula, parameters=system.letter_parameters)
-        return plain.with_parameters(**system.well_parameters).in_rotating_frame(system.value_of(ROTATION))
-    known = system.parameter_names
-    if unknown := [name for name in system.parameters if name not in known]:
-        legal = ", ".join(known) or "none"
+    entry = system.entry
+    if system.case != TYPED and (unknown := [name for name in system.parameters if name not in entry.adjustable]):
+        legal = ", ".join(entry.adjustable) or "none"
         raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is no parameter of {system.case}; it has {legal}")
-    return CATALOGUE[system.case].build(system.parameters)
+    values = {**entry.parameters, **system.parameters}
+    letters = {name: value for name, value in values.items() if name not in PARAMETERS}
+    well = {name: value for name, value in values.items() if name in WELL_PARAMETERS}
+    return parse_formula(entry.formula, entry.name, letters).with_parameters(**well).in_rotating_frame(values[ROTATION])

@@ -52,6 +52,11 @@ class WellUnits:
         """(4,) units of x, y, px, py."""
         return np.array([self.length, self.length, self.momentum, self.momentum])
 
+    @property
+    def inverse(self) -> WellUnits:
+        """The units in which `restore` does the opposite: from the units of the potential to those of the well."""
+        return WellUnits(1.0 / self.length, 1.0 / self.time)
+
     def restore[Computed](self, result: Computed) -> Computed:
         """A result that was computed in these units, in the units in which the potential was given, without rounding.
 

@@ -6,10 +6,10 @@ import functools
 
 import numpy as np
 
-from engine.exits.interior import find_outside_channels
-from engine.exits.lyapunov_orbits import find_lyapunov_orbits
+from engine.exits.interior import find_outside_in_well_units
+from engine.exits.lyapunov_orbits import find_orbits_in_well_units
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import review_potential
+from engine.potentials.review.potential_review import review_potential
 from engine.potentials.well_units import WellUnits
 from engine.slices.axes import ANGLES, MOMENTA, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.energies import Energy, common_energy, highest_energy, scaled_energy
@@ -111,7 +111,7 @@ def _on_symmetry_line(potential: Potential, plane: Slice, energy: Energy, place:
     points[place] = np.zeros(_LINE_POINTS)
     states = line.states(potential, common_energy(energy), *points)
     states = states[np.isfinite(states).all(axis=1)]
-    symmetries = ((potential.mirror_in_x, [0, 2]), (potential.mirror_in_y, [1, 3]))
+    symmetries = ((potential.well.mirror_in_x, [0, 2]), (potential.well.mirror_in_y, [1, 3]))
     return bool(states.size) and any(symmetric and not states[:, pair].any() for symmetric, pair in symmetries)
 
 
@@ -144,7 +144,7 @@ def _default_window(potential: Potential, plane: Slice, energy: Energy) -> Windo
 
 def _exact_unit(axis: Axis, potential: Potential) -> float:
     """The unit of an axis with the exact unit of time, so that the shape of a square does not depend on the user's units."""
-    units = WellUnits(potential.units.length, potential.exact_time_unit)
+    units = WellUnits(potential.units.length, potential.well.exact_time_unit)
     if isinstance(axis, Direction):
         return 1.0 / float(np.hypot.reduce([value / c.unit(units) for c, value in axis.components.items()]))
     return axis.unit(units)
@@ -200,7 +200,7 @@ def _scanned_ranges(potential: Potential, plane: Slice, energy: Energy) -> list[
         points = [side.ravel() for side in np.meshgrid(*sides)]
         states = plane.states(potential, highest_energy(energy), *points)
         exists = np.flatnonzero(np.isfinite(states).all(axis=1))
-        inside = exists[find_outside_channels(potential, highest_energy(energy), *states[exists, :2].T) == 0]
+        inside = exists[find_outside_in_well_units(potential, highest_energy(energy), *states[exists, :2].T) == 0]
         if not inside.size:
             return [(0.0, 0.0), (0.0, 0.0)]
         for place, axis in enumerate(plane.axes):
@@ -278,7 +278,7 @@ def _interior_interval(potential: Potential, energy: float, axis: Coordinate, he
 
 def _is_inside(potential: Potential, energy: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Whether points are allowed and not beyond an exit; the discs of centres are gaps in an interior and count as inside."""
-    outside = find_outside_channels(potential, energy, x, y)
+    outside = find_outside_in_well_units(potential, energy, x, y)
     in_disc = (outside > potential.channels) & (outside <= potential.channels + len(potential.centres))
     inside: np.ndarray = ~(potential.value(x, y) > energy) & ((outside == 0) | in_disc)
     return inside
@@ -321,7 +321,7 @@ def _interior_points(potential: Potential, energy: float) -> tuple[np.ndarray, n
     x, y = x[inside], y[inside]
     if x.size == 0 or not x.min() < x.max():
         return np.empty(0), np.empty(0)
-    orbits = find_lyapunov_orbits(potential, energy)
+    orbits = find_orbits_in_well_units(potential, energy)
     return np.concatenate([x, *(orbit.x for orbit in orbits)]), np.concatenate([y, *(orbit.y for orbit in orbits)])
 
 

@@ -55,7 +55,7 @@ class Member:
     def numbers_at(self, energy: float) -> np.ndarray:
         """`numbers` at an energy: an exit of several channels has the lowest of their numbers in the family."""
         numbers = self.numbers.copy()
-        for merged in self.potential.merged_exits(energy):
+        for merged in self.potential.well.merged_exits(energy):
             channels = list(merged.channels)
             numbers[channels] = np.sort(numbers[channels])
         return read_only(numbers)
@@ -75,7 +75,7 @@ class ParameterFamily:
     """
 
     def __init__(self, axis: ParameterAxis) -> None:
-        self._axis, self._lineage = axis, repr(axis)
+        self._axis = axis
         self._own = axis.system.value_of(axis.key)
         self._reach = max(abs(axis.low - self._own), abs(axis.high - self._own))
         self._step = max((axis.high - axis.low) / _PARTS, self._reach / _MOST_PARTS)
@@ -186,22 +186,23 @@ class ParameterFamily:
         first, last = self._nodes[low], self._nodes[high]
         matched = self._matches(low, high)
         share = (value - low) / (high - low)
-        if matched is None or len(first.potential.channel_mergers) != len(last.potential.channel_mergers):
+        if matched is None or len(first.potential.well.channel_mergers) != len(last.potential.well.channel_mergers):
             return None
         order = np.array(matched, int)
         plain = self._axis.potential(value)
         saddles = _continue(plain, (1.0 - share) * first.potential.saddles + share * last.potential.saddles[order])
-        maxima = []
-        for merger in first.potential.channel_mergers:
+        maxima, channels = np.empty((0, 2)), []
+        for merger in first.potential.well.channel_mergers:
             around = {int(order[k - 1]) + 1 for k in merger.channels}
-            other = next((each for each in last.potential.channel_mergers if set(each.channels) == around), None)
+            other = next((each for each in last.potential.well.channel_mergers if set(each.channels) == around), None)
             if other is None:
                 return None
             guess = (1.0 - share) * np.array([[merger.x, merger.y]]) + share * np.array([[other.x, other.y]])
-            maxima.append((_continue(plain, guess)[0], tuple(k - 1 for k in merger.channels)))
-        if not (np.isfinite(saddles).all() and all(np.isfinite(place).all() for place, _ in maxima)):
+            maxima = np.concatenate([maxima, _continue(plain, guess)])
+            channels.append([k - 1 for k in merger.channels])
+        if not (np.isfinite(saddles).all() and np.isfinite(maxima).all()):
             return None
-        potential = plain.continued(self._lineage, saddles, maxima)
+        potential = plain.continued(repr(self._axis), saddles, maxima, channels)
         ordered = [_nearest(saddles, place) for place in potential.saddles]
         if None in ordered or len(set(ordered)) < len(saddles):
             return None

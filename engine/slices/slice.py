@@ -176,8 +176,6 @@ class Slice:
 
     def restore[Computed](self, result: Computed, units: WellUnits) -> Computed:
         """As `WellUnits.restore`, for a result whose `x` and `ordinate`, numbers or arrays, are positions on this slice."""
-        if units == WellUnits():
-            return result
         x_unit, ordinate_unit = self.axis_units(units)
         x, ordinate = x_unit * result.x, ordinate_unit * result.ordinate  # type: ignore[attr-defined]
         for coordinate in (x, ordinate):
@@ -313,7 +311,7 @@ class Slice:
         (rows · columns,) pixel indices in row-major order; None if the potential, the slice or the grid is not symmetric.
         """
         mirrored = self.mirrored_axes
-        if mirrored is None or not any(mirrored) or not potential.mirror_in_x:
+        if mirrored is None or not any(mirrored) or not potential.well.mirror_in_x:
             return None
         if any(flips and not np.array_equal(axis, -axis[::-1]) for flips, axis in zip(mirrored, (x, ordinate), strict=True)):
             return None

@@ -197,7 +197,7 @@ def _measure_decay_rate(measured: MeasuredMap) -> Variables:
 def _measure_exponent(measured: MeasuredMap) -> Variables:
     """See `compute_uncertainty_exponent`; NaN if it is undetermined or no exit is open."""
     spec, found = measured.frame.spec, (math.nan,) * 3
-    if spec.potential.open_channels(spec.common_energy or 0.0):
+    if spec.potential.well.open_channels(spec.common_energy or 0.0):
         fit = compute_uncertainty_exponent(spec, work=_WORK, execution=measured.execution)
         found = fit.exponent, fit.low, fit.high
     return _with_interval("exponent", found, "uncertainty exponent")

@@ -154,7 +154,7 @@ def compute_birkhoff_digits(
     array([8.9])
     """
     start, units = checked_state("state", state), potential.units
-    t_max = checked_t_max(t_max, unit=lambda: potential.exact_time_unit)
+    t_max = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
     return units.restore(_compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution))
 
 
@@ -165,7 +165,7 @@ def _compare_windows(potential: Potential, start: np.ndarray, t_max: float, exec
     orbit.mark_outside(potential, np.arange(1), curves, execution=execution.in_this_thread())
     digits: list[float] = []
     # Not in units of the well, which are rounded: verdicts must not depend on the user's units.
-    unit = potential.exact_time_unit
+    unit = potential.well.exact_time_unit
     windows = [window * unit for window in WINDOWS]
     for window in windows:
         if potential.centres or 2.0 * window > t_max or not _stays_inside(potential, curves, orbit, 2.0 * window, execution):

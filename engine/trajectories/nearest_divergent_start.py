@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.dynamics.classification import classify_orbits
+from engine.dynamics.classification import classify_in_well_units
 from engine.dynamics.fates import Fate, OrbitResult, name_fate
 from engine.execution import DEFAULT_EXECUTION, Execution
 from engine.potentials.outcomes import Outcome
@@ -122,7 +122,7 @@ def find_divergent_start(
     h = _checked_energy(plane, energy, x, ordinate)
     if plane.parameter is not None:
         potential, plane = plane.potential_at(potential, x, ordinate), plane.line((x, ordinate)[plane.parameter_axis or 0])
-    t_max, units = checked_t_max(t_max, unit=lambda: potential.exact_time_unit), potential.units
+    t_max, units = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit), potential.units
     nearest = _MIN_DISTANCE * units.length
     furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
     if not furthest > nearest:
@@ -212,7 +212,7 @@ class _Search:
         x, ordinate = points.reshape(-1, 2).T
         states = self.plane.states(self.potential, self.h, x, ordinate)
         exists = np.isfinite(states).all(axis=1)
-        outcomes = classify_orbits(self.potential, self.h, states[exists], t_max, execution=self.execution)
+        outcomes = classify_in_well_units(self.potential, self.h, states[exists], t_max, self.execution)
         self.execution.raise_if_cancelled()
         fate, escape_time = np.full(x.size, Fate.FORBIDDEN, np.int8), np.full(x.size, np.nan)
         fate[exists], escape_time[exists] = outcomes.fate, outcomes.escape_time

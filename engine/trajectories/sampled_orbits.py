@@ -168,5 +168,5 @@ def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.nd
     if not (has_shape and (rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
         raise ValueError(f"times of shape {times.shape}: must be ascending from 0, (m,) or ({count}, m)")
     for last in (rows[:, -1].min(), rows[:, -1].max()):
-        checked_t_max(float(last), MAX_ORBIT_TIME, lambda: potential.exact_time_unit, name="times: the last one")
+        checked_t_max(float(last), MAX_ORBIT_TIME, lambda: potential.well.exact_time_unit, name="times: the last one")
     return rows

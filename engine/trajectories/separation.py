@@ -81,7 +81,7 @@ def compute_separation(
     (2000, 235)
     """
     units, potential = potential.units, potential.in_well_units
-    longest = checked_t_max(t_end, unit=lambda: potential.exact_time_unit, name="t_end")
+    longest = checked_t_max(t_end, unit=lambda: potential.well.exact_time_unit, name="t_end")
     times = np.linspace(0.0, min(longest / units.time, LONGEST_SEPARATION), _SAMPLES)
     kernels = kernels_of(potential)
     paths = []

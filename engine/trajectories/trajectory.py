@@ -175,7 +175,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     (1, 15.1781, 8)
     """
     start, units = checked_state("state", state), potential.units
-    t_max = checked_t_max(t_max, MAX_ORBIT_TIME, lambda: potential.exact_time_unit)
+    t_max = checked_t_max(t_max, MAX_ORBIT_TIME, lambda: potential.well.exact_time_unit)
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
     return replace(units.restore(orbit), potential=potential)
 
@@ -191,14 +191,14 @@ def _integrate(potential: Potential, start: np.ndarray, t_max: float, execution:
         read_only(array)
     fate, escape_time, crossings, energy_error = (values[0].item() for values in recorded.outcomes.columns().values())
     certificate = _certificate(potential, energy, fate)
-    numbers = fate, escape_time, crossings, energy_error, energy, certificate, potential.exact_time_unit
+    numbers = fate, escape_time, crossings, energy_error, energy, certificate, potential.well.exact_time_unit
     return Orbit(*arrays, *numbers, exits_unknown=exits_unknown)
 
 
 def _certificate(potential: Potential, energy: float, fate: int) -> Certificate:
     if fate != Fate.BOUNDED:
         return Certificate.NONE
-    return Certificate.CLOSED if potential.is_closed_at(energy) else Certificate.INTEGRATED
+    return Certificate.CLOSED if potential.well.is_closed_at(energy) else Certificate.INTEGRATED
 
 
 def _sample_orbit(

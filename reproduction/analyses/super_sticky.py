@@ -123,7 +123,7 @@ def find_super_sticky_orbits(
     place = np.searchsorted(firsts, np.minimum(pixels, mirror.partner[pixels]))
     fate = found.fate[place]
     if mirror.symmetric:
-        fate = np.where(integrated, fate, spec.potential.mirror_channels[fate])
+        fate = np.where(integrated, fate, spec.potential.well.mirror_channels[fate])
     return SuperStickySearch(
         spec, int(np.count_nonzero(escape_map.fate == Fate.BOUNDED)), x, ordinate, states, fate,
         found.escape_time[place], found.crossings[place], images=2 if mirror.symmetric else 1, t_max=t_max,

@@ -50,7 +50,7 @@ def test_energy_is_conserved(potential: Potential) -> None:
 def test_lyapunov_orbits_are_periodic_and_unstable(potential: Potential) -> None:
     energy = energy_of(potential, ENERGY_FACTOR)
     orbits = find_lyapunov_orbits(potential, energy)
-    assert [orbit.channel for orbit in orbits] == list(potential.open_channels(energy))
+    assert [orbit.channel for orbit in orbits] == list(potential.well.open_channels(energy))
     for orbit in orbits[:3]:
         start = np.array([orbit.x[0], orbit.y[0], 0.0, 0.0])
         half = solve_ivp(equations(potential), (0.0, 0.5 * orbit.period), start, "DOP853", rtol=1e-13, atol=1e-15)

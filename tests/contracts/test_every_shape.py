@@ -9,7 +9,7 @@ import sympy
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import PointKind, review_potential
+from engine.potentials.review.potential_review import PointKind, review_potential
 from tests.contracts.potentials import each_potential
 
 X, Y = sympy.symbols("x y")
@@ -50,7 +50,7 @@ def test_descent_from_a_saddle_reaches_the_origin_on_one_side_only(potential: Po
     for channel, saddle in enumerate(potential.saddles, start=1):
         ends = []
         for side in (-3.0, 3.0):
-            place = saddle + side * stride * potential.outward_directions[channel - 1]
+            place = saddle + side * stride * potential.well.outward_directions[channel - 1]
             for _ in range(400):
                 slope = np.array(potential.gradient(*place))
                 place = place - stride * slope / np.hypot(*slope)

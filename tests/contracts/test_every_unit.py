@@ -43,7 +43,7 @@ from engine import (
     start_states,
     trace_zero_velocity_curve,
 )
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.potentials.well_units import WellUnits
 from engine.sweeps.measures import SweepPoint, compute_point
 

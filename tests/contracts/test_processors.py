@@ -18,7 +18,7 @@ SPECS = [
     MapSpec(POTENTIALS["I"], Plane.X_PX, 0.19, (40, 40), t_max=2e3),
     MapSpec(POTENTIALS["II"], Plane.X_Y, 0.18, (40, 40), t_max=2e3),
     MapSpec(POTENTIALS["III"], Plane.X_PX, 0.35, (40, 40), t_max=2e3),
-    MapSpec(POTENTIALS["Logarithmic bar"], Plane.X_PX, POTENTIALS["Logarithmic bar"].energy_at(1.1), (24, 24), t_max=200.0),
+    MapSpec(POTENTIALS["Logarithmic bar"], Plane.X_PX, POTENTIALS["Logarithmic bar"].well.energy_at(1.1), (24, 24), t_max=200.0),
     MapSpec(parse_formula("½r² − 2x²y exp(−y²)"), Plane.X_PX, 0.05, (24, 24), t_max=200.0),
 ]
 

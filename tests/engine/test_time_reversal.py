@@ -30,7 +30,7 @@ TURNED_FATES = np.array([0, 2, 1, 3])
 @pytest.mark.parametrize("name", [entry.name for entry in ROTATING_ENTRIES])
 def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
     potential, energy = System(name).potential, ENERGIES[name]
-    t_max = DURATION * potential.exact_time_unit
+    t_max = DURATION * potential.well.exact_time_unit
     starts = sample_starts(potential, energy, STARTS, seed=5)
     # Backward in time an orbit is one of the reversed system with the opposite velocity.
     backward = classify_orbits(potential.reversed_in_time, energy, starts * [1.0, 1.0, -1.0, -1.0], t_max)
@@ -43,7 +43,7 @@ def test_orbits_backward_are_reflected_orbits_forward(name: str) -> None:
 @pytest.mark.parametrize("name", ["Copenhagen", "Hill", "Star cluster", "Barred galaxy", "Two Yukawa centres"])
 def test_orbits_turned_by_half_a_circle_are_orbits(name: str) -> None:
     potential, energy = System(name).potential, ENERGIES[name]
-    t_max = DURATION * potential.exact_time_unit
+    t_max = DURATION * potential.well.exact_time_unit
     starts = sample_starts(potential, energy, STARTS, seed=6)
     one, other = (classify_orbits(potential, energy, states, t_max) for states in (starts, starts * TURNED))
     np.testing.assert_array_equal(TURNED_FATES[one.fate], other.fate)
@@ -54,7 +54,7 @@ def test_orbits_turned_by_half_a_circle_are_orbits(name: str) -> None:
 @pytest.mark.parametrize("name", ["Copenhagen", "Barred galaxy"])
 def test_a_map_backward_is_the_reflected_map_forward(name: str) -> None:
     potential, energy = System(name).potential, ENERGIES[name]
-    t_max = DURATION * potential.exact_time_unit
+    t_max = DURATION * potential.well.exact_time_unit
     spec = MapSpec(potential, Plane.X_PX, energy, (40, 40), t_max=t_max)
     forward = compute_map(spec)
     backward = compute_map(MapSpec(potential, Plane.X_PX, energy, (40, 40), spec.find_window(), t_max=t_max, backward=True))

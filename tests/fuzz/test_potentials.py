@@ -10,10 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.state.permalink import write_link
-from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
 from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
+from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import PARAMETERS, TYPED
 from plots.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link

@@ -69,7 +69,7 @@ def open_wells() -> tuple[tuple[int, Potential], ...]:
 
 def energy_of(seed: int, potential: Potential) -> float:
     highest = review_potential(potential).highest_energy
-    energy = potential.energy_at(float(np.random.default_rng(seed).uniform(*FACTORS)))
+    energy = potential.well.energy_at(float(np.random.default_rng(seed).uniform(*FACTORS)))
     return min(energy, potential.escape_energy + 0.5 * (highest - potential.escape_energy))
 
 
@@ -85,7 +85,7 @@ def test_outcomes_are_those_of_heyoka(number: int) -> None:
 @pytest.mark.parametrize("number", range(0, WELLS, 5))
 def test_energy_is_held(number: int) -> None:
     _, potential = open_wells()[number]
-    energy = potential.energy_at(0.9)
+    energy = potential.well.energy_at(0.9)
     x = 0.1 * potential.units.length * np.linspace(-1.0, 1.0, 8)
     states = start_states(potential, Plane.X_Y, energy, x, np.zeros(8))
     outcomes = classify_orbits(potential, energy, states, 1e4 * potential.units.time)

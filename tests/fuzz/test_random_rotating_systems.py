@@ -36,7 +36,7 @@ def random_system(seed: int) -> tuple[Potential, float]:
     review = review_potential(well)
     if review.refusal is not None:
         raise ValueError(review.refusal)
-    energy = well.energy_at(float(random.uniform(*FACTORS)))
+    energy = well.well.energy_at(float(random.uniform(*FACTORS)))
     energy = min(energy, well.escape_energy + 0.5 * (review.highest_energy - well.escape_energy))
     size = well.units.length
     x, y = (size * random.uniform(-0.5, 0.5, 2)).tolist()
@@ -73,6 +73,6 @@ def accepted_system(number: int) -> tuple[int, Potential, float, np.ndarray]:
 )
 def test_outcomes_are_those_of_heyoka(number: int) -> None:
     seed, potential, energy, starts = accepted_system(number)
-    comparison = compare(potential, energy, starts, DURATION * potential.exact_time_unit)
+    comparison = compare(potential, energy, starts, DURATION * potential.well.exact_time_unit)
     assert seed in CHAOTIC_SEEDS or comparison.robust > LEAST_ROBUST * STARTS
     assert comparison.wrong == 0

@@ -41,7 +41,7 @@ def test_outcomes_are_those_of_heyoka(name: str) -> None:
     potential = System(name).potential
     for energy in energies_of(name):
         starts = sample_starts(potential, energy, STARTS, seed=1)
-        comparison = compare(potential, energy, starts, DURATION * potential.exact_time_unit)
+        comparison = compare(potential, energy, starts, DURATION * potential.well.exact_time_unit)
         assert comparison.robust > 0.9 * STARTS
         assert comparison.wrong == 0
 
@@ -118,7 +118,7 @@ GRAZED = [
 @pytest.mark.parametrize(("name", "energy"), GRAZED)
 def test_an_orbit_that_grazes_an_exit_ends_there_only_beyond_it(name: str, energy: float, depth: float) -> None:
     potential = System(name).potential
-    before, after = TIME_TO_TURN * potential.exact_time_unit, (TIME_TO_TURN + AFTER) * potential.exact_time_unit
+    before, after = TIME_TO_TURN * potential.well.exact_time_unit, (TIME_TO_TURN + AFTER) * potential.well.exact_time_unit
 
     def are_inside(states: np.ndarray) -> np.ndarray:
         return find_outside_channels(potential, energy, *np.ascontiguousarray(states[:, :2].T)) == 0

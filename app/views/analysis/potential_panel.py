@@ -11,14 +11,15 @@ import panel as pn
 
 from app.browser.formula_box import FormulaBox
 from app.browser.parameter_slider import ParameterSlider
-from app.state.system_review import SystemReview
 from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button
 from engine import PotentialReview, System
 from engine.potentials.catalogue import CATALOGUE
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
+from engine.potentials.review.potential_review import SystemReview
 from engine.potentials.system import PARAMETERS, RANGES, TYPED
+from plots.accepted_potentials import refusal
 from plots.mathml import potential_formula, potential_symbol
 from plots.palette import MOST_CHANNELS
 
@@ -135,12 +136,12 @@ class PotentialPanel:
 
     def show(self, reviewed: SystemReview, note: str = _HINT) -> None:
         """Show the properties of the system of the widgets, and a note or the reason why the maps cannot show it."""
-        review = reviewed.review
-        self.typeset.object = potential_formula(review.potential)
-        passed = f"<p>{_channels(review)}</p><p class='quiet'>{escape(note)}</p>"
-        self._write(_alert(reviewed.problem) if reviewed.problem else passed)
-        self._offer(review.well if reviewed.problem else None)
-        self.facts.object = _points(review) + _remarks(review)
+        problem = refusal(reviewed)
+        self.typeset.object = potential_formula(reviewed.potential)
+        passed = f"<p>{_channels(reviewed)}</p><p class='quiet'>{escape(note)}</p>"
+        self._write(_alert(problem) if problem else passed)
+        self._offer(reviewed.well if problem else None)
+        self.facts.object = _points(reviewed) + _remarks(reviewed)
 
     def wait(self) -> None:
         """The system of the widgets is under review."""
@@ -155,7 +156,7 @@ class PotentialPanel:
     def _write(self, message: str) -> None:
         """Show a message, and what the maps show if it is another system."""
         used = self.used
-        shows = f"The maps still show {used.system.title}: V = {used.formula_shown}"
+        shows = f"The maps still show {used.system.title}: V = {used.formula}"
         draft = f"<p class='quiet'>{escape(shows)}</p>" if self.shown != used.system else ""
         self.message.object = message + draft
 
@@ -212,7 +213,7 @@ class PotentialPanel:
 
 def _text(system: System) -> str:
     """The formula of a system without its parameters."""
-    return system.formula if system.case == TYPED else CATALOGUE[system.case].formula
+    return system.entry.formula
 
 
 def _typed(text: str, before: System) -> System:

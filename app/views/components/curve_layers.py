@@ -11,7 +11,8 @@ from bokeh.plotting import figure
 
 from app.views.components.plots import batched_additions
 from engine import LyapunovOrbit, MapSpec, find_lyapunov_orbits, trace_zero_velocity_curve
-from engine.potentials.energy_ranges import critical_energies, depth_levels
+from engine.potentials.review.energy_ranges import depth_levels
+from engine.potentials.review.potential_review import critical_energies
 from engine.slices.limiting_curves import trace_equipotentials
 from plots.palette import DARK, LIGHT, MOST_CHANNELS, PAPER, Entry, Inks, Palette
 

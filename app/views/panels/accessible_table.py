@@ -49,7 +49,7 @@ class AccessibleTable:
 
     def _view(self) -> list[tuple[str, str]]:
         state, reviewed = self._state, self._state.reviewed
-        rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula_shown)]
+        rows = [("system", reviewed.system.title), ("potential V(x, y)", reviewed.formula)]
         rows += [("plane", state.plane.title), ("t_max", grouped(state.t_max))]
         rows += [("resolution", f"{state.resolution} × {state.resolution} starts")]
         if state.window is not None:

@@ -18,7 +18,7 @@ from app.views.components.collapsible_section import Fold
 from app.views.components.texts import TextPane
 from app.views.components.widgets import SegmentedControl, Switches, bind, button, set_value
 from engine import CASES, Plane, Potential, Slice
-from engine.potentials.energy_ranges import EnergyRange
+from engine.potentials.catalogue_entry import EnergyRange
 from plots.palette import PALETTES
 
 LOCK = "Lock colour scale"
@@ -194,7 +194,7 @@ class Controls:
         self.energy.param.update(low=energies.low, high=energies.high, decimals=energies.decimals)
         self.ticks.object = _ticks(state.potential.escape_energy, energies)
         self.exact_energy.step = 10.0**-energies.decimals
-        formula, _, _ = reviewed.formula_shown.partition(";")
+        formula, _, _ = reviewed.formula.partition(";")
         self.facts.object = (
             f"<div title='H = ½(px² + py²) + V(x, y)'><b>{escape_text(reviewed.system.title)}</b>: "
             f"V = {escape_text(formula)}<br><span class='quiet'>{_outcomes(state.potential)}</span></div>"

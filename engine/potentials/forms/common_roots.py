@@ -16,6 +16,7 @@ from typing import Any
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpq_poly
 
 from engine.polynomials import ExactTerms
+from engine.potentials.forms.point_searches import UndecidedError
 
 RING = fmpq_mpoly_ctx.get(("x", "y"), Ordering.lex)
 """The polynomials in x and y with rational coefficients."""
@@ -26,10 +27,6 @@ _SHEARS = (fmpq(37, 101), fmpq(-67, 89), fmpq(113, 71))
 _PRECISIONS = (128, 256, 512, 1024)
 # Relative distance within which an x is compared with s − k y by intervals.
 _NEAR = 1e-9
-
-
-class UndecidedError(ValueError):
-    """The points are not found within the limit on the work."""
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,7 @@ from flint import arb, ctx, fmpq, fmpq_mpoly
 
 from engine.polynomials import Terms
 from engine.potentials.forms.common_roots import RING, CommonRoot, exact_polynomial, find_common_roots
-from engine.results.arrays import read_only
-
-NO_POINTS = read_only(np.empty((0, 2)))
-"""(0, 2) an empty list of points."""
+from engine.potentials.forms.point_searches import NotIsolatedError
 
 # Denominators of fractions that are recognised, such as 1/3.
 _LARGEST_DENOMINATOR = 1000
@@ -32,13 +29,6 @@ _PRECISION = 1024
 _ROUNDING = 2.0**-44
 # Precision is a global variable of FLINT.
 _LOCK = threading.Lock()
-
-
-class NotIsolatedError(ValueError):
-    """The critical points form a curve, so they cannot be listed."""
-
-    def __init__(self, message: str = "the force vanishes along a curve instead of at isolated points") -> None:
-        super().__init__(message)
 
 
 def find_critical_points(terms: Terms) -> np.ndarray:

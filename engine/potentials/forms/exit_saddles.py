@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from engine.potentials.forms.critical_points import NO_POINTS
 from engine.potentials.forms.form import Velocity
+from engine.potentials.forms.point_searches import NO_POINTS, DescentError
 
 Downhill = Callable[[float, float], Velocity]
 Hessian = Callable[..., tuple[np.ndarray, ...]]
@@ -35,10 +35,6 @@ _FIRST_MOVE = 1e-6
 _MOST_STEPS = 20_000
 # Limit on the steps of one method along one line. Most lines need 200, those through long narrow valleys about 2 000.
 _MOST_STEPS_ALONG_LINE = 5_000
-
-
-class DescentError(ValueError):
-    """A line of steepest descent whose end is not found."""
 
 
 def leads_out_of_well(

@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from engine.expressions.calculus import derivative, replace_parts, substitute
-from engine.expressions.graph import Graph, evaluate, evaluate_at, make_graph
+from engine.expressions.calculus import curvatures, derivative, replace_parts, slopes, substitute
+from engine.expressions.evaluation import evaluate, evaluate_at
+from engine.expressions.graph import Graph, make_graph
 from engine.expressions.nodes import Expression, Sum, X, Y, as_terms, from_terms, linear_combination, multiply, number, power
 from engine.expressions.parity import EVEN, parity
 from engine.expressions.singularities import singular_bases
 from engine.expressions.text import write_expression
 from engine.polynomials import Terms
-from engine.potentials.forms.common_roots import UndecidedError
-from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 from engine.potentials.forms.form import Velocity
 from engine.potentials.forms.interval_newton import Derivatives
+from engine.potentials.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.forms.stationary_points import find_stationary_points
 from engine.potentials.well_units import nearest_power_of_two
@@ -97,12 +97,12 @@ class ExpressionForm:
 
     def gradient(self, x: Any, y: Any) -> tuple[Any, Any]:
         """(V_x, V_y)."""
-        along_x, along_y = self._evaluate(x, y, *self._slopes)
+        along_x, along_y = self._evaluate(x, y, *slopes(self.expression))
         return along_x, along_y
 
     def hessian(self, x: Any, y: Any) -> tuple[Any, Any, Any]:
         """(V_xx, V_xy, V_yy)."""
-        vxx, vxy, vyy = self._evaluate(x, y, *self._curvatures)
+        vxx, vxy, vyy = self._evaluate(x, y, *curvatures(self.expression))
         return vxx, vxy, vyy
 
     @staticmethod
@@ -113,20 +113,11 @@ class ExpressionForm:
     @property
     def slopes_graph(self) -> tuple[Graph, tuple[float, ...]]:
         """The graph of V, V_x and V_y, and its numbers."""
-        return make_graph((self.expression, *self._slopes))
-
-    @property
-    def _slopes(self) -> tuple[Expression, Expression]:
-        return derivative(self.expression, 0), derivative(self.expression, 1)
-
-    @property
-    def _curvatures(self) -> tuple[Expression, Expression, Expression]:
-        along_x, along_y = self._slopes
-        return derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1)
+        return make_graph((self.expression, *slopes(self.expression)))
 
     def force(self, axis: int) -> ExpressionForm:
         """−∂V/∂x or −∂V/∂y."""
-        return ExpressionForm(linear_combination([(-1.0, self._slopes[axis])]))
+        return ExpressionForm(linear_combination([(-1.0, derivative(self.expression, axis))]))
 
     def find_critical_points(self) -> np.ndarray:
         """(n, 3) those of a region, see `engine.potentials.forms.stationary_points`."""
@@ -142,7 +133,7 @@ class ExpressionForm:
         around = self.gradient(length * np.cos(_ANGLES), length * np.sin(_ANGLES))
         steep = length * curvature if np.isfinite(curvature) else float(np.hypot(*around).mean())
 
-        graph, numbers = make_graph(self._slopes)
+        graph, numbers = make_graph(slopes(self.expression))
 
         def velocity(_time: float, place: np.ndarray) -> np.ndarray:
             along_x, along_y = evaluate_at(graph, numbers, *place.tolist())
@@ -209,8 +200,8 @@ class ExpressionForm:
         """Size of V and of its derivatives, each before the next ones are made: they can be a hundred times as large."""
         graphs = (
             ("V has", lambda: (self.expression,)),
-            ("The first derivatives of V have", lambda: self._slopes),
-            ("The first and second derivatives of V have", lambda: (*self._slopes, *self._curvatures)),
+            ("The first derivatives of V have", lambda: slopes(self.expression)),
+            ("The first and second derivatives of V have", lambda: (*slopes(self.expression), *curvatures(self.expression))),
         )
         for subject, expressions in graphs:
             used = make_graph(expressions())[0].convolutions

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.expressions.calculus import derivative
-from engine.expressions.graph import Graph, evaluate, make_graph
+from engine.expressions.calculus import curvatures, derivative, slopes
+from engine.expressions.evaluation import evaluate
+from engine.expressions.graph import Graph, make_graph
 from engine.expressions.intervals import Enclosure, Interval, enclose
 from engine.expressions.nodes import Expression, X, Y, expand, linear_combination
 from engine.expressions.singularities import has_central_part, oblique_gradients, singular_bases
@@ -53,7 +54,7 @@ class Derivatives:
 
         Along a straight wall the derivative of V is small, while those along x and y are large: the second direction is along it.
         """
-        along_x, along_y = derivative(expression, 0), derivative(expression, 1)
+        along_x, along_y = slopes(expression)
         oblique = [linear_combination([(b, along_x), (-a, along_y)]) for a, b in oblique_gradients(expression)]
         first, second, *others = [along_x, *oblique, along_y]
         if has_central_part(expression):
@@ -62,7 +63,7 @@ class Derivatives:
         return cls(
             make_graph((expression, first, second, *others)),
             make_graph(tuple(derivative(each, axis) for each in (first, second) for axis in (0, 1))),
-            make_graph((derivative(along_x, 0), derivative(along_x, 1), derivative(along_y, 1))),
+            make_graph(curvatures(expression)),
             make_graph(singular_bases(expression)),
         )
 

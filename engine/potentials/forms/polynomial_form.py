@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from engine.polynomials import HIGHEST_DEGREE, Powers, Terms, degree, derivative, evaluate, largest_coefficients, substitute
-from engine.potentials.forms.critical_points import NO_POINTS, find_critical_points
+from engine.potentials.forms.critical_points import find_critical_points
 from engine.potentials.forms.form import Velocity
+from engine.potentials.forms.point_searches import NO_POINTS
 from engine.validation import LARGEST_COEFFICIENT, checked_count, checked_number, short_repr
 
 MOST_TERMS = 60

@@ -12,15 +12,11 @@ from __future__ import annotations
 import numpy as np
 
 from engine.expressions.intervals import enclose
-from engine.potentials.forms.common_roots import UndecidedError
-from engine.potentials.forms.critical_points import NO_POINTS, NotIsolatedError
 from engine.potentials.forms.interval_newton import Derivatives, box, excludes_zero, newton_step, refined, solve
+from engine.potentials.forms.point_searches import NO_POINTS, NotIsolatedError, UndecidedError
 
 MOST_POINTS = 60
 """Largest number of critical points in the region."""
-
-SINGULAR_RATIO = 1e-10
-"""A Hessian is singular if the ratio of its eigenvalues is at most this."""
 
 # Radius of the region in units of the distance of the nearest critical point, and operations on boxes, 6e7 a second. The smaller
 # ones follow where V is not defined in a larger one, or it has too many points or needs too many operations.
@@ -33,6 +29,9 @@ _SUBNORMAL = 1e-290
 _CONVERGED = 1e-12
 # Relative to their distance from the origin and to that of the nearest point, points closer than this are the same one.
 _SAME, _SAME_DEGENERATE = 1e-8, 1e-5
+# A Hessian is singular if the ratio of its eigenvalues is at most this. For a polynomial the rounding of its coefficients decides
+# (`critical_points`); the error of the second derivatives of an expression is not known.
+_SINGULAR_RATIO = 1e-10
 # Coordinates below this, in units of the distance of the nearest point, are rounding errors of zero.
 _ROUNDING = 1e-13
 
@@ -174,5 +173,5 @@ def _with_indices(derivatives: Derivatives, points: np.ndarray) -> np.ndarray:
     hessians = np.nan_to_num(derivatives.hessian_at(points))
     eigenvalues = np.linalg.eigvalsh(hessians)
     sizes = np.abs(eigenvalues)
-    is_singular = sizes.min(axis=1) <= SINGULAR_RATIO * sizes.max(axis=1)
+    is_singular = sizes.min(axis=1) <= _SINGULAR_RATIO * sizes.max(axis=1)
     return np.column_stack([points, np.where(is_singular, 0.0, np.sign(eigenvalues).prod(axis=1))])

@@ -26,6 +26,7 @@ from engine import (
     default_window,
 )
 from engine.dynamics.portable_system import make_portable_system
+from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 from tests.node import needs_node, run_node
 
@@ -56,7 +57,7 @@ LEAST_SHARE = 0.995
 def random_specs(number: int) -> Iterator[MapSpec]:
     """Views of a system, one for each zoom, on boundaries between basins: plane, energy and place are random."""
     chance, system = np.random.default_rng(number), SYSTEMS[number]
-    energies, potential = system.energies, system.potential
+    energies, potential = review_system(system).energies, system.potential
     for zooms in ZOOMS:
         plane = SLICES[chance.integers(len(SLICES))]
         highest = potential.escape_energy + 0.9 * (energies.high - potential.escape_energy)
@@ -96,7 +97,7 @@ def expected_fate(escape_map: EscapeMap) -> np.ndarray:
 def test_pixels_are_those_of_the_map(number: int, tmp_path: Path) -> None:
     specs = list(random_specs(number))
     potential = specs[0].potential
-    portable = make_portable_system(potential, SYSTEMS[number].energies.high)
+    portable = make_portable_system(potential, review_system(SYSTEMS[number]).energies.high)
     data = {"system": portable.to_dict(), "module": portable.module, "views": [as_view(spec) for spec in specs]}
     same = []
     for spec, found in zip(specs, run_node("run_view.js", data, tmp_path), strict=True):

@@ -55,4 +55,4 @@ def test_an_outcome_of_a_rotating_system_has_its_exit_and_no_mirror_image() -> N
     data = make_portable_system(potential, 0.3).to_dict()
     assert [each["shape"] for each in data["exits"]] == ["disc", "circle"]
     assert data["mirror"] is None
-    assert CASES["III"].mirror_in_x
+    assert CASES["III"].well.mirror_in_x

@@ -25,6 +25,7 @@ from engine import (
 )
 from engine.dynamics.portable_system import make_portable_system
 from engine.exits.interior import find_outside_channels
+from engine.potentials.review.potential_review import review_system
 from tests.node import needs_node, run_node
 from tests.peers.taylor_heyoka import equations
 
@@ -54,7 +55,7 @@ def followed(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
     case, energy = request.param
     potential = System(case).potential
     assert potential.units.length == potential.units.time == 1.0
-    portable = make_portable_system(potential, System(case).energies.high)
+    portable = make_portable_system(potential, review_system(System(case)).energies.high)
     states = sample_starts(potential, energy, COUNT, seed=3)
     times = np.sort(np.random.default_rng(1).uniform(0.0, LONGEST, FRAMES))
     data = {"system": portable.to_dict(), "module": portable.module, "energy": energy}
@@ -131,7 +132,7 @@ def request_for(where: str, **changes: Any) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
     system, energy = System("III"), 0.45
-    portable = make_portable_system(system.potential, system.energies.high)
+    portable = make_portable_system(system.potential, review_system(system).energies.high)
     view, well = (default_window(system.potential, plane, energy) for plane in (Plane.X_PX, Plane.X_Y))
     names = ("xLow", "xHigh", "ordinateLow", "ordinateHigh")
     wish = {

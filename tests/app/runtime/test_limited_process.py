@@ -14,9 +14,9 @@ import psutil
 import pytest
 
 from app.runtime.limited_process import LimitedProcess, LimitError
-from app.state.system_review import review_system
 from engine import System, parse_formula
 from engine.potentials.formulas.formula_tokens import FormulaError
+from engine.potentials.review.potential_review import review_system
 
 
 @pytest.fixture

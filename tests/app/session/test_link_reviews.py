@@ -19,12 +19,12 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.session.explorer import Explorer
 from app.session.page import explorer_page
-from app.state import system_review as review_module
-from app.state.system_review import review_system
+from app.state import system_review as reviews_module
 from engine import CASES, Plane, System, Window
-from engine.potentials import potential as potential_module
 from engine.potentials import system as system_module
+from engine.potentials import well as well_module
 from engine.potentials.forms import polynomial_form as polynomial_module
+from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 from tests.app.other_loop import run_on_new_loop
 
@@ -33,10 +33,10 @@ LEGAL = {"case": TYPED, "V": "½(x² + y²) − 0.83x²y²"}
 # Whatever takes time; a potential has no other costly quantities.
 SLOW = [
     (system_module, "parse_formula"),
-    (review_module, "review_potential"),
+    (reviews_module, "review_system"),
     (polynomial_module, "find_critical_points"),
-    (potential_module, "leads_out_of_well"),
-    (potential_module, "find_maxima_beside"),
+    (well_module, "leads_out_of_well"),
+    (well_module, "find_maxima_beside"),
 ]
 
 
@@ -46,7 +46,7 @@ def called(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     called: list[str] = []
     # As when the server starts.
     for case in CASES:
-        review_module.review_catalogue_entry(case)
+        reviews_module.review_catalogue_entry(case)
 
     def recording(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         def call(*arguments: Any, **options: Any) -> Any:
@@ -55,7 +55,7 @@ def called(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
         return call
 
-    monkeypatch.setattr(potential_module, "stored_points", lambda kind, terms, find: find())
+    monkeypatch.setattr(well_module, "stored_points", lambda kind, terms, find: find())
     for module, name in SLOW:
         monkeypatch.setattr(module, name, recording(name, getattr(module, name)))
     return called

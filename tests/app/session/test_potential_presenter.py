@@ -11,11 +11,11 @@ import pytest
 from app.session import potential_presenter as presenter_module
 from app.session.potential_presenter import PotentialPresenter
 from app.state.history import History
-from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.analysis.potential_panel import PotentialPanel
 from engine import CASES, System
 from engine.jobs.manager import Jobs
+from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 
 HENON_HEILES = "½(x² + y²) + x²y − y³/3"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.state.permalink import fit_to_system, linked_system, read_link, refused_link, without_system
-from app.state.system_review import review_system
 from app.state.view_state import ViewState
+from engine.potentials.review.potential_review import review_system
+from plots.accepted_potentials import refusal
 
 
 def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
@@ -14,11 +15,11 @@ def open_link(parameters: Mapping[str, str]) -> tuple[ViewState, list[str]]:
     values, problems = read_link(parameters)
     try:
         reviewed = review_system(linked_system(values))
-        refusal = reviewed.problem
+        problem = refusal(reviewed)
     except ValueError as error:
-        refusal = str(error)
-    if refusal is not None:
-        return ViewState(**without_system(values)), [*problems, refused_link(refusal)]
+        problem = str(error)
+    if problem is not None:
+        return ViewState(**without_system(values)), [*problems, refused_link(problem)]
     fitting, more = fit_to_system(values, reviewed)
     state = ViewState()
     state.show(reviewed, **fitting)

@@ -35,7 +35,7 @@ def outcomes_of(potential: Potential, energy: float) -> tuple[Outcomes, np.ndarr
     """Outcomes, and which orbits pass a centre within ten radii."""
     starts = sample_starts(potential, energy, STARTS, seed=3)
     wide = potential.with_outcomes([replace(c, radius=NEAR * c.radius) for c in potential.centres], potential.escape_radius)
-    t_max = T_MAX * potential.exact_time_unit
+    t_max = T_MAX * potential.well.exact_time_unit
     fate = classify_orbits(wide, energy, starts, t_max).fate
     past = (fate > potential.channels) & (fate <= potential.channels + len(potential.centres))
     return classify_orbits(potential, energy, starts, t_max), past

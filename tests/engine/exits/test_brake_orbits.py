@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.brake_orbits import continue_in_energy, find_directly
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.taylor.kernels.events import exit_distance
 from tests.peers.dop853 import equations
 

@@ -46,7 +46,7 @@ def test_interpolated_exits_are_lyapunov_orbits(name: str) -> None:
 
 def test_a_table_ends_where_exits_cannot_be_interpolated() -> None:
     potential = parse_formula("½(x² + y²) − x²y² − x³/4").in_well_units
-    merger = potential.channel_mergers[0].energy
+    merger = potential.well.channel_mergers[0].energy
     tables = tabulate_exits(potential, 2.0 * merger)
     assert all(table.saddle <= table.highest < merger for table in tables if table.saddle < merger)
 

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits, parse_formula
 from engine.exits.exit_rows import exit_curves, exit_gates
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.taylor.kernels.events import REACH, exit_distance
 from tests.peers.dop853 import equations
 
@@ -167,7 +167,7 @@ def test_orbits_scale_with_the_well(epsilon: float) -> None:
 
 def test_a_maximum_that_is_not_between_exits_limits_no_energy() -> None:
     quintic = Potential("", ((2, 0, 0.6238), (0, 2, 0.7403), (0, 4, -0.5267), (2, 2, 0.0085), (4, 0, -0.6295), (5, 0, 0.2549)))
-    assert min(merger.energy for merger in quintic.channel_mergers) > 3.0 * quintic.escape_energy
+    assert min(merger.energy for merger in quintic.well.channel_mergers) > 3.0 * quintic.escape_energy
     assert find_lyapunov_orbits(quintic, 2.0 * quintic.escape_energy)
 
 
@@ -192,7 +192,7 @@ def test_a_strongly_curved_exit_is_found_up_to_twice_the_escape_energy() -> None
 def test_exit_curves_of_mirror_channels_are_exact_mirror_images_also_beyond_their_ends() -> None:
     # The exits are not symmetric, so that their two ends differ.
     potential = parse_formula("½(x² + y²) − 0.3x²y − x⁴/4")
-    assert potential.mirror_channels.tolist() == [0, 2, 1]
+    assert potential.well.mirror_channels.tolist() == [0, 2, 1]
     one, other = exit_curves(potential, 1.2 * potential.escape_energy)
     for x, y in np.random.default_rng(1).uniform(-2.0, 2.0, (100, 2)):
         assert exit_distance(x, y, one) == exit_distance(-x, y, other)

@@ -18,7 +18,7 @@ from engine import (
 from engine.exits.exit_rows import exit_curves, exit_gates
 from engine.exits.exit_tables import tabulate_exits
 from engine.exits.interior import find_outside_channels
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.slices.parameter_family import Member
 from engine.taylor.kernels.events import crossed_exit, exit_distance
 from tests.peers.dop853 import equations
@@ -33,14 +33,14 @@ GENERAL = Potential(
         *((5, 0, 0.2864), (3, 0, -0.1956), (3, 2, -0.8996), (6, 4, 0.234), (6, 0, 0.4392)),
     ),
 )
-MAXIMUM = SYMMETRIC.channel_mergers[0].energy
+MAXIMUM = SYMMETRIC.well.channel_mergers[0].energy
 # In units of the maximum.
 ABOVE = 1.2
 each_well = pytest.mark.parametrize("potential", [SYMMETRIC, GENERAL], ids=lambda potential: potential.name)
 
 
 def above(potential: Potential) -> float:
-    return 1.1 * potential.channel_mergers[0].energy
+    return 1.1 * potential.well.channel_mergers[0].energy
 
 
 def random_states(potential: Potential, energy: float, count: int) -> np.ndarray:
@@ -108,7 +108,7 @@ def test_most_orbits_of_the_inner_well_leave_as_just_below_the_maximum() -> None
     fates = [classify_orbits(SYMMETRIC, h, random_states(SYMMETRIC, h, 300), 15.0).fate for h in (below, higher)]
     leaves = fates[0] > 0
     assert leaves.sum() > 100
-    expected = SYMMETRIC.exit_numbers(higher)[fates[0][leaves]]
+    expected = SYMMETRIC.well.exit_numbers(higher)[fates[0][leaves]]
     assert np.mean(fates[1][leaves] == expected) > 0.9
     assert set(fates[1].tolist()) == {0, 1, 3}
 
@@ -122,14 +122,14 @@ def test_the_exit_of_mirror_channels_is_exactly_its_own_mirror_image() -> None:
 def test_nothing_crosses_the_row_of_the_other_channel() -> None:
     curves = exit_curves(GENERAL, above(GENERAL))
     (orbit,) = (orbit for orbit in find_lyapunov_orbits(GENERAL, above(GENERAL)) if orbit.others)
-    saddle, outward = (each[orbit.others[0] - 1] for each in (GENERAL.saddles, GENERAL.outward_directions))
+    saddle, outward = (each[orbit.others[0] - 1] for each in (GENERAL.saddles, GENERAL.well.outward_directions))
     before, after = saddle - 1e-3 * outward, saddle + 1e-3 * outward
     only = curves[[orbit.others[0] - 1]]
     assert crossed_exit(*before, *after, only, exit_gates(only[None])) == 0
 
 
 def test_a_start_beyond_the_exit_is_outside_with_its_number() -> None:
-    beyond = GENERAL.saddles + 0.5 * GENERAL.outward_directions
+    beyond = GENERAL.saddles + 0.5 * GENERAL.well.outward_directions
     energy = above(GENERAL)
     (orbit,) = (orbit for orbit in find_lyapunov_orbits(GENERAL, energy) if orbit.others)
     outside = find_outside_channels(GENERAL, energy, *beyond[np.array([orbit.channel, *orbit.others]) - 1].T)
@@ -164,8 +164,8 @@ def test_an_orbit_is_told_to_leave_through_both_channels() -> None:
 
 def test_tables_of_exits_end_where_exits_merge() -> None:
     well = SYMMETRIC.in_well_units
-    tables = tabulate_exits(well, 2.0 * well.channel_mergers[0].energy)
-    assert max(table.highest for table in tables) <= well.channel_mergers[0].energy
+    tables = tabulate_exits(well, 2.0 * well.well.channel_mergers[0].energy)
+    assert max(table.highest for table in tables) <= well.well.channel_mergers[0].energy
 
 
 def test_along_a_parameter_an_exit_has_the_lowest_of_its_numbers() -> None:

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from engine import CASES, LyapunovOrbit, Potential, find_lyapunov_orbits
 from engine.exits.lyapunov_orbits import exit_curve_over_chord
 from engine.exits.periodic_orbits import PeriodicOrbit, find_periodic_orbit
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from tests.engine.exits.rotating_systems import EARTH_MOON, at_jacobi_constant, hill, integrate, three_body
 from tests.engine.exits.test_lyapunov_orbits import ENERGIES
 from tests.fuzz.test_random_wells import random_well
@@ -161,7 +161,7 @@ def test_an_orbit_in_a_frame_that_rotates_the_other_way_is_the_mirror_image() ->
 
 def test_no_orbit_is_found_where_the_family_cannot_be_followed() -> None:
     well = three_body(EARTH_MOON).in_well_units
-    assert find_periodic_orbit(well, (well.saddle_energies[0] + 20.0), L2) is None
+    assert find_periodic_orbit(well, (well.well.saddle_energies[0] + 20.0), L2) is None
 
 
 def first_orbit(potential: Potential, energy: float) -> LyapunovOrbit:

@@ -7,7 +7,8 @@ import pytest
 import sympy
 
 from engine.expressions.calculus import derivative, substitute
-from engine.expressions.graph import evaluate, make_graph
+from engine.expressions.evaluation import evaluate
+from engine.expressions.graph import make_graph
 from engine.expressions.nodes import Coordinate, Expression, Function, Product, Sum, X, Y, linear_combination, multiply, number
 from engine.expressions.parity import EVEN, NEITHER, ODD, parity
 from engine.potentials.formulas.formula_parser import parse_formula

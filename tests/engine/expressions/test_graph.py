@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from engine.expressions.calculus import derivative
-from engine.expressions.graph import Graph, Node, evaluate, evaluate_at, make_graph
+from engine.expressions.evaluation import evaluate, evaluate_at
+from engine.expressions.graph import Graph, Node, make_graph
 from engine.expressions.nodes import Expression
 from engine.potentials.formulas.formula_parser import parse_formula
 

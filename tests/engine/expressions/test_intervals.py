@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.expressions.graph import evaluate, make_graph
+from engine.expressions.evaluation import evaluate
+from engine.expressions.graph import make_graph
 from engine.expressions.intervals import Interval, enclose
 from engine.potentials.formulas.formula_parser import parse_formula
 

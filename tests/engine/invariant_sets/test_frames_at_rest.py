@@ -69,12 +69,12 @@ def test_a_quasi_periodic_orbit_in_a_rotating_frame_is_bounded_by_integration_on
 
 
 def test_orbits_below_all_saddles_are_closed_unless_they_can_collide() -> None:
-    assert CASES["I"].is_closed_at(0.1)
-    assert ROTATING.is_closed_at(0.9 * ROTATING.escape_energy)
-    assert not CASES["I"].is_closed_at(0.13)
-    assert not WITH_CENTRE.is_closed_at(0.1)
-    assert not WITH_RADIUS.is_closed_at(0.1)
-    assert CASES["I"].is_closed_at(np.array([0.1, 0.2])).tolist() == [True, False]
+    assert CASES["I"].well.is_closed_at(0.1)
+    assert ROTATING.well.is_closed_at(0.9 * ROTATING.escape_energy)
+    assert not CASES["I"].well.is_closed_at(0.13)
+    assert not WITH_CENTRE.well.is_closed_at(0.1)
+    assert not WITH_RADIUS.well.is_closed_at(0.1)
+    assert CASES["I"].well.is_closed_at(np.array([0.1, 0.2])).tolist() == [True, False]
 
 
 def test_a_colliding_orbit_below_the_saddles_is_not_marked_bounded() -> None:

@@ -10,12 +10,15 @@ from engine import (
     CASES,
     CHAOS_THRESHOLD,
     Certificate,
+    Coordinate,
+    Direction,
     EscapeMap,
     Fate,
     MapSpec,
     Plane,
     Regularity,
     RegularityMap,
+    Slice,
     compute_map,
     compute_regularity,
     integrate_orbit,
@@ -49,6 +52,15 @@ def test_characters_agree_with_the_sali_of_single_orbits(name: str, energy: floa
     assert np.mean(found != chaotic) <= 0.04
     assert chaotic.any()
     assert not chaotic.all()
+
+
+def test_the_scale_of_a_direction_does_not_matter() -> None:
+    found = []
+    for scale in (1.0, 4.0):
+        plane = Slice(Direction("u", x=scale, y=0.5 * scale), Coordinate.PX)
+        window = (-0.4 / scale, 0.4 / scale, -0.4, 0.4)
+        found.append(compute_regularity(compute_map(MapSpec(CASES["III"], plane, 0.3, (16, 16), window, t_max=300.0))))
+    np.testing.assert_array_equal(found[0].sali, found[1].sali)
 
 
 def test_sali_is_the_smallest_of_the_orbit_and_decides_the_character() -> None:

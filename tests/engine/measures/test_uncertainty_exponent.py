@@ -11,7 +11,8 @@ from engine.dynamics.classification import classify_orbits
 from engine.execution import DEFAULT_EXECUTION, Execution, SerialExecutor
 from engine.maps.spec import MapSpec
 from engine.measures.uncertainty_exponent import UncertaintyExponent, _PairSampler, compute_uncertainty_exponent
-from engine.potentials.potential import CASES, Potential
+from engine.potentials.known_potentials import CASES
+from engine.potentials.potential import Potential
 from engine.slices.planes import Plane
 from engine.slices.window import Window
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import sympy
 
-from engine.potentials.catalogue import CATALOGUE, POTENTIALS, channel_family
-from engine.potentials.potential import CASES
+from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.known_potentials import CASES, POTENTIALS, channel_family
 
 X, Y = sympy.symbols("x y", real=True)
 MEMBERS = (3, 4, 5, 6, 7, 8, 12)
@@ -14,14 +14,13 @@ each_entry = pytest.mark.parametrize("name", POTENTIALS)
 
 @pytest.mark.parametrize("n", range(3, 9))
 def test_formulas_of_the_family_are_those_of_its_members(n: int) -> None:
-    assert sorted(CATALOGUE[f"C{n}"].potential.terms) == sorted(channel_family(n).terms)
+    assert sorted(POTENTIALS[f"C{n}"].terms) == sorted(channel_family(n).terms)
 
 
 @each_entry
 def test_entry_is_complete(name: str) -> None:
     entry = CATALOGUE[name]
-    assert POTENTIALS[name] is entry.potential
-    assert entry.name == entry.potential.name == name
+    assert entry.name == POTENTIALS[name].name == name
     assert entry.title
     assert entry.reference
     assert entry.description.endswith(".")

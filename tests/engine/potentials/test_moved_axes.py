@@ -7,7 +7,7 @@ import pytest
 
 from engine import MapSpec, Plane, compute_map, parse_formula, review_potential
 from engine.potentials.formulas.formula_tokens import FormulaError
-from engine.potentials.potential import CASES
+from engine.potentials.known_potentials import CASES
 from engine.potentials.stored_potential import describe_potential, read_potential
 
 CALDERA = "5(x² + y²) + 3y + 0.3(x⁴ + y⁴ − 6x²y²)"
@@ -35,7 +35,7 @@ def test_saddles_have_the_energies_that_authors_state(
     potential = parse_formula(f"{formula}; well {well}")
     assert review_potential(potential).refusal is None
     np.testing.assert_allclose(potential.origin, origin, atol=1e-6)
-    np.testing.assert_allclose(sorted(potential.saddle_energies), energies, atol=1e-4)
+    np.testing.assert_allclose(sorted(potential.well.saddle_energies), energies, atol=1e-4)
 
 
 def test_the_lowest_exit_of_de_leon_and_berne_is_the_saddle_of_their_formula() -> None:
@@ -43,7 +43,7 @@ def test_the_lowest_exit_of_de_leon_and_berne_is_the_saddle_of_their_formula() -
     assert review_potential(potential).refusal is None
     # Their saddle is at (0, 0), with V = 1.
     assert potential.escape_energy == pytest.approx(1.0, abs=1e-14)
-    lowest = potential.saddles[np.argmin(potential.saddle_energies)]
+    lowest = potential.saddles[np.argmin(potential.well.saddle_energies)]
     np.testing.assert_allclose(lowest + potential.origin, 0.0, atol=1e-14)
 
 

@@ -85,21 +85,21 @@ def test_escape_energy_matches_the_paper(name: str) -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_all_channels_are_open_above_the_escape_energy(name: str) -> None:
     potential = CASES[name]
-    assert potential.open_channels(ESCAPE_ENERGY[name] + 1e-9) == tuple(range(1, potential.channels + 1))
+    assert potential.well.open_channels(ESCAPE_ENERGY[name] + 1e-9) == tuple(range(1, potential.channels + 1))
 
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("below", [0.0, 1e-9, 0.05])
 def test_no_channel_is_open_at_or_below_the_escape_energy(name: str, below: float) -> None:
-    assert CASES[name].open_channels(ESCAPE_ENERGY[name] - below) == ()
+    assert CASES[name].well.open_channels(ESCAPE_ENERGY[name] - below) == ()
 
 
 def test_saddles_of_different_energies_open_separately() -> None:
     # V_x = x − x²/2 − x³/2 vanishes at x = 1 and x = −2, each a maximum along x and a minimum along y.
     lopsided = Potential("lopsided", ((2, 0, 0.5), (0, 2, 0.5), (3, 0, -1 / 6), (4, 0, -1 / 8)))
-    energies = lopsided.saddle_energies
+    energies = lopsided.well.saddle_energies
     assert len(set(np.round(energies, 6))) == 2
-    assert lopsided.open_channels(0.5 * energies.sum()) == (int(np.argmin(energies)) + 1,)
+    assert lopsided.well.open_channels(0.5 * energies.sum()) == (int(np.argmin(energies)) + 1,)
 
 
 def test_escape_energy_without_saddles_is_infinite() -> None:

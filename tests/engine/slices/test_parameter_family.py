@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine import CASES, ParameterAxis, Potential, System
-from engine.potentials.catalogue import POTENTIALS
+from engine.potentials.known_potentials import POTENTIALS
 from engine.slices import parameter_family
 from engine.slices.parameter_family import ManyExitsError, ParameterFamily
 
@@ -24,7 +24,7 @@ def test_continued_saddles_are_those_of_the_potential(value: float) -> None:
 def test_continued_maxima_merge_the_same_channels() -> None:
     axis = ParameterAxis("epsilon", 0.8, 1.2, System("C5"))
     member, found = ParameterFamily(axis).member(0.93), POTENTIALS["C5"].with_parameters(epsilon=0.93)
-    continued, expected = member.potential.channel_mergers, found.channel_mergers
+    continued, expected = member.potential.well.channel_mergers, found.well.channel_mergers
     assert [merger.channels for merger in continued] == [merger.channels for merger in expected]
     np.testing.assert_allclose([merger[:3] for merger in continued], [merger[:3] for merger in expected], rtol=1e-12)
 

@@ -77,7 +77,7 @@ def test_collisions_count_without_exits() -> None:
 
 
 def test_an_exit_all_around_a_well_is_not_needed() -> None:
-    energy = 1.2 * RING.channel_mergers[-1].energy
+    energy = 1.2 * RING.well.channel_mergers[-1].energy
     speed = np.sqrt(2.0 * energy)
     orbit = integrate_orbit(RING, (0.0, 0.0, 0.6 * speed, 0.8 * speed), 100.0)
     assert "it leads all around the well" in orbit.exits_unknown

@@ -5,10 +5,10 @@ from __future__ import annotations
 import panel as pn
 import pytest
 
-from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.panels.controls import ControlActions, Controls
 from engine import Plane, System
+from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 
 

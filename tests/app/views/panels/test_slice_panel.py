@@ -7,10 +7,10 @@ import math
 import pytest
 
 from app.browser.number_box import NumberBox
-from app.state.system_review import review_system
 from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
+from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 
 C = Coordinate

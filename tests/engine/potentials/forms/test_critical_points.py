@@ -8,7 +8,8 @@ import sympy
 
 from engine import Potential, channel_family, parse_formula, review_potential
 from engine.polynomials import Terms
-from engine.potentials.forms.critical_points import NotIsolatedError, find_critical_points
+from engine.potentials.forms.critical_points import find_critical_points
+from engine.potentials.forms.point_searches import NotIsolatedError
 from tests.fuzz.test_random_wells import random_well
 
 X, Y = sympy.symbols("x y")
@@ -73,7 +74,7 @@ def test_sum_of_indices_is_the_winding_number(seed: int, degree: int) -> None:
 
 @pytest.mark.parametrize("n", [3, 5, 8, 9, 10, 12])
 def test_a_family_with_n_exits_has_a_saddle_for_each(n: int) -> None:
-    indices = channel_family(n).critical_indices
+    indices = channel_family(n).well.critical_indices
     assert (np.count_nonzero(indices == -1), indices.sum()) == (n, 1 - n)
 
 

@@ -9,7 +9,7 @@ from engine.potentials.forms import exit_saddles
 from engine.potentials.forms.exit_saddles import find_maxima_beside, leads_out_of_well
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import review_potential
+from engine.potentials.review.potential_review import review_potential
 from tests.fuzz.test_random_wells import random_well
 
 # A ring-shaped valley around a hill, lowest at the origin; its highest point is a saddle with the origin below on both sides.
@@ -24,7 +24,7 @@ NARROW_VALLEY = "x^2/2 + y^2/2 - x^3/3 + 0.047*x*y^3 - 0.012*x^6 - 0.183*x^3*y^4
 def exits(potential: Potential) -> np.ndarray:
     """(n, 2) the saddles that lead out."""
     points = potential.critical_points
-    return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.critical_indices)]
+    return points[leads_out_of_well(potential.form.downhill, potential.hessian, points, potential.well.critical_indices)]
 
 
 def test_a_saddle_with_the_origin_below_on_both_sides_is_no_exit() -> None:
@@ -38,7 +38,7 @@ def test_a_saddle_between_two_other_wells_is_no_exit() -> None:
 def test_the_hill_lies_beside_the_saddle_behind_it() -> None:
     points = RING.critical_points
     hill, saddle = np.argsort(points[:, 0])[1:]
-    beside = find_maxima_beside(RING.form.downhill, RING.hessian, points, RING.critical_indices, np.array([saddle]))
+    beside = find_maxima_beside(RING.form.downhill, RING.hessian, points, RING.well.critical_indices, np.array([saddle]))
     assert np.flatnonzero(beside).tolist() == [hill]
 
 

@@ -8,7 +8,6 @@ import pytest
 from engine import CASES, Fate, Plane, Potential, classify_orbits, compute_map, parse_formula, review_potential, start_states
 from engine.expressions.nodes import from_terms
 from engine.maps.spec import MapSpec
-from engine.potentials.energy_ranges import energy_range
 from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.formulas.formula_writer import write_formula
 
@@ -46,9 +45,9 @@ def test_a_polynomial_as_an_expression_has_the_same_orbits() -> None:
 
 def test_a_map_has_its_outcomes_and_its_mirror_image() -> None:
     potential = parse_formula(TEXT, parameters={"a": 2.0})
-    found = compute_map(MapSpec(potential, Plane.X_PX, potential.energy_at(1.3), (24, 24), t_max=60.0))
+    found = compute_map(MapSpec(potential, Plane.X_PX, potential.well.energy_at(1.3), (24, 24), t_max=60.0))
     assert {1, 2, int(Fate.FORBIDDEN)} <= set(np.unique(found.fate).tolist())
-    mirrored = potential.mirror_channels[np.maximum(found.fate[::-1, ::-1], 0)]
+    mirrored = potential.well.mirror_channels[np.maximum(found.fate[::-1, ::-1], 0)]
     np.testing.assert_array_equal(np.where(found.fate > 0, found.fate, 0), np.where(found.fate[::-1, ::-1] > 0, mirrored, 0))
 
 
@@ -57,7 +56,8 @@ def test_other_units_give_the_same_map(length: float) -> None:
     potential = parse_formula(TEXT, parameters={"a": 2.0})
     scaled = Potential("", potential.form.scaled(1.0 / length, 1.0 / length**2))
     maps = [
-        compute_map(MapSpec(each, Plane.X_PX, each.energy_at(1.3), (12, 12), t_max=40.0)).fate for each in (potential, scaled)
+        compute_map(MapSpec(each, Plane.X_PX, each.well.energy_at(1.3), (12, 12), t_max=40.0)).fate
+        for each in (potential, scaled)
     ]
     np.testing.assert_array_equal(*maps)
 
@@ -73,9 +73,9 @@ def test_parameters_change_the_quadratic_terms_and_the_rest() -> None:
 
 def test_multiples_of_the_depth_count_from_the_bottom() -> None:
     potential = parse_formula("−1/√(r² + 1) − 0.05x³ + 0.05 x y²")
-    assert potential.bottom == -1.0
-    assert potential.energy_at(0.0) == -1.0
-    assert potential.energy_at(1.0) == pytest.approx(potential.escape_energy, rel=1e-15)
+    assert potential.well.bottom == -1.0
+    assert potential.well.energy_at(0.0) == -1.0
+    assert potential.well.energy_at(1.0) == pytest.approx(potential.escape_energy, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_the_name_of_a_typed_potential_is_its_formula() -> None:
 
 
 def test_a_constant_shifts_the_range_of_energies() -> None:
-    plain, shifted = (energy_range(parse_formula(f"½r² − 2x²y exp(−y²){constant}")) for constant in ("", " − 1"))
+    plain, shifted = (review_potential(parse_formula(f"½r² − 2x²y exp(−y²){constant}")).energies for constant in ("", " − 1"))
     for name in ("low", "first", "high"):
         assert getattr(shifted, name) + 1.0 == pytest.approx(getattr(plain, name), abs=1e-12)
     assert shifted.decimals == plain.decimals

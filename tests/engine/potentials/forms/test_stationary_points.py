@@ -7,9 +7,8 @@ import pytest
 
 from engine import CASES, parse_formula, review_potential
 from engine.expressions.nodes import from_terms
-from engine.potentials.forms.common_roots import UndecidedError
-from engine.potentials.forms.critical_points import NotIsolatedError
 from engine.potentials.forms.expression_form import ExpressionForm
+from engine.potentials.forms.point_searches import NotIsolatedError, UndecidedError
 from engine.potentials.forms.polynomial_form import PolynomialForm
 from engine.potentials.forms.stationary_points import MOST_POINTS
 from engine.potentials.potential import Potential
@@ -125,13 +124,16 @@ def test_points_are_those_of_newtons_method_from_many_starts(seed: int) -> None:
 def test_points_in_a_narrow_valley_between_two_walls_are_found() -> None:
     text = "½(x² + y²) + 1e-4/(y − 2x + 3)^12 + 1e-3/(y − 2x + 4)^12"
     potential = parse_formula(text)
-    points, walls = potential.critical_points, [potential.critical_points @ [-2.0, 1.0] + offset for offset in (3.0, 4.0)]
+    points, walls = (
+        potential.critical_points,
+        [potential.critical_points @ [-2.0, 1.0] + offset for offset in (3.0, 4.0)],
+    )
     in_valley = (walls[0] < 0.0) & (walls[1] > 0.0)
     assert (len(points), np.count_nonzero(in_valley)) == (3, 1)
     # The valley is a line on which r² is smallest at its foot, to the width of the valley.
     (foot,) = points[in_valley]
     assert foot @ [1.0, 2.0] == pytest.approx(0.0, abs=1e-3)
-    assert (potential.critical_indices == 1.0).all()
+    assert (potential.well.critical_indices == 1.0).all()
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from engine.potentials.formulas.formula_parser import parse_formula
 from engine.potentials.formulas.formula_tokens import FormulaError
 from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.potential import CASES, Potential
-from engine.potentials.validation_report import review_potential
+from engine.potentials.known_potentials import CASES
+from engine.potentials.potential import Potential
+from engine.potentials.review.potential_review import review_potential
 from tests.fuzz.test_random_expressions import random_formula
 
 III = CASES["III"].terms

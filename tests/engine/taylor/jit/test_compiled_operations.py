@@ -109,7 +109,7 @@ def test_a_job_takes_the_share_of_its_client(account: Hashable, is_refused: bool
 def test_the_catalogue_can_be_compiled_whatever_others_have_compiled(name: str, counted: CompiledOperations) -> None:
     counted.most, potential = MOST, POTENTIALS[name].in_well_units
     counted.add("of others", MOST)
-    code = generate_code(potential.form.definition, **potential.setting._asdict())
+    code = generate_code(potential.form.definition, **potential.well.setting._asdict())
     with pytest.raises(CompiledCodeLimitError):
         counted.add(code.digest, code.operations)
     reserve_catalogue(counted)
@@ -119,4 +119,4 @@ def test_the_catalogue_can_be_compiled_whatever_others_have_compiled(name: str, 
 @pytest.mark.parametrize("name", POTENTIALS)
 def test_the_code_of_the_catalogue_may_be_typed(name: str) -> None:
     potential = POTENTIALS[name].in_well_units
-    assert generate_code(potential.form.definition, **potential.setting._asdict()).operations <= LARGEST_CODE
+    assert generate_code(potential.form.definition, **potential.well.setting._asdict()).operations <= LARGEST_CODE

@@ -11,7 +11,7 @@ import operator
 import numpy as np
 import pytest
 
-from engine.potentials.catalogue import channel_family
+from engine.potentials.known_potentials import channel_family
 from engine.taylor.source.polynomial_recurrence import Terms
 from engine.taylor.source.recurrence import generate_code
 from engine.taylor.source.series import ORDER

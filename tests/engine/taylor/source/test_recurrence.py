@@ -12,7 +12,7 @@ import sympy
 from numba import njit
 
 from engine import CASES, Fate, Potential, classify_orbits, start_states
-from engine.potentials.catalogue import channel_family
+from engine.potentials.known_potentials import channel_family
 from engine.slices.planes import Plane
 from engine.taylor.bound_kernels import load_kernels
 from engine.taylor.jit.function_pointers import SIGNATURES

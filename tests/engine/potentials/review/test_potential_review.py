@@ -5,10 +5,10 @@ import time
 import numpy as np
 import pytest
 
-from engine.potentials.catalogue import POTENTIALS, channel_family
 from engine.potentials.formulas.formula_parser import parse_formula
+from engine.potentials.known_potentials import POTENTIALS, channel_family
 from engine.potentials.potential import Potential
-from engine.potentials.validation_report import PointKind, review_potential
+from engine.potentials.review.potential_review import PointKind, review_potential
 
 
 @pytest.mark.parametrize("name", POTENTIALS)

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from types import MappingProxyType
-
-from engine.potentials.energy_ranges import EnergyRange
-from engine.potentials.formulas.formula_parser import parse_formula
-from engine.potentials.potential import Potential
 
 ROTATION = "rotation"
 """Name of the parameter Ω."""
@@ -20,14 +15,37 @@ WELL_PARAMETERS = ("omega_1", "omega_2", "epsilon")
 _OF_WELLS = MappingProxyType({**dict.fromkeys(WELL_PARAMETERS, 1.0), ROTATION: 0.0})
 
 
-@dataclass(frozen=True, eq=False)
-class PotentialEntry:
-    """A potential with its description.
+@dataclass(frozen=True)
+class EnergyRange:
+    """Energies of a potential, dimensionless.
+
+    Attributes
+    ----------
+    low, high
+        Its ends; `high` is also the upper end of the (x, h) plane.
+    marked
+        Energies of special interest, such as the nine of the paper.
+    first
+        Energy to begin with.
+    decimals
+        Decimals that distinguish the energies of the range.
+    """
+
+    low: float
+    high: float
+    marked: tuple[float, ...]
+    first: float
+    decimals: int = 3
+
+
+@dataclass(frozen=True)
+class CatalogueEntry:
+    """A row of the catalogue.
 
     Attributes
     ----------
     name
-        Its key in `POTENTIALS` and `CATALOGUE`, and the name of the potential.
+        Its key in `CATALOGUE` and `POTENTIALS`, and the name of the potential.
     title
         Display name.
     formula
@@ -47,21 +65,13 @@ class PotentialEntry:
     name: str
     title: str
     formula: str
-    description: str
-    reference: str
+    description: str = ""
+    reference: str = ""
     parameters: Mapping[str, float] = field(default_factory=lambda: _OF_WELLS)
     adjustable: tuple[str, ...] = tuple(_OF_WELLS)
     energies: EnergyRange | None = None
 
-    @cached_property
-    def potential(self) -> Potential:
-        """The potential at the values of the catalogue."""
-        return self.build({})
-
-    def build(self, chosen: Mapping[str, float]) -> Potential:
-        """The potential at chosen values of some parameters; ValueError if one is out of range."""
-        values = {**self.parameters, **chosen}
-        letters = {name: value for name, value in values.items() if name not in _OF_WELLS}
-        well = {name: values[name] for name in WELL_PARAMETERS if name in values}
-        plain = parse_formula(self.formula, self.name, letters).with_parameters(**well)
-        return plain.in_rotating_frame(values[ROTATION])
+    @property
+    def is_well(self) -> bool:
+        """Whether it has ω1, ω2 and ε."""
+        return "epsilon" in self.parameters

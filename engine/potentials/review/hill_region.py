@@ -6,7 +6,6 @@ import functools
 
 import numpy as np
 
-from engine.potentials.forms.stationary_points import SINGULAR_RATIO
 from engine.potentials.potential import Potential
 
 # The tests use this share of the saddle energy: right at the saddle energy the ridge is too narrow for the grid.
@@ -30,18 +29,12 @@ def is_open_without_saddle(potential: Potential, points: np.ndarray) -> bool:
 def check_closed_well(potential: Potential) -> None:
     """Raise ValueError unless a potential without exits has a well at the origin that no orbit leaves."""
     points = potential.critical_points
-    at_rest = bool((points == 0.0).all(axis=1).any())
-    if not (at_rest and potential.has_well and not _is_flat(potential)) or is_open_without_saddle(potential, points):
+    is_regular = (points == 0.0).all(axis=1) & (potential.well.critical_indices > 0.0)
+    if not (is_regular.any() and potential.well.is_minimum) or is_open_without_saddle(potential, points):
         raise ValueError(
             f"potential={potential.name}: must have exits, or a closed well at the origin, so that it is defined which orbits "
             "escape; review_potential says more"
         )
-
-
-def _is_flat(potential: Potential) -> bool:
-    """Whether the well at the origin is degenerate."""
-    lowest, highest = np.linalg.eigvalsh(potential.hessian_matrix(0.0, 0.0))
-    return bool(lowest <= SINGULAR_RATIO * highest)
 
 
 def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bool:
@@ -49,11 +42,13 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
 
     The grid is polar, around a well in coordinates in which V ≈ ½ r² near the origin, so that it resolves narrow ones.
     """
-    frequencies, axes = np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.has_well else (np.ones(2), np.eye(2))
+    frequencies, axes = (
+        np.linalg.eigh(potential.hessian_matrix(0.0, 0.0)) if potential.well.is_minimum else (np.ones(2), np.eye(2))
+    )
     scaled = np.sqrt(frequencies) * (points @ axes)
     distance = np.hypot(*scaled.T)
     distance = distance[distance > 0.0]
-    alone = np.sqrt(potential.units.energy) if potential.has_well else potential.units.length
+    alone = np.sqrt(potential.units.energy) if potential.well.is_minimum else potential.units.length
     low, high = (distance.min(), distance.max()) if distance.size else (alone, alone)
     low, high = _SMALLEST_RADIUS * low, _LARGEST_RADIUS * high
     radius = np.geomspace(low, high, int(_RADII_PER_E_FOLD * np.log(high / low)))[:, None]
@@ -61,7 +56,7 @@ def is_open_below(potential: Potential, energy: float, points: np.ndarray) -> bo
     angle = np.linspace(0.0, 4.0 * np.pi, 2 * _ANGLES + 1)
     xi, eta = radius * np.cos(angle) / np.sqrt(frequencies[0]), radius * np.sin(angle) / np.sqrt(frequencies[1])
     value = potential.value(axes[0, 0] * xi + axes[0, 1] * eta, axes[1, 0] * xi + axes[1, 1] * eta)
-    bottom = potential.bottom
+    bottom = potential.well.bottom
     return bool(_connected_to_origin(value < bottom + _ENERGY_SHARE * (energy - bottom))[-1].any())
 
 

@@ -1,0 +1,94 @@
+"""Values of a graph, for any kind of numbers: one walk through its nodes, and a table of operations for each kind."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.expressions.graph import Graph, Node
+from engine.expressions.nodes import FUNCTIONS
+
+
+@dataclass(frozen=True)
+class Operations[Value]:
+    """The operations of one kind of numbers.
+
+    Attributes
+    ----------
+    linear
+        A constant plus the products of coefficients and values.
+    product
+        Of two values; the same object twice for a square.
+    power
+        A value to a constant power.
+    functions
+        exp, log, sin and cos by name.
+    """
+
+    linear: Callable[[float, Sequence[float], Sequence[Value]], Value]
+    product: Callable[[Value, Value], Value]
+    power: Callable[[Value, float], Value]
+    functions: Mapping[str, Callable[[Value], Value]]
+
+
+def node_values[Value](graph: Graph, numbers: Sequence[float], x: Value, y: Value, operations: Operations[Value]) -> list[Value]:
+    """The values of all nodes of a graph."""
+    values: list[Value] = []
+    for node in graph.nodes:
+        values.append({"x": x, "y": y}[node.kind] if node.kind in ("x", "y") else _value(node, values, numbers, operations))
+    return values
+
+
+def _value[Value](node: Node, values: list[Value], numbers: Sequence[float], operations: Operations[Value]) -> Value:
+    match node.kind:
+        case "product":
+            left, right = node.operands
+            return operations.product(values[left], values[right])
+        case "sum":
+            coefficients = [numbers[place] for place in node.numbers]
+            constant = coefficients.pop() if len(coefficients) > len(node.operands) else 0.0
+            return operations.linear(constant, coefficients, [values[operand] for operand in node.operands])
+        case "shift":
+            return operations.linear(numbers[node.numbers[0]], (1.0,), (values[node.operands[0]],))
+        case "power":
+            return operations.power(values[node.operands[0]], node.exponent)
+    return operations.functions[node.kind](values[node.operands[0]])
+
+
+def _linear(constant: float, coefficients: Sequence[float], values: Sequence[Any]) -> Any:
+    total = constant
+    for coefficient, value in zip(coefficients, values, strict=True):
+        total = total + coefficient * value
+    return total
+
+
+_FLOATS = Operations[float](_linear, operator.mul, math.pow, FUNCTIONS)
+_ARRAYS = Operations[np.ndarray](_linear, operator.mul, np.power, {"exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos})
+
+
+def evaluate(graph: Graph, numbers: Sequence[float], x: Any, y: Any) -> list[np.ndarray]:
+    """The values of the expressions at (x, y), which broadcast; NaN or infinite where one is not defined."""
+    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    with np.errstate(all="ignore"):
+        values = node_values(graph, numbers, x, y, _ARRAYS)
+    return [_filled(values[index], x.shape) for index in graph.results]
+
+
+def _filled(value: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """A value as an array; that of a constant is one number."""
+    return np.asarray(value) if np.shape(value) == shape else np.full(shape, value)
+
+
+def evaluate_at(graph: Graph, numbers: Sequence[float], x: float, y: float) -> list[float]:
+    """The values at one point, as `evaluate` computes them to rounding, in a tenth of the time."""
+    try:
+        values = node_values(graph, numbers, x, y, _FLOATS)
+    except (ArithmeticError, ValueError):
+        # Infinite, or not defined.
+        return [float(value) for value in evaluate(graph, numbers, x, y)]
+    return [values[index] for index in graph.results]
