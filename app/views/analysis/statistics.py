@@ -12,9 +12,9 @@ import panel as pn
 from bokeh.models.dom import HTML
 
 from app.state.help_texts import title_with_help
-from app.views.components.chart_hover import chart_hover
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent, percent_range
+from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
 from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
