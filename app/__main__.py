@@ -1,4 +1,4 @@
-"""Program ``python -m app``: `panel serve` for this folder, with the times in the settings and the options of that command."""
+"""Program ``python -m app``: `panel serve` for this folder, with the times of a public server and the options of that command."""
 
 from __future__ import annotations
 
@@ -7,32 +7,38 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.runtime.settings import Settings, read_settings
+from app.runtime.settings import read_settings
 from app.server.start_checks import INVALID_SETTING
+
+SESSION_SECONDS = 60
+"""Lifetime of a session without a connection; a broken connection can be resumed within it."""
+
+KEEP_ALIVE_SECONDS = 20
+"""Interval between pings on an idle connection; it must be shorter than the timeout of any proxy."""
 
 
 def serve(options: Sequence[str]) -> None:
     """Serve the page until Ctrl-C or SIGTERM; an invalid setting ends the process with one sentence."""
     # The hooks of the page report it only after Panel is imported, which takes seconds.
     try:
-        settings = read_settings(os.environ)
+        read_settings(os.environ)
     except ValueError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(INVALID_SETTING)
     from panel.command import main
 
     # Panel reads the arguments of the process.
-    sys.argv = ["panel", *serve_arguments(settings), *options]
+    sys.argv = ["panel", *serve_arguments(), *options]
     main()
 
 
-def serve_arguments(settings: Settings) -> list[str]:
+def serve_arguments() -> list[str]:
     """The command of Panel that serves this folder."""
     return [
         "serve",
         str(Path(__file__).parent),
-        f"--unused-session-lifetime={1000 * settings.session_seconds}",
-        f"--keep-alive={1000 * settings.keep_alive_seconds}",
+        f"--unused-session-lifetime={1000 * SESSION_SECONDS}",
+        f"--keep-alive={1000 * KEEP_ALIVE_SECONDS}",
     ]
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine import Orbit, Potential, Window, default_window
+from engine.results.extras import require_package
 from engine.slices.planes import SPACE
 from plots.histories import History, reduce_history
 
@@ -71,12 +72,16 @@ class OrbitCurves:
         return ink | (self.visits.astype(np.uint32) << 24)
 
 
-def compute_orbit_curves(potential: Potential, orbit: Orbit) -> OrbitCurves:
-    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock."""
+def compute_orbit_curves(potential: Potential, orbit: Orbit, *, with_visits: bool = True) -> OrbitCurves:
+    """Compute the curves of an orbit; slow, so call it once per orbit and outside the session's lock.
+
+    with_visits: whether a long path gets its density image, which needs the extra ``page``.
+    """
     window = _path_window(potential, orbit) if orbit.exits_unknown else find_well_window(potential, orbit.energy)
     everything = slice(None)
     section = orbit.find_section_crossings()
-    return OrbitCurves(orbit, window, *_histories(orbit, everything), section, _visits(orbit, window, everything))
+    visits = _visits(orbit, window, everything) if with_visits else None
+    return OrbitCurves(orbit, window, *_histories(orbit, everything), section, visits)
 
 
 def find_well_window(potential: Potential, energy: float) -> Window:
@@ -131,10 +136,11 @@ def initial_state(orbit: Orbit) -> tuple[float, float, float, float]:
 
 
 def _visits(orbit: Orbit, window: Window, part: slice) -> np.ndarray | None:
-    """Density image of a long path; None for a short one."""
+    """Density image of a long path; None for a short one. ModuleNotFoundError without the extra ``page``."""
     x, y = orbit.x[part], orbit.y[part]
     if x.size <= MOST_LINE_POINTS:
         return None
+    require_package("datashader", "page")
     # Slow to import, and needed for long paths only.
     import datashader
     import pandas as pd

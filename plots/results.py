@@ -113,6 +113,8 @@ def _picture(result: Result) -> str:
             _draw(result, figure.subplots(), PALETTES["paper"])
         except TypeError:
             return ""
+        except ModuleNotFoundError as error:
+            return f"<p>No picture: {html.escape(str(error))}</p>"
         set_font(figure)
         figure.savefig(file, format="png")
     return f"<img alt='{type(result).__name__}' src='data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}'>"
@@ -184,7 +186,7 @@ def _draw_origins(result: OriginFateMap, axes: Axes, palette: Palette) -> None:
 def _draw_orbit(result: Orbit, axes: Axes, palette: Palette, *, show: str = "path") -> None:
     if result.potential is None:
         raise TypeError("this orbit has no potential, so its exits are unknown")
-    curves = compute_orbit_curves(result.potential, result)
+    curves = compute_orbit_curves(result.potential, result, with_visits=show == "path")
     if show == "path":
         axes.set_box_aspect(1.0)
         draw_path(_panel(axes, curves.window), result.potential, [curves], palette)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.view_state import SYSTEM, Start, ViewState
 from engine import DivergentStart, find_divergent_start
 from engine.dynamics.fates import describe_fate

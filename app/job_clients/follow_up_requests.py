@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.view_state import ViewState
 from engine import EscapeMap
 from engine.jobs.client import JobSubmitter

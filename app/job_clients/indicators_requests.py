@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from app.job_clients.error_messages import sentence
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import BirkhoffDigits, Fate, IndicatorVerdict, Orbit, compute_birkhoff_digits, evaluate_indicators

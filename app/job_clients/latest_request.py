@@ -7,10 +7,12 @@ from functools import partial
 from typing import Any
 
 from app.job_clients.error_messages import sentence
-from app.job_clients.locking import Locked
 from engine.jobs.client import JobSubmitter
 from engine.jobs.job import Job
 from engine.jobs.subscription import Subscription
+
+Locked = Callable[[Callable[..., None]], Callable[..., None]]
+"""Wraps a function: any thread may call the result, which returns at once and runs the function under the session's lock."""
 
 
 class LatestRequest:

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from app.job_clients.error_messages import sentence
 from app.job_clients.follow_up_requests import FollowUp, FollowUpRequests
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import Locked
 from app.state.view_state import SYSTEM, ViewState
 from engine import EscapeMap, MapSpec
 from engine.jobs.client import JobSubmitter

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.job_clients.error_messages import sentence
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import Locked
 from app.state.view_state import SYSTEM, Start, ViewState
 from engine import BirkhoffDigits, Fate, Orbit, OrbitVerdict, judge_orbit
 from engine.dynamics.fates import describe_fate

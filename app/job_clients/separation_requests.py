@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.view_state import ViewState
 from engine import Orbit, Separation, compute_separation

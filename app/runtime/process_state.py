@@ -97,22 +97,6 @@ _lock = threading.Lock()
 _started: ProcessState | None = None
 
 
-def start_process_state(settings: Settings) -> ProcessState:
-    """Start the state of this process with explicit settings, as in a test, a script or a notebook.
-
-    Raises
-    ------
-    RuntimeError
-        The state has already been started.
-    """
-    global _started
-    with _lock:
-        if _started is not None:
-            raise RuntimeError("the state of this process has already been started")
-        _started = ProcessState(settings)
-        return _started
-
-
 def process_state() -> ProcessState:
     """Return the state of this process; the first call starts it with the settings of the environment.
 

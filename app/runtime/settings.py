@@ -9,7 +9,6 @@ from enum import StrEnum
 from typing import Any
 
 from engine.execution import count_cores
-from engine.jobs.client import MOST_REQUESTS
 
 PREFIX = "ESCAPE_EXPLORER_"
 """Prefix of the environment variables."""
@@ -75,8 +74,6 @@ class Settings:
         Maximum time horizon, dimensionless.
     most_orbits
         Maximum number of orbits of all large running jobs: pixels of maps, and pixels times energies of sweeps.
-    jobs_per_session
-        Maximum number of concurrent jobs of a session.
     most_sessions
         Maximum number of sessions, and of WebSockets; further requests for the page get status 503.
     pages_per_address
@@ -97,10 +94,6 @@ class Settings:
     longest_delay
         Delay of first frames by the event loop and the queue of computations, in seconds, above which the server is overloaded
         (`app.runtime.overload`) and refuses further pages.
-    session_seconds
-        Lifetime of a session without a connection, in seconds; a broken connection can be resumed within it.
-    keep_alive_seconds
-        Interval between pings on an idle connection, in seconds; must be shorter than the timeout of any proxy.
     frame_ancestors
         Origins that may embed the page in a frame; empty for none.
     bokeh_patches
@@ -110,7 +103,6 @@ class Settings:
     largest_resolution: int = _setting(1024, _integer(16, 4096))
     longest_t_max: float = _setting(1e6, _number(1.0, 1e8))
     most_orbits: int = _setting(4 * MIB, _integer(1000, 10**9))
-    jobs_per_session: int = _setting(MOST_REQUESTS, _integer(1, 1000))
     most_sessions: int = _setting(200, _integer(1, 100_000))
     pages_per_address: int = _setting(50, _integer(1, 100_000))
     most_connections: int = _setting(500, _integer(1, 100_000))
@@ -120,8 +112,6 @@ class Settings:
     threads: int = field(default_factory=count_cores, metadata={"parser": _integer(1, 1024)})
     log: LogFormat = field(default=LogFormat.TEXT, metadata={"parser": _LOG_FORMAT})
     longest_delay: float = _setting(0.5, _number(0.05, 3600.0))
-    session_seconds: int = _setting(60, _integer(1, 86_400))
-    keep_alive_seconds: int = _setting(20, _integer(1, 3600))
     frame_ancestors: tuple[str, ...] = _setting((), _ORIGINS)
     bokeh_patches: bool = _setting(True, _YES_OR_NO)
 

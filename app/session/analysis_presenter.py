@@ -11,8 +11,7 @@ import numpy as np
 
 from app.job_clients.error_messages import WINDOW_UNKNOWN
 from app.job_clients.follow_up_requests import FollowUp
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.glossary import with_terms
 from app.state.view_state import IMAGES, SYSTEM, Analysis, ViewState
 from app.views.analysis.basin_measures import BasinMeasuresView

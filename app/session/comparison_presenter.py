@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.compared_view import ComparedView
 from app.state.system_review import review_job
 from app.state.view_state import ViewState

@@ -75,7 +75,7 @@ class Explorer:
         self._locked, self._latest = callbacks.every, callbacks.latest
         self._make_views()
         process = process_state()
-        jobs = self._client = JobClient(process.jobs, process.settings.jobs_per_session, account_of(document))
+        jobs = self._client = JobClient(process.jobs, account=account_of(document))
         on_disconnect(document, self._client.close)
         self.potential = PotentialPresenter(self.state, jobs, self.links.history, self._locked)
         self.analyses = AnalysisPresenter(

@@ -11,7 +11,7 @@ import panel as pn
 
 from app.job_clients.divergent_start_requests import DivergentStartRequests
 from app.job_clients.indicators_requests import IndicatorsRequests
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import Locked
 from app.job_clients.orbit_requests import ChosenOrbit, OrbitRequests
 from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import SYSTEM, ViewState

@@ -13,9 +13,9 @@ from panel.io.resources import parse_template
 
 from app.session.explorer import Explorer
 from app.state.link_summary import LinkSummary
-from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.notice import watch_connection
 from app.views.components.theme import THEME_KEY, ExplorerDesign, theme_css
+from app.views.components.widgets import FULL_HEIGHT
 
 TITLE = "Escape Explorer"
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.history import History
 from app.state.system_review import is_known, review_catalogue_entry, review_job
 from app.state.view_state import SYSTEM, ViewState

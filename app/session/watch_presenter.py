@@ -8,8 +8,7 @@ from typing import Any
 import panel as pn
 
 from app.browser.ensemble_player import EnsemblePlayer
-from app.job_clients.latest_request import LatestRequest
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import LatestRequest, Locked
 from app.state.help_texts import title_with_help
 from app.state.view_state import SYSTEM, Analysis, ViewState
 from app.state.watched_starts import StartsFrom, WatchedStarts, places_for

@@ -14,8 +14,7 @@ class JobStats:
     in_flight
         Running and queued jobs.
     calls_waiting
-        Calls of these jobs that no thread has started; 0 when `Jobs` was given an executor of its
-        own.
+        Calls of these jobs that no thread has started; 0 when `Jobs` was given an executor of its own.
     done, failed, cancelled
         Jobs that ended so far, by outcome.
     cache_bytes, cache_limit

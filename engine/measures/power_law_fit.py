@@ -102,14 +102,6 @@ class UncertaintyExponent(Result):
         return 2.0 - self.exponent
 
     @property
-    def probability(self) -> float:
-        """Probability of at least this scatter about the fitted line by chance alone; NaN without a fitted line."""
-        from scipy import special
-
-        freedom = int(np.count_nonzero(self.used)) - 2
-        return float(special.chdtrc(freedom, self.misfit * freedom)) if np.isfinite(self.misfit) else float("nan")
-
-    @property
     def nbytes(self) -> int:
         """Bytes held by the arrays."""
         arrays = (self.separations, self.pairs, self.uncertain, self.used, self.one_inside, self.both_inside)

@@ -13,7 +13,7 @@ def require_package(package: str, extra: str) -> None:
     package
         Name under which the package is imported.
     extra
-        The extra of the distribution that has it: files, page or cluster.
+        The extra of the distribution that has it: files, page, cluster or movies.
 
     Raises
     ------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,9 +73,3 @@ def share_next_to_islands(frame: EscapeMap, *, late: bool) -> float:
 def boundary_exponent(frame: EscapeMap) -> float:
     """Uncertainty exponent of the boundaries, 1 for smooth ones; NaN if too few starts are uncertain."""
     return compute_uncertainty_exponent(frame.spec, work=_WORK).exponent
-
-
-def local_exponents(abscissae: Sequence[float], values: Sequence[float]) -> list[float]:
-    """Exponents of the power laws between neighbouring points with positive coordinates."""
-    exponents: list[float] = (np.diff(np.log(values)) / np.diff(np.log(abscissae))).tolist()
-    return exponents

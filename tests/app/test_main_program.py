@@ -33,11 +33,8 @@ def test_panel_serves_the_folder_of_the_page(
     assert arguments()[1:3] == ["serve", str(Path(app.__path__[0]))]
 
 
-def test_times_of_the_settings_and_options_are_passed_on(
-    arguments: Callable[..., list[str]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("ESCAPE_EXPLORER_SESSION_SECONDS", "7")
-    assert arguments("--port", "1")[3:] == ["--unused-session-lifetime=7000", "--keep-alive=20000", "--port", "1"]
+def test_times_and_options_are_passed_on(arguments: Callable[..., list[str]]) -> None:
+    assert arguments("--port", "1")[3:] == ["--unused-session-lifetime=60000", "--keep-alive=20000", "--port", "1"]
 
 
 def test_invalid_setting_is_reported_before_panel_starts(

@@ -11,12 +11,10 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, Line, MultiLine, Range1d, Scatter, Segment, Span
 from bokeh.plotting import figure
 
-from app.views.components.chart_hover import chart_hover
-from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.legends import legend
-from app.views.components.plots import FigurePane, set_decades, set_range, square_figure
+from app.views.components.plots import FigurePane, chart_hover, set_decades, set_range, square_figure
 from app.views.components.texts import TextPane
-from app.views.components.widgets import button
+from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Outcome, Sweep, System
 from engine.potentials.system import PARAMETERS
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette

@@ -11,9 +11,8 @@ import panel as pn
 
 from app.browser.formula_box import FormulaBox
 from app.browser.parameter_slider import ParameterSlider
-from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
-from app.views.components.widgets import button
+from app.views.components.widgets import button, flex_row
 from engine import PotentialReview, System
 from engine.potentials.catalogue import CATALOGUE
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters

@@ -12,12 +12,11 @@ import panel as pn
 from bokeh.models.dom import HTML
 
 from app.state.help_texts import title_with_help
-from app.views.components.chart_hover import chart_hover
-from app.views.components.copy_button import copy_button
 from app.views.components.legends import patch
 from app.views.components.numbers import grouped, percent, percent_range
+from app.views.components.plots import chart_hover
 from app.views.components.texts import TextPane
-from app.views.components.widgets import COUNT_WHOLE, button
+from app.views.components.widgets import COUNT_WHOLE, button, copy_button
 from engine import EscapeMap, EscapeStatistics, Fate, Window, compute_statistics
 from engine.dynamics.fates import UNRESOLVED
 from plots.palette import PAPER, Palette

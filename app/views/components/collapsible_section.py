@@ -7,9 +7,8 @@ from typing import Any
 
 import panel as pn
 
-from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.texts import TextPane
-from app.views.components.widgets import button
+from app.views.components.widgets import FULL_HEIGHT, button
 
 Build = Callable[[], Sequence[pn.viewable.Viewable]]
 """Makes the content of a section."""

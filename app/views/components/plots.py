@@ -11,7 +11,7 @@ from typing import Any
 import panel as pn
 from bokeh.events import Event
 from bokeh.model import Model
-from bokeh.models import BasicTickFormatter, CustomJSTickFormatter, Range1d
+from bokeh.models import BasicTickFormatter, CustomJSHover, CustomJSTickFormatter, GlyphRenderer, HoverTool, Range1d
 from bokeh.models.dom import HTML
 from bokeh.plotting import figure
 
@@ -21,6 +21,9 @@ from engine import Window
 from plots.axis_labels import find_offset
 
 _OFFSET_LABEL = callback_code("offset_ticks.js", "offsetLabel(tick, base, unit)")
+
+HOVER_FORMATS = {name: callback_code("hover_texts.js", f"{name}(value)") for name in ("number", "count", "percent")}
+"""JavaScript that writes a `value`: four digits, a whole number in groups of digits, a share."""
 
 HISTORY_ASPECT = 1.9
 """Width over height of the figures against the time of orbits."""
@@ -140,3 +143,22 @@ def set_range(edges: Range1d, low: float, high: float) -> None:
 def set_decades(edges: Range1d, low: float, high: float) -> None:
     """Set a logarithmic axis to start at the power of ten below `low` and to end a little above `high`."""
     set_range(edges, 10.0 ** math.floor(math.log10(low)), 1.3 * high)
+
+
+def chart_hover(text: str, formats: Mapping[str, str], renderers: Sequence[GlyphRenderer], **options: Any) -> HoverTool:
+    """A tool that describes the points of a chart under the mouse, in words.
+
+    Parameters
+    ----------
+    text
+        HTML with the values as ``@column{custom}`` or ``$variable{custom}``.
+    formats
+        Name in `HOVER_FORMATS` for each of these values, with its @ or $.
+    renderers
+        What is described.
+    **options
+        Of `bokeh.models.HoverTool`.
+    """
+    formatters = {value: CustomJSHover(code=HOVER_FORMATS[kind]) for value, kind in formats.items()}
+    tooltips = f'<div style="font-size:11px;line-height:14px;color:var(--ui-ink)">{text}</div>'
+    return HoverTool(tooltips=tooltips, formatters=formatters, renderers=list(renderers), visible=False, **options)

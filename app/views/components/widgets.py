@@ -1,8 +1,8 @@
-"""Panel's widgets as this page uses them: with accessible names, and the classes that the stylesheet knows."""
+"""Panel's widgets and rows as this page uses them: with accessible names, and the classes that the stylesheet knows."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import panel as pn
@@ -11,6 +11,12 @@ from bokeh.document import Document
 
 COUNT_WHOLE = "Count the whole view"
 """Label of the buttons that remove the box."""
+
+FULL_HEIGHT = {"max-height": "none"}
+"""Styles: by default Bokeh limits a layout to the height of the window, and what follows overlaps it."""
+
+Rows = Iterable[Sequence[str]]
+"""Texts of the cells."""
 
 
 class _NamedGroup:
@@ -44,6 +50,38 @@ def button(label: str, on_click: Callable[[], Any], *, kind: str = "default", **
     widget = pn.widgets.Button(label=label, color=kind, **options)
     widget.on_click(lambda event: on_click())
     return widget
+
+
+def copy_button(rows: Callable[[], Rows], on_copy: Callable[[str], None], **options: Any) -> pn.widgets.Button:
+    """A button that copies the rows of the moment of the click; `on_copy` is called with the text."""
+    return button("Copy table", lambda: on_copy("\n".join("\t".join(row) for row in rows())), **options)
+
+
+def number_rows(title: str, numbers: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """Rows of numbers at full precision, each with a title and its name."""
+    return [(title, name, repr(value) if isinstance(value, float) else str(value)) for name, value in numbers.items()]
+
+
+def flex_row(*views: pn.viewable.Viewable, justify: str = "start", align: str = "start", gap: str = "4px") -> pn.Column:
+    """A row as high as its content.
+
+    It is a Column with another flex direction: a Row would be at least as wide as all its children together.
+
+    Parameters
+    ----------
+    *views
+        Children of the row.
+    justify
+        Horizontal place of the children, a CSS value of justify-content.
+    align
+        Vertical place of each child: start, center or end.
+    gap
+        Space between the children, a CSS length.
+    """
+    for view in views:
+        view.align = align
+    styles = {"flex-direction": "row", "flex-wrap": "wrap", "justify-content": justify, "gap": gap}
+    return pn.Column(*views, styles=FULL_HEIGHT | styles, sizing_mode="stretch_width", margin=0)
 
 
 def keep_place(*, shown: bool) -> dict[str, str]:

@@ -32,12 +32,11 @@ from app.views.components.plots import FigurePane, annotate_picture, label_axes,
 from app.views.maps.comparison import ComparedMap
 from app.views.maps.hover import pixel_hover
 from app.views.maps.map_legend import Described, map_legend
-from app.views.maps.map_ranges import MapRanges
+from app.views.maps.map_ranges import MapRanges, TwoFingers
 from app.views.maps.map_toolbar import Drag
 from app.views.maps.markers import Markers
 from app.views.maps.overlays import Overlays
 from app.views.maps.picture_grid import PictureGrid
-from app.views.maps.two_fingers import TwoFingers
 from app.views.maps.well import WellView
 from engine import EscapeMap, Fate, MapSpec, OriginFateMap, Regularity, RegularityMap, Window
 from engine.results.wording import format_number

@@ -1,4 +1,4 @@
-"""The ranges of the maps: they follow the map that is shown, and report the window to which a hand moves them."""
+"""The ranges of the maps: they follow the map that is shown and two fingers, and report the window to which a hand moves them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 from bokeh.document import Document
-from bokeh.models import Range1d
+from bokeh.events import Pinch, PinchStart
+from bokeh.models import CustomJS, Range1d
+from bokeh.plotting import figure
 
+from app.browser.callbacks import callback_code
 from engine import MapSpec, Window
 from engine.maps.spec import finest_pixel
 
@@ -19,6 +22,8 @@ GESTURE_PAUSE_MS = 500
 
 REST_MS = 90
 """A window is computed when the ranges have not changed for this long, longer than between two steps of a wheel."""
+
+_FOLLOW = callback_code("two_fingers.js", "followFingers(cb_obj, ranges, held)")
 
 Edges = tuple[float, float, float, float]
 """Ends of the ranges of x and of the ordinate: low, high, low, high."""
@@ -154,3 +159,18 @@ def is_near(edges: Edges, window: Window) -> bool:
     width, height = window.x_high - window.x_low, window.ordinate_high - window.ordinate_low
     apart = np.abs(np.subtract(edges, astuple(window)))
     return bool(np.all(apart <= 1e-6 * np.array([width, width, height, height])))
+
+
+class TwoFingers:
+    """Changes two ranges so that the point between the fingers stays between them, at the scale of their distance.
+
+    Bokeh's `WheelZoomTool` zooms in steps and does not move the picture.
+    """
+
+    def __init__(self, x: Range1d, y: Range1d) -> None:
+        self._follow = CustomJS(args={"ranges": [x, y], "held": []}, code=_FOLLOW)
+
+    def follow_on(self, plot: figure) -> None:
+        """Let a picture with these ranges follow the fingers."""
+        for event in (PinchStart, Pinch):
+            plot.js_on_event(event, self._follow)

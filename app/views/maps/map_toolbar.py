@@ -7,8 +7,7 @@ from enum import StrEnum
 
 import panel as pn
 
-from app.views.components.flex_row import flex_row
-from app.views.components.widgets import SegmentedControl, button, keep_place
+from app.views.components.widgets import SegmentedControl, button, flex_row, keep_place
 
 
 class Drag(StrEnum):

@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 import panel as pn
 from bokeh.plotting import figure
 
-from app.views.components.flex_row import FULL_HEIGHT
 from app.views.components.plots import FigurePane, set_thumbnail
-from app.views.components.widgets import SegmentedControl
+from app.views.components.widgets import FULL_HEIGHT, SegmentedControl
 from plots.map_images import ON_DEMAND
 
 SHORT_TITLES = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import panel as pn
 
-from app.views.components.flex_row import FULL_HEIGHT
+from app.views.components.widgets import FULL_HEIGHT
 from app.views.orbits.orbit_controls import OrbitControls
 from app.views.orbits.orbit_plots import OrbitPlots
 from app.views.orbits.playback import Playback

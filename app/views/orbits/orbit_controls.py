@@ -13,11 +13,9 @@ from app.browser.orbit_list import OrbitList
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.state.glossary import with_terms
 from app.views.components.collapsible_section import Fold
-from app.views.components.copy_button import copy_button, number_rows
-from app.views.components.flex_row import FULL_HEIGHT, flex_row
 from app.views.components.numbers import grouped
 from app.views.components.texts import TextPane
-from app.views.components.widgets import button
+from app.views.components.widgets import FULL_HEIGHT, button, copy_button, flex_row, number_rows
 from engine import Coordinate, IndicatorVerdict, Orbit, Slice
 from engine.slices.section import SECTION
 from plots.orbit_curves import initial_state

@@ -12,8 +12,8 @@ import panel as pn
 
 from app.browser.number_box import NumberBox
 from app.state.view_state import SYSTEM, ViewState
-from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
+from app.views.components.widgets import flex_row
 from engine import Coordinate, ParameterAxis, Slice
 from engine.potentials.system import PARAMETERS
 from engine.slices.slice_text import AXIS_NAMES, default_range

@@ -31,7 +31,6 @@ MOST_CONVOLUTIONS = 120
 # Results of searches for zeros, some 0.1 kB each, and the share of the operations that a search may take.
 _ZEROS, _EFFORT_FOR_ZEROS = 1024, 0.1
 
-_ORDERS = ((2, 0), (1, 1), (0, 2))
 # Rotations up to this are looked for, with V compared on circles and at angles up to a relative error.
 _MOST_ROTATIONS, _ROTATION_ERROR = 12, 1e-11
 _RADII, _ANGLES = 2.0 ** np.arange(-6.0, 3.0)[:, None], np.array([0.2, 0.9, 2.1, 3.3, 4.6, 5.9])

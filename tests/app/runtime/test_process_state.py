@@ -9,7 +9,7 @@ import pytest
 from bokeh.document import Document
 
 from app.runtime import process_state as module
-from app.runtime.process_state import ProcessState, process_state, start_process_state
+from app.runtime.process_state import ProcessState, process_state
 from app.runtime.settings import Settings
 
 ROOT = Path(__file__).parents[3]
@@ -27,14 +27,6 @@ def test_first_use_starts_with_the_environment(monkeypatch: pytest.MonkeyPatch) 
     state = process_state()
     assert state.settings.most_sessions == 7
     assert process_state() is state
-
-
-@pytest.mark.usefixtures("not_started")
-def test_explicit_settings_can_be_given_once() -> None:
-    state = start_process_state(Settings(most_sessions=3))
-    assert process_state() is state
-    with pytest.raises(RuntimeError, match="already been started"):
-        start_process_state(Settings())
 
 
 @pytest.mark.usefixtures("not_started")

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from app.job_clients.locking import Locked
+from app.job_clients.latest_request import Locked
 
 
 def locked_by(changed: threading.Condition) -> Locked:

@@ -8,7 +8,7 @@ import pytest
 
 from app.job_clients.orbit_requests import ChosenOrbit
 from app.views.analysis.basin_measures import BasinMeasuresView
-from app.views.components.copy_button import copy_button, number_rows
+from app.views.components.widgets import copy_button, number_rows
 from app.views.orbits.orbit_controls import OrbitActions, OrbitControls
 from engine import (
     CASES,
