@@ -24,8 +24,7 @@ from tornado.ioloop import IOLoop
 
 from app.bokeh_patches.batched_patches import batch_patches
 from app.bokeh_patches.inline_callbacks import call_inline
-from app.runtime import fair_share as fair_share_module
-from app.runtime import process_state as process_state_module
+from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
 from app.server.url_patterns import PageHandler
@@ -40,11 +39,10 @@ PATTERNS = [("/?", PageHandler), ("/ws", PageWebSocket)]
 
 
 @pytest.fixture
-def state(monkeypatch: pytest.MonkeyPatch) -> ProcessState:
+def state(start_state: Callable[..., ProcessState], monkeypatch: pytest.MonkeyPatch) -> ProcessState:
     """The state of a process."""
     monkeypatch.setattr(bokeh_tornado, "per_app_patterns", PATTERNS)
-    monkeypatch.setattr(process_state_module, "_started", state := ProcessState())
-    return state
+    return start_state()
 
 
 def build(document: Document) -> None:
@@ -105,12 +103,10 @@ async def move_slider(channel: Channel, document: Document) -> None:
     await receive(channel, "SERVER-INFO-REPLY")
 
 
-def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
-    # The page has to make up for at most this.
-    monkeypatch.setattr(fair_share_module, "BURST_SECONDS", 0.5 * fair_share_module.SHARE)
-
+def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        state.fair_share(document).take(10.0)
+        # What has to be made up for takes half a second.
+        state.fair_share(document).take(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
         assert slider_of(document).value == 0
