@@ -26,7 +26,7 @@ NO_LINK: Mapping[str, str] = {}
 async def opened_page(
     link: Mapping[str, str] = NO_LINK, prepare: Callable[[Explorer], None] = lambda explorer: None
 ) -> AsyncIterator[tuple[Explorer, ServerSession]]:
-    """The explorer and the session of a page that is opened with a link, in its document and without its lock; `prepare` is called before."""
+    """The explorer and the session of a page that is opened with a link; `prepare` is called before it is built."""
     built: list[tuple[Explorer, Document]] = []
 
     def build(document: Document) -> None:

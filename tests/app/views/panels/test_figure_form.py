@@ -29,8 +29,6 @@ from plots.map_analyses import MapAnalyses
 from plots.orbit_curves import compute_orbit_curves
 from tests.app.other_loop import run_on_new_loop
 
-BEGINS = {FigureFormat.PNG: b"\x89PNG", FigureFormat.SVG: b"<?xml", FigureFormat.PDF: b"%PDF"}
-
 
 @pytest.fixture(scope="module")
 def escape_map() -> EscapeMap:
@@ -40,7 +38,7 @@ def escape_map() -> EscapeMap:
 @pytest.fixture(scope="module")
 def shown(escape_map: EscapeMap) -> Shown:
     """Everything that can be drawn."""
-    curves = compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), 100.0))
+    curves = compute_curves(CurvesSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (12, 12), 100.0, exponent=False))
     orbit = compute_orbit_curves(CASES["I"], integrate_orbit(CASES["I"], (0.1, 0.0, 0.05, 0.6), 50.0))
     analyses = MapAnalyses(regularity=compute_regularity(escape_map))
     return Shown(escape_map, analyses, [ChosenOrbit((0.1, 0.05), orbit)], curves)
@@ -70,13 +68,10 @@ def test_what_is_shown_can_be_drawn(shown: Shown) -> None:
     assert list(figure_choices(shown, state)) == [*maps, *others]
 
 
-@pytest.mark.parametrize(
-    "format",
-    [FigureFormat.PNG, *(pytest.param(format, marks=pytest.mark.slow) for format in (FigureFormat.PDF, FigureFormat.SVG))],
-)
-def test_each_figure_can_be_made_in_each_format(format: FigureFormat, shown: Shown) -> None:
-    for make in figure_choices(shown, ViewState(case="I", energy=0.19)).values():
-        assert make(format, FigureStyle(8.5, 60.0)).startswith(BEGINS[format])
+@pytest.mark.parametrize("title", ["The well in (x, y)", "Orbits", "Statistics", "Curves against energy", "Regular or chaotic"])
+def test_each_figure_can_be_made(title: str, shown: Shown) -> None:
+    make = figure_choices(shown, ViewState(case="I", energy=0.19))[title]
+    assert make(FigureFormat.PNG, FigureStyle(8.5, 60.0)).startswith(b"\x89PNG")
 
 
 def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
@@ -87,7 +82,7 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
         return b"figure"
 
     async def save() -> None:
-        asyncio.get_running_loop().call_later(0.05, loop_has_run.set)
+        asyncio.get_running_loop().call_later(0.0, loop_has_run.set)
         await form.make(make, sent.append)
 
     sent: list[bytes | None] = []

@@ -12,6 +12,7 @@ from app.state.view_state import ViewState
 from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.potentials.system import TYPED
+from tests.app.browser_messages import send
 
 C = Coordinate
 
@@ -31,7 +32,7 @@ class Drawer:
 
     def type(self, label: str, number: float) -> None:
         """A number that is typed into a box."""
-        self.boxes[label]._receive({"number": number, "typed": 1})
+        send(self.boxes[label], {"number": number, "typed": 1})
 
 
 @pytest.fixture
