@@ -21,7 +21,7 @@ from typing import Any
 from tornado.httpclient import AsyncHTTPClient
 
 from benchmarks.load import START_SECONDS, Server, started, wait_until_ready
-from benchmarks.simulated_sessions import Channel
+from tests.page_channel import Channel
 
 POLL_SECONDS = 0.05
 EVENTS = ("the server answers", "the page is open", "first pixels of the map", "the map is complete", "all kernels are compiled")

@@ -24,8 +24,8 @@ from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from app.browser.module_files import ADDRESS
 from app.server.log_format import LONGEST_MESSAGE
-from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
+from tests.page_channel import Channel
 
 ROOT = Path(__file__).parents[3]
 START_SECONDS = 240
