@@ -27,6 +27,7 @@ from engine import (
 from plots.figure_style import FigureFormat, FigureStyle
 from plots.map_analyses import MapAnalyses
 from plots.orbit_curves import compute_orbit_curves
+from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
 
 
@@ -90,14 +91,10 @@ def test_the_event_loop_runs_while_a_figure_is_made(form: FigureForm) -> None:
     assert sent == [b"figure"]
 
 
-def test_files_are_named_after_the_figure(form: FigureForm) -> None:
-    assert form.figure()[0] == ""
-    form.what.value = "The well in (x, y)"
-    assert form.figure()[0] == "-the-well-in-x-y"
-
-
 def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: Shown, saved: list[tuple[str, bytes]]) -> None:
+    assert form.figure()[0] == ""
     form.what.value = "Regular or chaotic"
+    assert form.figure()[0] == "-regular-or-chaotic"
     form.show(Shown())
     assert (form.what.options, form.what.value) == ([ALL_MAPS, "Regular or chaotic"], "Regular or chaotic")
     form.save.clicks += 1
@@ -108,11 +105,16 @@ def test_a_choice_stays_while_the_next_map_is_computed(form: FigureForm, shown: 
 
 
 @pytest.mark.parametrize(("name", "number"), [("width", 1.0), ("dpi", 5000.0), ("font_size", 0.0)])
-def test_an_illegal_number_is_named(name: str, number: float, form: FigureForm, saved: list[tuple[str, bytes]]) -> None:
+def test_an_illegal_number_is_named_and_nothing_is_saved_or_copied(
+    name: str, number: float, form: FigureForm, saved: list[tuple[str, bytes]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sent: list[bytes | None] = []
+    monkeypatch.setattr(form.copy, "send", sent.append)
     form.type(name, number)
     form.save.clicks += 1
     assert form.text.object.startswith(f"{name}={number!r}: must be from ")
-    assert not saved
+    send(form.copy, {"wanted": True})
+    assert (saved, sent) == ([], [None])
 
 
 def test_too_many_pixels_are_named(form: FigureForm) -> None:
@@ -126,12 +128,3 @@ def test_too_many_pixels_are_named(form: FigureForm) -> None:
     run_on_new_loop(lambda: form.make(draw, sent.append))
     assert form.text.object.startswith("dpi=1200: must be at most ")
     assert sent == [None]
-
-
-def test_an_image_that_cannot_be_made_is_not_copied(form: FigureForm, monkeypatch: pytest.MonkeyPatch) -> None:
-    sent: list[bytes | None] = []
-    monkeypatch.setattr(form.copy, "send", sent.append)
-    form.type("width", 1.0)
-    form.copy._receive({"wanted": True})
-    assert sent == [None]
-    assert form.text.object.startswith("width=1.0: must be from ")
