@@ -21,6 +21,11 @@ PARTS = ("note", "orbit-list", "verdict", "player", "interval", "sali", "exponen
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
 
 
+@pytest.fixture(scope="module")
+def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    return open_for_all(link=QUICK)
+
+
 def click_all(explorer: ExplorerPage, starts: list[tuple[float, float]]) -> None:
     for place, (x, px) in enumerate(starts):
         explorer.click("basins", x, px)
