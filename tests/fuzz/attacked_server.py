@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from tornado.httpclient import AsyncHTTPClient
+
 from tests.browser.served_app import RunningApp
 from tests.engine.jobs.inbox import wait_until
 from tests.page_channel import Channel
@@ -15,9 +17,15 @@ LINK = "?case=I&h=0.3&resolution=48&t_max=100"
 SETTINGS = {"CACHE_BYTES": str(32 * 2**20), "PAGES_PER_ADDRESS": "10", "COMPILED_OPERATIONS": "50000"}
 
 
+async def fetch_page(address: str) -> str:
+    """The page of a map that takes little time."""
+    page = await AsyncHTTPClient().fetch(address + LINK, request_timeout=ANSWER_SECONDS)
+    return page.body.decode()
+
+
 async def open_page(address: str) -> None:
     """Open a page and wait for the first pixels of its map."""
-    channel = await Channel.open(address + LINK)
+    channel = await Channel.connect(address, await fetch_page(address))
     async for kind, content in channel.messages():
         if kind == "ACK":
             channel.send("PULL-DOC-REQ", {})

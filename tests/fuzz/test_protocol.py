@@ -8,12 +8,11 @@ import logging
 from pathlib import Path
 
 import pytest
-from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 
 from tests.app.other_loop import run_on_new_loop
 from tests.browser.served_app import RunningApp
-from tests.fuzz.attacked_server import ANSWER_SECONDS, LINK, open_page, resting_memory, tracebacks
+from tests.fuzz.attacked_server import ANSWER_SECONDS, fetch_page, open_page, resting_memory, tracebacks
 from tests.fuzz.random_messages import RandomMessages
 from tests.page_channel import Channel
 
@@ -25,11 +24,6 @@ CONNECTIONS_PER_PAGE = 3
 BETWEEN_SYNCHRONIZATIONS = 25
 VISITORS = 4
 PARTS = 3
-
-
-async def fetch_page(address: str) -> str:
-    page = await AsyncHTTPClient().fetch(address + LINK, request_timeout=ANSWER_SECONDS)
-    return page.body.decode()
 
 
 class Visitor:
