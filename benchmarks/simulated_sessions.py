@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import http.client
-import itertools
 import json
 import random
-import re
 import time
-from collections.abc import AsyncIterator, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from ipaddress import IPv4Address
 from typing import Any
 from urllib.parse import parse_qsl, urljoin
 
-from tornado.httpclient import AsyncHTTPClient, HTTPClientError, HTTPRequest
-from tornado.websocket import WebSocketClientConnection, websocket_connect
+from tornado.httpclient import AsyncHTTPClient, HTTPClientError
 
 from engine import Plane
+from tests.page_channel import NO_OPTIONS, Channel, Options
 
 CHEAP_ENERGIES = {"I": (0.22, 0.45), "II": (0.22, 0.45), "III": (0.40, 0.90)}
 """Energies well above the escape energy, where a map takes the least time."""
@@ -31,11 +29,6 @@ POLL_SECONDS = 0.05
 PAUSE_SECONDS = 1.0, 5.0
 FRAME_TIMEOUT_SECONDS = 30.0
 """A frame that takes longer counts as an error."""
-
-Options = Mapping[str, Any]
-"""Options of Tornado's `HTTPRequest` for the page and its WebSocket, such as headers."""
-
-NO_OPTIONS: Options = {}
 
 ACTIONS = {"slider": 80, "case": 7, "plane": 6, "click": 7}
 """Actions and their weights."""
@@ -66,76 +59,6 @@ class Record:
     orbit_plots: int = 0
     refused: int = 0
     errors: list[str] = field(default_factory=list)
-
-
-class Channel:
-    """A WebSocket with Bokeh's protocol."""
-
-    def __init__(self, socket: WebSocketClientConnection) -> None:
-        self._socket = socket
-        self._numbers = itertools.count()
-
-    @classmethod
-    async def open(cls, address: str, options: Options = NO_OPTIONS) -> Channel:
-        """Fetch the page and connect with its token."""
-        page = await AsyncHTTPClient().fetch(address, request_timeout=60.0, **options)
-        return await cls.connect(address, page.body.decode(), options)
-
-    @classmethod
-    async def connect(cls, address: str, page: str, options: Options = NO_OPTIONS) -> Channel:
-        """Connect with the token of a page already fetched."""
-        token = re.search(r'"token":"([^"]+)"', page)
-        if token is None:
-            raise RuntimeError("the page has no token")
-        request = HTTPRequest(re.sub("^http", "ws", address) + "/ws", **options)
-        socket = await websocket_connect(request, subprotocols=["bokeh", token[1]])
-        # As in browsers.
-        socket.protocol.set_nodelay(True)
-        return cls(socket)
-
-    def send(self, kind: str, content: dict[str, Any]) -> None:
-        """Send a message."""
-        header = {"msgid": f"simulated-{next(self._numbers)}", "msgtype": kind}
-        for part in (header, {}, content):
-            self._socket.write_message(json.dumps(part))
-
-    def patch(self, event: dict[str, Any]) -> None:
-        """Send one event of a document patch."""
-        self.send("PATCH-DOC", {"events": [event]})
-
-    def set(self, model: str, **values: Any) -> None:
-        """Change attributes of a model, as its view in the browser does."""
-        events = [{"kind": "ModelChanged", "model": {"id": model}, "attr": name, "new": value} for name, value in values.items()]
-        self.send("PATCH-DOC", {"events": events})
-
-    def emit(self, name: str, **values: Any) -> None:
-        """Send an event of a model or of the document."""
-        entries = [[key, value] for key, value in values.items()]
-        data = {"type": "event", "name": name, "values": {"type": "map", "entries": entries}}
-        self.patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": data})
-
-    async def messages(self) -> AsyncIterator[tuple[str, str]]:
-        """Kind and content of each message from the server until the socket closes; binary buffers are skipped."""
-        try:
-            while True:
-                header, _, content = [await self.part() for _ in range(3)]
-                header = json.loads(header)
-                for _ in range(2 * header.get("num_buffers", 0)):
-                    await self.part()
-                yield header["msgtype"], content
-        except EOFError:
-            return
-
-    async def part(self) -> Any:
-        """The next part of a message."""
-        # A closed socket gives None once, then no further message.
-        part = await self._socket.read_message()
-        if part is None:
-            raise EOFError
-        return part
-
-    def close(self) -> None:
-        self._socket.close()
 
 
 def visitor_headers(name: str, number: int) -> dict[str, str]:

@@ -8,8 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from tests.forked import Finished, run
 
 ROOT = Path(__file__).parents[1]
@@ -54,10 +52,12 @@ def import_page() -> None:
     os.environ["ESCAPE_EXPLORER_THREADS"] = "0"
     import app.app_hooks
     import app.session.page  # noqa: F401
-    from app.runtime import process_state
+    from app.runtime.process_state import start_process_state
+    from app.runtime.settings import Settings
 
     list_imported("app.session.explorer", "matplotlib.figure")
-    assert process_state._started is None
+    # Nobody has started it.
+    start_process_state(Settings())
 
 
 def serve_with_an_invalid_setting() -> None:
@@ -80,17 +80,10 @@ def test_figures_import_no_server_and_no_pyplot(tmp_path: Path) -> None:
     assert run(tmp_path, import_figures) == Finished(0, "matplotlib.figure", "")
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory: pytest.TempPathFactory) -> Finished:
-    return run(tmp_path_factory.mktemp("page"), import_page)
-
-
-def test_page_imports_no_matplotlib_before_a_download(page: Finished) -> None:
-    assert page.out == "app.session.explorer"
-
-
-def test_page_does_not_read_the_environment_before_the_server_starts(page: Finished) -> None:
-    assert (page.code, page.err) == (0, "")
+def test_page_imports_no_matplotlib_before_a_download_and_does_not_read_the_environment_before_the_server_starts(
+    tmp_path: Path,
+) -> None:
+    assert run(tmp_path, import_page) == Finished(0, "app.session.explorer", "")
 
 
 def test_invalid_setting_ends_the_server_with_one_sentence(tmp_path: Path) -> None:

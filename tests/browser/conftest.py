@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from playwright.sync_api import (
 )
 
 from tests.browser.explorer_page import ExplorerPage
+from tests.browser.host_page import host_server
 from tests.browser.served_app import served_app
 from tests.conftest import TIMEOUT_MS
 
@@ -31,10 +33,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def host() -> Iterator[str]:
+    """The origin whose pages may contain the page in a frame."""
+    with host_server() as origin:
+        yield origin
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]:
     """The address of the app; its log must not have a traceback."""
     log = tmp_path_factory.mktemp("server") / "log"
-    with served_app(log) as address:
+    with pytest.MonkeyPatch.context() as patch, ExitStack() as stack:
+        patch.setenv("ESCAPE_EXPLORER_FRAME_ANCESTORS", host)
+        address = stack.enter_context(served_app(log))
         yield address
         # Read before the server stops: Bokeh logs errors of pages that are still connecting then.
         text = log.read_text()

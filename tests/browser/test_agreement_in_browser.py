@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import re
 import urllib.parse
 from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import expect
 
-from app.state.presets import PRESETS
 from app.views.components.analysis_choice import LAYER_LABELS
 from tests.browser.explorer_page import ExplorerPage
 
@@ -58,32 +56,6 @@ def test_the_last_choice_is_shown_when_an_older_one_arrives_after_it(explorer: E
     explorer.radio("III").evaluate(_CHOOSE_BEFORE_AN_OLDER_CHOICE)
     explorer.wait_for_view("case=III")
     expect(explorer.radio("III")).to_be_checked()
-
-
-@pytest.mark.slow
-def test_buttons_are_enabled_shortly_after_their_orbits_were_cleared(explorer: ExplorerPage) -> None:
-    explorer.click("basins", 0.1, 0.05)
-    expect(explorer.button("Clear all")).to_be_enabled()
-    explorer.press("Clear all")
-    explorer.click("basins", -0.1, 0.05)
-    # Until then the buttons are those of the first orbit.
-    explorer.page.wait_for_url(re.compile("orbits=-0"))
-    expect(explorer.button("Play the orbits")).to_be_enabled()
-    explorer.press("Clear all")
-    expect(explorer.button("Play the orbits")).to_be_hidden()
-
-
-@pytest.mark.slow
-def test_switches_follow_the_state_after_a_gallery_entry(explorer: ExplorerPage) -> None:
-    expect_switches(explorer, {"trust", "judge", "origins"})
-    preset = next(preset for preset in PRESETS if preset.case == "III" and preset.window is not None)
-    explorer.press("Gallery")
-    explorer.page.get_by_role("button", name=re.compile(re.escape(preset.title))).first.click()
-    explorer.wait_for_view("case=III", f"h={preset.energy!r}", "window=")
-    explorer.press("Close")
-    expect(explorer.radio("III")).to_be_checked()
-    expect_switches(explorer, on_in_the_address(explorer))
-    expect(explorer.page.get_by_label("Exact h", exact=True)).to_have_value(repr(preset.energy))
 
 
 def test_a_switch_can_be_changed_right_after_the_server_has_set_it(explorer: ExplorerPage) -> None:

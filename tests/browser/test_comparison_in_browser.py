@@ -53,8 +53,3 @@ def test_the_comparison_follows_the_slider_without_the_server(open_explorer: Cal
     explorer.drag_energy_to(0.5, let_go=False)
     explorer.page.wait_for_function(_DIFFERENCE_IN_PREVIEW, arg=rgba([PAPER.difference_entries[1].colour])[0].tolist())
     explorer.page.mouse.up()
-
-
-def test_a_link_with_a_system_that_is_refused_says_so(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link=f"{QUICK}&with_V=x%2B&with_case=typed&with_h=0.2")
-    expect(explorer.text("Ignored the view in the link with which to compare")).to_be_visible()

@@ -54,20 +54,6 @@ def test_ticks_are_distances_from_a_stated_number_and_the_frame_stays_square(exp
 
 
 @pytest.mark.slow
-def test_the_wheel_stops_at_the_limit(explorer: ExplorerPage, window: Window) -> None:
-    middle = 0.5 * (window.x_low + window.x_high), 0.5 * (window.ordinate_low + window.ordinate_high)
-    for _ in range(12):
-        explorer.turn_wheel("basins", *middle, -2000)
-    explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] < {0.5 * (window.x_high - window.x_low)}")
-    x_low, x_high, low, high = explorer.ranges("basins")
-    assert 0 < x_high - x_low < window.x_high - window.x_low
-    assert high - low == pytest.approx(x_high - x_low, rel=0.05)
-    expect(explorer.page.get_by_role("alert")).to_be_hidden()
-    explorer.page.go_back()
-    explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] > {0.9 * (window.x_high - window.x_low)}")
-
-
-@pytest.mark.slow
 def test_zooming_beyond_double_precision_gives_a_message_and_the_picture_stays(explorer: ExplorerPage, window: Window) -> None:
     limit = explorer.text(ZOOM_ENDS)
     for _ in range(12):

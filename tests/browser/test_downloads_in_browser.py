@@ -15,7 +15,6 @@ from playwright.sync_api import expect
 
 from engine import CASES, MapSpec, Plane, compute_map
 from plots.figure_style import FigureStyle
-from plots.palette import COLOUR_BLIND_SAFE
 from tests.browser.explorer_page import ExplorerPage
 
 SMALL = "?case=III&plane=x_px&h=0.45&t_max=1000&resolution=112&orbits=0.1,0.2;0.1,-0.3"
@@ -51,9 +50,8 @@ def test_a_figure_of_all_maps(small: ExplorerPage) -> None:
     assert picture.text["potential"] == "III"  # type: ignore[attr-defined]
 
 
-@pytest.mark.parametrize("what", ["Basins of escape", "The well in (x, y)", "Orbits", "Statistics"])
-def test_figures_as_pdf_of_a_given_width(what: str, small: ExplorerPage) -> None:
-    small.page.get_by_label("What to draw").select_option(what)
+def test_a_figure_as_pdf_of_a_given_width(small: ExplorerPage) -> None:
+    small.page.get_by_label("What to draw").select_option("Orbits")
     small.page.get_by_role("radiogroup", name="Format").get_by_label("PDF").check()
     width = small.page.get_by_label("Width in cm")
     width.fill("8.5")
@@ -65,30 +63,12 @@ def test_figures_as_pdf_of_a_given_width(what: str, small: ExplorerPage) -> None
     assert float(box[1]) == pytest.approx(8.5 / 2.54 * 72.0, abs=0.01)
 
 
-def test_a_width_that_is_not_legal_is_named(small: ExplorerPage) -> None:
-    width = small.page.get_by_label("Width in cm")
-    width.fill("1")
-    width.press("Enter")
-    small.press("Save figure")
-    expect(small.text("width=1.0: must be from 4 to 100 cm")).to_be_visible()
-    width.fill("16")
-    width.press("Enter")
-
-
 def test_the_maps_as_netcdf(small: ExplorerPage) -> None:
     name, data = download_file(small, "Maps (NetCDF)")
     assert name.endswith(".nc")
     expected = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.45, (112, 112), t_max=1e3))
     with xr.open_dataset(io.BytesIO(data), engine="h5netcdf") as dataset:
         np.testing.assert_array_equal(dataset["fate"], expected.fate)
-
-
-def test_the_orbits_as_a_table(small: ExplorerPage) -> None:
-    name, data = download_file(small, "Orbits (CSV)")
-    assert name.endswith("orbits.csv")
-    rows = [line for line in data.decode().splitlines() if not line.startswith("#")]
-    assert rows[0] == "orbit,t,x,y,px,py,sali,lyapunov_exponent,r2"
-    assert {row.split(",")[0] for row in rows[1:]} == {"1", "2"}
 
 
 def test_a_script_that_computes_the_map(small: ExplorerPage) -> None:
@@ -107,15 +87,3 @@ def test_the_link_is_copied(small: ExplorerPage) -> None:
 def test_an_image_is_copied(small: ExplorerPage) -> None:
     small.press("Copy image")
     assert small.page.evaluate(_SIZE_OF_COPIED_IMAGE) > 10_000
-
-
-@pytest.mark.slow
-def test_a_link_has_palette_orbits_and_the_chosen_one(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link=SMALL + "&look=1&palette=safe")
-    explorer.wait_for_data("starts", "data.x.length == 2")
-    expect(explorer.page.get_by_role("radio", name=re.compile("^1: "))).to_be_checked()
-    colours = explorer.page.evaluate(
-        """() => Bokeh.documents[0].get_model_by_name('basins').renderers
-            .find(r => r.data_source.name == 'maps').glyph.color_mapper.palette"""
-    )
-    assert " ".join(COLOUR_BLIND_SAFE.channels) in " ".join(colours)

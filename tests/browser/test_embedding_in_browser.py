@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import http.server
 import re
-import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from html import escape
-from urllib.parse import quote, unquote, urlsplit
+from urllib.parse import quote
 
 import pytest
 from playwright.sync_api import Browser, Frame, Page, expect
 
-from tests.browser.served_app import served_app
+from tests.browser.host_page import host_server
 from tests.conftest import TIMEOUT_MS
 
 LINK = "?case=III&plane=x_y&h=0.45&t_max=100&resolution=112&embed=basins"
@@ -23,50 +20,6 @@ _IS_COMPLETE = "window.Bokeh?.documents.length && Bokeh.documents[0].get_model_b
 _SEEN = """() => Object.fromEntries([...Bokeh.index.all_views()]
     .filter(view => view.model.type == "Figure" && view.el.offsetWidth > 0)
     .map(view => [view.model.name, view.el.offsetWidth]))"""
-
-
-class HostHandler(http.server.BaseHTTPRequestHandler):
-    """Answers with a page that contains the code in the query string."""
-
-    def do_GET(self) -> None:
-        code = unquote(urlsplit(self.path).query)
-        self.send_response(200)
-        self.send_header("Content-Type", "text/html; charset=utf-8")
-        self.end_headers()
-        self.wfile.write(f"<!doctype html><h1>A talk</h1>{code}".encode())
-
-    def log_message(self, format: str, *args: object) -> None:
-        pass
-
-
-@contextmanager
-def host_server() -> Iterator[str]:
-    """The origin of a server of pages that contain frames. Chromium lets no page of an intercepted address embed a local one."""
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), HostHandler)
-    thread = threading.Thread(target=server.serve_forever)
-    thread.start()
-    try:
-        yield f"http://127.0.0.1:{server.server_address[1]}"
-    finally:
-        server.shutdown()
-        thread.join()
-        server.server_close()
-
-
-@pytest.fixture(scope="module")
-def host() -> Iterator[str]:
-    """The origin that may embed the page."""
-    with host_server() as origin:
-        yield origin
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory, host: str) -> Iterator[str]:
-    """The address of the app."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ESCAPE_EXPLORER_FRAME_ANCESTORS", host)
-        with served_app(tmp_path_factory.mktemp("server") / "log") as address:
-            yield address
 
 
 @pytest.fixture
@@ -110,33 +63,20 @@ def test_one_picture_fills_the_frame(page: Page, host: str, server: str) -> None
 
 
 @pytest.mark.slow
-def test_a_wheel_zooms_and_the_history_of_the_page_around_has_no_entry(page: Page, host: str, server: str) -> None:
+def test_a_wheel_zooms_without_an_entry_of_the_page_around_and_the_link_opens_the_view(
+    page: Page, host: str, server: str
+) -> None:
     frame = embed(page, host, frame_code(server))
     wait_until_complete(frame)
     entries = page.evaluate("history.length")
     move_to_middle(page)
+    expect(frame.get_by_text(re.compile(r"\(-?0\.\d+, -?0\.\d+\)")).first).to_be_visible()
     page.mouse.wheel(0, -240)
     frame.wait_for_url(re.compile("window="))
-    assert "embed=basins" in frame.url
     assert page.evaluate("history.length") == entries
-
-
-@pytest.mark.slow
-def test_the_text_at_the_mouse_is_shown(page: Page, host: str, server: str) -> None:
-    frame = embed(page, host, frame_code(server))
-    wait_until_complete(frame)
-    move_to_middle(page)
-    expect(frame.get_by_text(re.compile(r"\(-?0\.\d+, -?0\.\d+\)")).first).to_be_visible()
-
-
-@pytest.mark.slow
-def test_the_link_opens_the_view_of_the_moment(page: Page, host: str, server: str) -> None:
-    frame = embed(page, host, frame_code(server))
-    wait_until_complete(frame)
-    move_to_middle(page)
     page.mouse.down()
     page.mouse.up()
-    frame.wait_for_url(re.compile("orbits="))
+    frame.wait_for_url(re.compile("embed=basins.*orbits=|orbits=.*embed=basins"))
     with page.context.expect_page() as opened:
         frame.get_by_role("link", name="Open in the explorer").click()
     whole = opened.value

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
 import numpy as np
-import pytest
 from playwright.sync_api import Locator, expect
 
 from engine import CASES, Fate, MapSpec, Plane, compute_map
 from plots.palette import OUTCOMES
-from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
 # Counts messages to the server.
@@ -73,17 +70,6 @@ def test_at_rest_the_preview_is_that_of_the_map_and_at_release_the_map_comes(exp
     assert_same_fates(explorer, expected)
 
 
-def test_dragging_back_shows_the_map_again(explorer: ExplorerPage) -> None:
-    before = explorer.column("fate")
-    explorer.drag_energy_to(0.9, let_go=False)
-    wait_for_preview(explorer, 0.46)
-    explorer.move_slider_to(0.225)
-    explorer.wait_for_data("maps", "data.fate[0].shape[0] == 112 && data.complete[0]")
-    explorer.page.mouse.up()
-    np.testing.assert_array_equal(explorer.column("fate"), before)
-    expect(explorer.text("Done, t =")).to_be_visible()
-
-
 def test_the_energy_can_be_played_and_stopped_without_the_server_between(explorer: ExplorerPage) -> None:
     explorer.drag_energy_to(0.3, let_go=False)
     wait_for_preview(explorer, 0.22)
@@ -99,22 +85,6 @@ def test_the_energy_can_be_played_and_stopped_without_the_server_between(explore
     explorer.page.wait_for_url(re.compile(r"h=0\.(19\d|[2-5]\d*)"))
     expect(explorer.button("▶ Play")).to_be_visible()
     explorer.wait_until_done()
-
-
-@pytest.mark.slow
-def test_in_a_zoom_the_window_stays_while_the_energy_moves(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link=f"{QUICK}&window=0.1,0.3,0.0,0.2")
-    explorer.drag_energy_to(0.6, let_go=False)
-    wait_for_preview(explorer, 0.34)
-    assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
-    explorer.page.mouse.up()
-    explorer.wait_for_view("window=0.1,0.3,0.0,0.2")
-    assert explorer.ranges("basins") == [0.1, 0.3, 0.0, 0.2]
-
-
-def test_keys_move_the_energy(explorer: ExplorerPage) -> None:
-    explorer.page.get_by_role("slider", name="Energy h", exact=True).press("ArrowRight")
-    explorer.wait_for_view("h=0.191&")
 
 
 def test_a_zoom_is_drawn_by_the_browser_until_the_map_comes(explorer: ExplorerPage) -> None:
@@ -148,21 +118,6 @@ def test_the_orbit_under_the_cursor_is_drawn(explorer: ExplorerPage) -> None:
     expect(card).to_be_hidden()
 
 
-@pytest.mark.slow
-def test_the_energy_plane_opens_the_plane_of_an_energy(explorer: ExplorerPage) -> None:
-    explorer.pick("II")
-    explorer.pick("(x, h)")
-    explorer.wait_for_view("plane=x_h")
-    explorer.click("basins", 0.1, 0.3)
-    verdict = explorer.text(re.compile("Escaped through"))
-    expect(verdict).to_be_visible()
-    sentence = verdict.inner_text()
-    explorer.press("Open (x, px) at this h")
-    explorer.wait_for_view("plane=x_px", "orbits=")
-    explorer.page.wait_for_url(re.compile(r"h=0\.(29|30)\d+.*orbits=0\.\d+,0\.0"))
-    expect(verdict).to_have_text(sentence)
-
-
 def test_an_energy_typed_right_after_choosing_a_case_is_used_and_shown(explorer: ExplorerPage) -> None:
     explorer.pick("III")
     explorer.type_number("Exact h", "0.6")
@@ -179,16 +134,6 @@ def test_an_energy_that_is_being_typed_stays_when_the_case_changes(explorer: Exp
     expect(exact_energy(explorer)).to_have_value("0.6")
     exact_energy(explorer).press("Enter")
     explorer.wait_for_view("case=III", "h=0.6&")
-
-
-@pytest.mark.slow
-def test_the_number_before_can_be_typed_for_another_case(explorer: ExplorerPage) -> None:
-    exact_energy(explorer).press("ControlOrMeta+a")
-    exact_energy(explorer).press_sequentially("0.19")
-    explorer.radio("II").evaluate("radio => radio.click()")
-    explorer.wait_for_view("case=II", "h=0.2&")
-    exact_energy(explorer).press("Enter")
-    explorer.wait_for_view("case=II", "h=0.19&")
 
 
 def test_a_box_that_is_left_empty_shows_the_energy_again(explorer: ExplorerPage) -> None:

@@ -17,22 +17,15 @@ def zoom(explorer: ExplorerPage) -> float:
     return explorer.column("dw")
 
 
-def test_the_whole_plane_is_offered_in_a_part_of_it(explorer: ExplorerPage) -> None:
+def test_keys_go_back_and_forward_and_the_whole_plane_is_offered_in_a_part_of_it(explorer: ExplorerPage) -> None:
     width, whole = explorer.column("dw"), explorer.button("Whole plane")
     expect(whole).to_be_hidden()
-    zoom(explorer)
-    explorer.press("Whole plane")
-    expect(whole).to_be_hidden()
-    explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] == {width}")
-
-
-def test_keys_go_back_forward_and_home(explorer: ExplorerPage) -> None:
-    width = explorer.column("dw")
-    once = zoom(explorer)
-    twice = zoom(explorer)
+    once, twice = zoom(explorer), zoom(explorer)
     for key, expected in (("b", once), ("f", twice), ("h", width)):
+        expect(whole).to_be_visible()
         explorer.page.keyboard.press(key)
         explorer.wait_for_data("maps", f"data.complete[0] && data.dw[0] == {expected}")
+    expect(whole).to_be_hidden()
 
 
 def test_the_browser_goes_back_over_each_kind_of_action(explorer: ExplorerPage) -> None:

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity, find_stable_manifolds
+from engine import CASES, MapSpec, Plane, Regularity, compute_map, compute_origin_fates, compute_regularity
 from engine.dynamics.certificates import describe_certificate
-from plots.palette import PAPER
 from tests.browser.explorer_page import ExplorerPage
 
 OpenExplorer = Callable[..., ExplorerPage]
@@ -33,23 +32,6 @@ _BAR = """name => {
 def expect_tooltip(explorer: ExplorerPage, *texts: str) -> None:
     for text in texts:
         expect(explorer.page.locator(".bk-Tooltip").get_by_text(text).first).to_be_visible()
-
-
-@pytest.mark.slow
-def test_manifolds_have_the_colours_and_the_image_that_is_chosen(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW)
-    expect(explorer.page.get_by_role("radiogroup", name="Image of the manifolds")).to_have_count(0)
-    explorer.page.get_by_label("Stable manifolds", exact=True).click()
-    explorer.wait_for_data("manifolds", "data.xs.length > 4")
-    manifolds = find_stable_manifolds(CASES["III"], 0.28, images=3)
-    assert len(explorer.model_data("manifolds")["xs"]) == len(manifolds.arcs)
-    assert set(explorer.model_data("manifolds")["colour"]) == set(PAPER.channels[:4])
-    for channel in range(1, 5):
-        expect(explorer.text(f"stable manifold of Lyapunov orbit {channel}")).to_be_visible()
-    explorer.pick("Image 1")
-    explorer.wait_for_data("manifolds", f"data.xs.length == {sum(arc.image == 1 for arc in manifolds.arcs)}")
-    explorer.page.wait_for_url("**images=1**")
-    expect(explorer.text("Lyapunov orbits, image 1:")).to_be_visible()
 
 
 @pytest.mark.slow
@@ -104,24 +86,3 @@ def test_bars_have_texts(with_statistics: ExplorerPage, chart: str, texts: tuple
     explorer.page.mouse.move(x - 2, y)
     explorer.page.mouse.move(x, y)
     expect_tooltip(explorer, *texts)
-
-
-@pytest.mark.slow
-def test_a_locked_scale_stays_across_energies_and_in_a_shared_link(open_explorer: OpenExplorer) -> None:
-    explorer = open_explorer(link=VIEW)
-    legend = explorer.text("≥")
-    shown = legend.inner_text()
-    explorer.page.get_by_role("button", name="Quality and colours").click()
-    explorer.page.get_by_label("Lock colour scale", exact=True).click()
-    expect(explorer.text("(locked)")).to_be_visible()
-    explorer.page.wait_for_url("**lock_times=**")
-    explorer.forget_pixels()
-    explorer.type_number("Exact h", "0.6")
-    explorer.wait_for_new_pixels()
-    explorer.wait_until_complete()
-    expect(legend).to_contain_text(shown)
-    shared = open_explorer(link="?" + explorer.page.url.split("?")[1])
-    expect(shared.text("≥")).to_contain_text(shown)
-    explorer.page.get_by_label("Lock colour scale", exact=True).click()
-    expect(explorer.text("(locked)")).to_have_count(0)
-    expect(legend).not_to_contain_text(shown)

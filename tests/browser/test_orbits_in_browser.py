@@ -5,71 +5,31 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from engine import CASES, Plane, integrate_orbit, start_states
 from tests.browser.conftest import QUICK
 from tests.browser.explorer_page import ExplorerPage
 
-MAPS = ("basins", "times", "crossings")
 _WATCH_SHIFTS = """() => {
     window.shifts = 0
     const add = list => list.getEntries().forEach(entry => window.shifts += entry.value)
     new PerformanceObserver(add).observe({type: "layout-shift"})
 }"""
-_EXPONENT = "[...Bokeh.index.all_views()].find(view => view.model.name == 'exponent')"
 PARTS = ("note", "orbit-list", "verdict", "player", "interval", "sali", "exponent", "r2", "separation")
 
 STARTS = [(0.1, 0.05), (0.2, 0.1), (-0.2, 0.1), (0.1, -0.2), (0.0, 0.3)]
+
+
+@pytest.fixture(scope="module")
+def shared(open_for_all: Callable[..., ExplorerPage]) -> ExplorerPage:
+    return open_for_all(link=QUICK)
 
 
 def click_all(explorer: ExplorerPage, starts: list[tuple[float, float]]) -> None:
     for place, (x, px) in enumerate(starts):
         explorer.click("basins", x, px)
         explorer.wait_for_data("starts", f"data.x.length == {place + 1}")
-
-
-@pytest.mark.slow
-def test_five_orbits_are_marked_in_their_colours(for_orbits: ExplorerPage) -> None:
-    click_all(for_orbits, STARTS)
-    marks = for_orbits.model_data("starts")
-    assert marks["text"] == ["1", "2", "3", "4", "5"]
-    assert marks["x"] == pytest.approx([x for x, _ in STARTS], abs=0.006)
-    for_orbits.wait_for_data("paths", "data.xs.length == 5")
-    assert sorted(for_orbits.model_data("paths")["slot"]) == [0, 1, 2, 3, 4]
-    for picture in MAPS:
-        assert for_orbits.page.evaluate(
-            "name => Bokeh.documents[0].get_model_by_name(name).renderers.some(r => r.data_source.name == 'starts')", picture
-        )
-
-
-@pytest.mark.slow
-def test_plots_stay_on_the_page_while_their_orbits_are_integrated(explorer: ExplorerPage) -> None:
-    explorer.click("basins", *STARTS[0])
-    explorer.wait_for_data("paths", "data.xs.length == 1")
-    explorer.page.wait_for_function(f"() => ({_EXPONENT})?.el.isConnected")
-    explorer.page.evaluate("() => { window.gone = 0 }")
-    explorer.page.evaluate(
-        f"""() => {{
-            const view = {_EXPONENT}
-            const look = () => {{ window.gone += !view.el.isConnected; requestAnimationFrame(look) }}
-            look()
-        }}"""
-    )
-    end = explorer.model_data("paths")["xs"][0][-1]
-    explorer.drag_energy_to(0.7)
-    explorer.wait_for_data("paths", f"data.xs.length == 1 && data.xs[0].at(-1) != {end}")
-    assert explorer.page.evaluate("() => window.gone") == 0
-
-
-@pytest.mark.slow
-def test_a_sixth_start_gives_a_message(open_explorer: Callable[..., ExplorerPage]) -> None:
-    explorer = open_explorer(link=f"{QUICK}&orbits={';'.join(f'{x},{px}' for x, px in STARTS)}")
-    explorer.click("basins", 0.3, 0.1)
-    expect(explorer.text("5 orbits are shown already. Remove one first.")).to_be_visible()
-    assert len(explorer.model_data("starts")["x"]) == 5
 
 
 def test_another_orbit_can_be_chosen_and_removed(for_orbits: ExplorerPage) -> None:
@@ -81,29 +41,6 @@ def test_another_orbit_can_be_chosen_and_removed(for_orbits: ExplorerPage) -> No
     for_orbits.press("Clear all")
     for_orbits.wait_for_data("starts", "data.x.length == 0")
     expect(for_orbits.text("Click a map")).to_be_visible()
-
-
-def test_the_section_of_an_orbit_is_drawn_on_its_plane(for_orbits: ExplorerPage) -> None:
-    for_orbits.click("basins", -0.52, 0.0)
-    for_orbits.wait_for_data("sections", "data.x.length > 100")
-    drawn = for_orbits.model_data("sections")
-    marks = for_orbits.model_data("starts")
-    state = start_states(CASES["I"], Plane.X_PX, 0.19, np.array(marks["x"]), np.array(marks["y"]))[0]
-    points = integrate_orbit(CASES["I"], state, 1e5).find_section_crossings()
-    np.testing.assert_allclose(drawn["x"], points[: len(drawn["x"]), 0], atol=1e-5)
-    np.testing.assert_allclose(drawn["y"], points[: len(drawn["y"]), 1], atol=1e-5)
-
-
-def test_a_twin_is_found_and_the_distance_drawn(for_orbits: ExplorerPage) -> None:
-    for_orbits.click("basins", 0.1, 0.05)
-    expect(for_orbits.text("Escaped through")).to_be_visible()
-    for_orbits.press("Find its twin")
-    expect(for_orbits.text("The twin starts")).to_be_visible()
-    for_orbits.wait_for_data("separation_source", "data.t.length > 100")
-    distance = for_orbits.model_data("separation_source")["distance"]
-    assert distance[-1] > distance[0]
-    for row in ("1: .*channel 1", "2: .*channel 2"):
-        expect(for_orbits.page.get_by_role("radio", name=re.compile(row))).to_have_count(1)
 
 
 def test_a_time_moves_along_path_sali_and_r2_together(for_orbits: ExplorerPage) -> None:
@@ -121,17 +58,6 @@ def test_a_time_moves_along_path_sali_and_r2_together(for_orbits: ExplorerPage) 
     assert spans[0] == spans[1]
     assert spans[0][0][0] is True
     assert spans[0][0][1] > 0
-
-
-@pytest.mark.slow
-def test_orbits_can_be_cleared_while_their_time_plays(for_orbits: ExplorerPage) -> None:
-    for _ in range(2):
-        for_orbits.click("basins", 0.1, 0.05)
-        expect(for_orbits.text("Escaped through")).to_be_visible()
-        for_orbits.press("Play the orbits")
-        for_orbits.wait_for_data("points", "data.x.length == 1")
-        for_orbits.press("Clear all")
-        for_orbits.wait_for_data("starts", "data.x.length == 0")
 
 
 def places(explorer: ExplorerPage) -> dict[str, object]:
@@ -168,15 +94,6 @@ def test_messages_end_with_what_they_were_about(for_orbits: ExplorerPage) -> Non
     expect(for_orbits.text("The twin starts")).to_be_visible()
     for_orbits.press("Remove")
     expect(for_orbits.text("The twin starts")).to_have_count(0)
-
-
-def test_the_values_of_an_orbit_are_in_a_fold(for_orbits: ExplorerPage) -> None:
-    for_orbits.click("basins", 0.1, 0.05)
-    for_orbits.open_fold("Values")
-    rows = for_orbits.page.get_by_role("table", name="values of the orbit").get_by_role("row")
-    # They come with the orbit.
-    expect(rows).to_have_count(6)
-    assert max(row.bounding_box()["height"] for row in rows.all()) < 25  # type: ignore[index]
 
 
 def test_an_interval_drawn_over_a_history_is_shown_by_path_curves_and_player(for_orbits: ExplorerPage) -> None:

@@ -68,18 +68,6 @@ def test_one_finger_scrolls_the_page_and_leaves_the_map(open_explorer: Callable[
 
 
 @pytest.mark.slow
-def test_one_finger_moves_the_map_if_the_user_wants(explorer: ExplorerPage) -> None:
-    before = window(explorer)
-    explorer.set_drag("Move")
-    move_fingers(explorer, ((0, 60), (0, 0)))
-    explorer.wait_for_view("window=")
-    np.testing.assert_allclose(window(explorer)[:, 1], before[:, 1])
-    assert window(explorer)[1, 0] < before[1, 0]
-    assert explorer.page.evaluate("() => window.scrollY") == 0
-    explorer.pick("Scroll")
-
-
-@pytest.mark.slow
 def test_two_fingers_that_move_the_same_way_move_the_map(explorer: ExplorerPage) -> None:
     before, middle = window(explorer), middle_of(explorer)
     move_fingers(explorer, ((-50, 0), (-10, -60)), ((50, 0), (90, -60)))
@@ -96,11 +84,6 @@ def test_two_fingers_that_part_zoom_the_map(explorer: ExplorerPage) -> None:
     explorer.wait_for_view("window=")
     np.testing.assert_allclose(window(explorer)[:, 1], 0.5 * before[:, 1], rtol=1e-6)
     np.testing.assert_allclose(explorer.point("basins", *before[:, 0]), middle, atol=1.0)
-
-
-def test_what_two_fingers_do_is_one_entry_of_the_history(explorer: ExplorerPage) -> None:
-    move_fingers(explorer, ((-80, 0), (-40, 30)), ((80, 0), (60, 30)))
-    explorer.wait_for_view("window=")
     assert explorer.page.evaluate("history.state.entry") == 1
 
 

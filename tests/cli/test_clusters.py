@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from unittest.mock import Mock
 
 import distributed
 import numpy as np
 import pytest
 import xarray as xr
-
-from cli.main import FAILED, INVALID_REQUEST
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -41,37 +37,3 @@ def test_local_cluster_computes_the_same_map(processes: bool, run: Run, tmp_path
         assert {"character", "trust", "origin"} < set(found.data_vars)
         for name in set(wanted.variables) - {"energy_error"}:
             np.testing.assert_array_equal(found[name], wanted[name])
-
-
-def test_scheduler_address_is_used(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from engine.execution import SerialExecutor
-
-    addresses: list[str] = []
-    executor = Mock(spec=SerialExecutor, wraps=SerialExecutor())
-    client = Mock()
-    client.__enter__ = Mock(return_value=client)
-    client.__exit__ = Mock(return_value=None)
-    client.get_executor.return_value = executor
-
-    def connect(address: str) -> Mock:
-        addresses.append(address)
-        return client
-
-    monkeypatch.setattr("distributed.Client", connect)
-    assert run(*MAP, "--scheduler", "tcp://node1:8786", "--output", tmp_path / "map")[0] == 0
-    assert addresses == ["tcp://node1:8786"]
-    assert executor.submit.called
-
-
-def test_threads_and_cluster_exclude_each_other(run: Run, tmp_path: Path) -> None:
-    code, _, err = run(*MAP, "--threads", 2, "--local-cluster", 2, "--output", tmp_path / "map")
-    assert (code, err) == (INVALID_REQUEST, "escape-explorer: local_cluster and threads: choose one place to compute\n")
-    assert not any(tmp_path.iterdir())
-
-
-def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    code, _, err = run(*MAP, "--local-cluster", 1, "--output", tmp_path / "map")
-    assert code == FAILED
-    assert err == "escape-explorer: distributed is not installed: pip install 'escape-explorer[cluster]'\n"
-    assert not any(tmp_path.iterdir())

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from cli.main import INVALID_REQUEST
 from engine import CASES, classify_orbits, compute_flux, sample_entrances, sample_starts
 
 Run = Callable[..., tuple[int, str, str]]
@@ -51,17 +50,3 @@ def test_paths_are_written_as_netcdf(run: Run, tmp_path: Path) -> None:
         assert float(paths["x"][:, 0].min()) >= 0.0
         assert float(paths["x"][:, 0].max()) <= 0.1
         assert paths["t"][0].values.tolist() == [0.0, 10.0, 20.0]
-
-
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        (("--entering", "--plane", "x_px"), "entering: orbits start on the exits; leave --plane and --window out"),
-        (("--count", 30_000, "--output", "film.webp"), "count=30000: movies and files of paths have at most 20000 orbits"),
-        (("--energy", 0.1, "--entering"), "energy=0.1: all exits are closed; must be above the escape energy"),
-    ],
-)
-def test_wrong_options_are_named(options: tuple[object, ...], sentence: str, run: Run) -> None:
-    code, _, err = run(*ENSEMBLE, *options)
-    assert code == INVALID_REQUEST
-    assert err.startswith(f"escape-explorer: {sentence}")

@@ -19,7 +19,7 @@ from engine.maps.compute import run_map
 
 Run = Callable[..., tuple[int, str, str]]
 
-COMMANDS = ("map", "orbit", "lyapunov", "measures", "curves", "sweep", "potential", "reproduce", "serve")
+COMMANDS = ("map", "orbit", "ensemble", "lyapunov", "measures", "curves", "sweep", "potential", "reproduce", "serve")
 MAP = ("map", "I", "--energy", 0.19, "--resolution", 9, "--t-max", 100)
 INVALID = {
     "missing command": (),
@@ -54,6 +54,18 @@ INVALID = {
     "energy without Lyapunov orbits": ("lyapunov", "III", "--energy", 8),
     "low above high": ("curves", "I", "--low", 0.3, "--high", 0.2, "--count", 3),
     "curves on (x, h)": ("curves", "I", "--plane", "x_h", "--low", 0.1, "--high", 0.2, "--count", 3),
+    "entering through the exits on a plane": ("ensemble", "I", "--energy", 0.2, "--entering", "--plane", "x_px"),
+    "entering through closed exits": ("ensemble", "I", "--energy", 0.1, "--entering"),
+    "too many orbits of a movie": ("ensemble", "I", "--energy", 0.2, "--count", 30_000, "--output", "film.webp"),
+    "sweep without a count": ("sweep", "I", "--low", 0.13, "--high", 0.2, "--store", "store.zarr"),
+    "sweep of an energy and of a range": ("sweep", "I", "--energy", 0.2, "--low", 0.13, "--store", "store.zarr"),
+    "sweep on (x, h)": ("sweep", "I", "--energy", 0.2, "--plane", "x_h", "--store", "store.zarr"),
+    "sweep without energies": ("sweep", "I", "--store", "store.zarr"),
+    "threads and a cluster": ("map", "I", "--energy", 0.2, "--threads", 2, "--local-cluster", 2),
+    "unknown figure": ("reproduce", "I-xh", "IV-xh", "--output", "new"),
+    "figures in a missing folder": ("reproduce", "I-xh", "--output", "no/such"),
+    "port below 1": ("serve", "--port", 0),
+    "port above 65535": ("serve", "--port", 70000),
     "map too small to measure": ("measures", "I", "--energy", 0.2, "--resolution", 3, "--t-max", 10),
 }
 
@@ -76,12 +88,9 @@ def test_help_contains_an_example(command: str, run: Run) -> None:
     assert f"escape-explorer {command} " in out.partition("Examples:")[2]
 
 
-def test_help_lists_all_commands(run: Run) -> None:
+def test_help_lists_all_commands_and_the_version_is_that_of_the_package(run: Run) -> None:
     _, out, _ = run("--help")
     assert all(f" {command} " in out for command in COMMANDS)
-
-
-def test_version(run: Run) -> None:
     assert run("--version") == (0, f"escape-explorer {metadata.version('escape-explorer')}\n", "")
 
 
@@ -101,6 +110,14 @@ def test_failed_computation_writes_nothing(run: Run, tmp_path: Path, monkeypatch
     assert run(*MAP, "--output", tmp_path / "map") == (
         FAILED, "", "escape-explorer: RuntimeError: first line second line\n",
     )  # fmt: skip
+    assert not any(tmp_path.iterdir())
+
+
+def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    code, _, err = run(*MAP, "--local-cluster", 1, "--output", tmp_path / "map")
+    assert code == FAILED
+    assert err == "escape-explorer: distributed is not installed: pip install 'escape-explorer[cluster]'\n"
     assert not any(tmp_path.iterdir())
 
 

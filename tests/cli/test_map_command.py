@@ -30,7 +30,7 @@ from engine import (
 from plots.figure_files import map_figure_bytes
 from plots.figure_style import FigureFormat, FigureStyle
 from plots.map_analyses import MapAnalyses
-from plots.palette import COLOUR_BLIND_SAFE, PAPER
+from plots.palette import COLOUR_BLIND_SAFE
 
 C = Coordinate
 Run = Callable[..., tuple[int, str, str]]
@@ -125,43 +125,23 @@ def test_png_equals_the_download_of_the_page(run: Run, tmp_path: Path) -> None:
         np.testing.assert_array_equal(np.asarray(found), np.asarray(expected))
 
 
-def test_default_png_has_three_pictures_in_the_paper_palette(run: Run, tmp_path: Path) -> None:
-    assert run("map", *BOUNDED, "--output", tmp_path / "map")[0] == 0
-    wanted = map_figure_bytes(compute_map(BOUNDED_SPEC), ("basins", "times", "crossings"), PAPER, FigureFormat.PNG, FigureStyle())
-    with Image.open(tmp_path / "map.png") as found, Image.open(BytesIO(wanted)) as expected:
-        np.testing.assert_array_equal(np.asarray(found), np.asarray(expected))
-
-
-@pytest.mark.parametrize("format", FigureFormat)
-def test_the_ending_of_the_file_name_is_its_format(format: FigureFormat, run: Run, tmp_path: Path) -> None:
-    path = tmp_path / f"h0.13.{format}"
-    assert run("map", *BOUNDED, "--picture", "basins", "--no-titles", "--font-size", 7, "--output", path)[0] == 0
-    assert list(tmp_path.iterdir()) == [path]
-    style = FigureStyle(font_size=7.0, titles=False)
-    assert path.read_bytes() == map_figure_bytes(compute_map(BOUNDED_SPEC), ["basins"], PAPER, format, style)
-
-
-@pytest.mark.parametrize("count_outside", [False, True])
-def test_json_contains_shares_and_files(count_outside: bool, run: Run, tmp_path: Path) -> None:
+def test_json_contains_shares_and_files(run: Run, tmp_path: Path) -> None:
     arguments = ("map", "II", "--energy", 0.5, "--resolution", 9, "--t-max", 100, "--window", -1, 2, -1, 1, "--format", "nc")
-    more = ("--count-outside",) if count_outside else ()
-    code, out, err = run(*arguments, *more, "--json", "--output", tmp_path / "map")
+    code, out, err = run(*arguments, "--count-outside", "--json", "--output", tmp_path / "map")
     answer = json.loads(out)
     spec = MapSpec(CASES["II"], Plane.X_PX, 0.5, (9, 9), (-1.0, 2.0, -1.0, 1.0), 100.0)  # type: ignore[arg-type]
-    wanted = compute_map(spec).fractions(count_outside=count_outside)
+    wanted = compute_map(spec).fractions(count_outside=True)
     assert (code, err) == (0, "")
     assert answer["files"] == [str(tmp_path / "map.nc")]
     assert [answer["shares"][f"channel {k}"] for k in (1, 2, 3)] == [wanted[k] for k in (1, 2, 3)]
 
 
-def test_default_file_names_describe_the_map(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_by_default_files_are_named_after_the_map_and_the_table_is_printed_alone(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run("map", *BOUNDED)[0] == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13-t1000.nc", "escapes-I-x_px-h0.13-t1000.png"]
-
-
-def test_output_without_a_terminal_is_the_table_alone(run: Run, tmp_path: Path) -> None:
-    code, out, err = run("map", *BOUNDED, "--format", "nc", "--output", tmp_path / "map")
-    share = compute_map(BOUNDED_SPEC).fractions()[0]
+    code, out, err = run("map", *BOUNDED)
     assert (code, err) == (0, "")
+    share = compute_map(BOUNDED_SPEC).fractions()[0]
     assert f"{100 * share:.2f} %" in next(line for line in out.splitlines() if "bounded" in line)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["escapes-I-x_px-h0.13-t1000.nc", "escapes-I-x_px-h0.13-t1000.png"]

@@ -12,7 +12,6 @@ from PIL import Image
 
 from engine import (
     CASES,
-    BirkhoffDigits,
     Plane,
     compute_birkhoff_digits,
     evaluate_indicators,
@@ -28,9 +27,13 @@ Run = Callable[..., tuple[int, str, str]]
 STATE = (0.1, 0.0, 0.05, 0.6)
 
 
-def test_csv_equals_the_engine_result(run: Run, tmp_path: Path) -> None:
-    assert run("orbit", "I", "--state", *STATE, "--t-max", 100, "--output", tmp_path / "orbit")[0] == 0
-    assert (tmp_path / "orbit.csv").read_text() == orbits_csv([integrate_orbit(CASES["I"], STATE, 100.0)])
+def test_csv_and_json_equal_the_engine_result(run: Run, tmp_path: Path) -> None:
+    code, out, _ = run("orbit", "I", "--state", *STATE, "--t-max", 100, "--json", "--output", tmp_path / "orbit.csv")
+    result, orbit = json.loads(out), integrate_orbit(CASES["I"], STATE, 100.0)
+    assert code == 0
+    assert (tmp_path / "orbit.csv").read_text() == orbits_csv([orbit])
+    assert (result["fate"], result["crossings"], result["energy"]) == (orbit.fate, orbit.crossings, orbit.energy)
+    assert result["escape_time"] == (orbit.escape_time if orbit.fate >= 1 else None)
 
 
 @pytest.mark.parametrize(
@@ -45,33 +48,17 @@ def test_start_on_a_plane_becomes_the_engine_state(
     assert json.loads(out)["start"] == start_states(CASES["I"], Plane[plane.upper()], energy or 0.0, x, ordinate)[0].tolist()
 
 
-def test_bounded_orbit_has_verdicts_of_all_indicators(run: Run) -> None:
+def test_bounded_orbit_has_verdicts_of_all_indicators(run: Run, tmp_path: Path) -> None:
     state = (0.1, 0.0, 0.0, 0.4)
-    code, out, _ = run("orbit", "III", "--state", *state, "--t-max", 2500)
+    code, out, _ = run("orbit", "III", "--state", *state, "--t-max", 2500, "--output", tmp_path / "orbit.csv")
     orbit = integrate_orbit(CASES["III"], state, 2500.0)
     digits = compute_birkhoff_digits(CASES["III"], state, 2500.0)
     verdicts = evaluate_indicators(orbit, digits)
     assert code == 0
     assert judge_orbit(orbit, digits).describe() in out
+    assert judge_orbit(orbit, digits).describe() in (tmp_path / "orbit.csv").read_text()
     names = ["SALI", "Lyapunov exponent", "Birkhoff digits of halves", "Birkhoff digits"]
     assert [verdict.name for verdict in verdicts if verdict.sentence in out] == names
-
-
-def test_the_table_has_the_verdict_of_all_indicators(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    state, chaotic = (0.1, 0.0, 0.0, 0.4), BirkhoffDigits(np.array([1000.0]), np.array([0.1]))
-    monkeypatch.setattr("engine.compute_birkhoff_digits", lambda *arguments, **options: chaotic)
-    assert run("orbit", "III", "--state", *state, "--t-max", 2500, "--output", tmp_path / "orbit")[0] == 0
-    orbit = integrate_orbit(CASES["III"], state, 2500.0)
-    verdict = judge_orbit(orbit, chaotic).describe()
-    assert verdict != judge_orbit(orbit).describe()
-    assert verdict in (tmp_path / "orbit.csv").read_text()
-
-
-def test_json_contains_fate_crossings_energy_and_escape_time(run: Run) -> None:
-    _, out, _ = run("orbit", "I", "--state", *STATE, "--t-max", 100, "--json")
-    result, orbit = json.loads(out), integrate_orbit(CASES["I"], STATE, 100.0)
-    assert (result["fate"], result["crossings"], result["energy"]) == (orbit.fate, orbit.crossings, orbit.energy)
-    assert result["escape_time"] == (orbit.escape_time if orbit.fate >= 1 else None)
 
 
 def test_no_files_without_output_option(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,10 +67,9 @@ def test_no_files_without_output_option(run: Run, tmp_path: Path, monkeypatch: p
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("t_max", [20, 1000], ids=["line", "datashader"])
-def test_picture_shows_the_path(t_max: int, run: Run, tmp_path: Path) -> None:
+def test_picture_shows_the_path(run: Run, tmp_path: Path) -> None:
     state = (0.1, 0.0, 0.0, 0.4)
-    arguments = ("orbit", "III", "--state", *state, "--t-max", t_max, "--palette", "safe", "--output", tmp_path / "orbit")
+    arguments = ("orbit", "III", "--state", *state, "--t-max", 1000, "--palette", "safe", "--output", tmp_path / "orbit")
     assert run(*arguments)[0] == 0
     colour = tuple(bytes.fromhex(COLOUR_BLIND_SAFE.orbits[0][1:]))
     with Image.open(tmp_path / "orbit.png") as image:
@@ -91,15 +77,6 @@ def test_picture_shows_the_path(t_max: int, run: Run, tmp_path: Path) -> None:
     rows, columns = np.nonzero(inked)
     # The orbit stays near the y axis, the longer side of its bounding box.
     assert np.ptp(rows) > 1.5 * np.ptp(columns) > 0
-
-
-@pytest.mark.parametrize("ending", ["csv", "png", "svg", "pdf"])
-def test_the_ending_of_the_file_name_is_its_format(ending: str, run: Run, tmp_path: Path) -> None:
-    begins = {"csv": b"# escape-explorer", "png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}
-    path = tmp_path / f"orbit.{ending}"
-    assert run("orbit", "I", "--state", *STATE, "--t-max", 20, "--width", 8.5, "--output", path)[0] == 0
-    assert list(tmp_path.iterdir()) == [path]
-    assert path.read_bytes().startswith(begins[ending])
 
 
 def test_start_outside_writes_files(run: Run, tmp_path: Path) -> None:

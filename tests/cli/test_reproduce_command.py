@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cli.main import INTERRUPTED, INVALID_REQUEST
+from cli.main import INTERRUPTED
 from engine import Plane
 from reproduction import members, quality
 from reproduction.figures.all_figures import FIGURES
@@ -30,21 +30,14 @@ def tiny(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_named_figures_are_written_as_png_and_pdf(run: Run, tmp_path: Path) -> None:
-    code, out, err = run("reproduce", "II-xh", "I-potential", "--quick", "--output", tmp_path / "new")
-    names = ["I-potential.pdf", "I-potential.png", "II-xh.pdf", "II-xh.png"]
-    assert (code, err) == (0, "")
-    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == names
-    assert all(name in out for name in names)
-    assert "tiny quality: 9 x 9 starts" in out
-
-
-def test_json_contains_files_and_seconds(run: Run, tmp_path: Path) -> None:
-    code, out, _ = run("reproduce", "II-xh", "--quick", "--json", "--output", tmp_path)
+    code, out, err = run("reproduce", "II-xh", "I-potential", "--quick", "--json", "--output", tmp_path / "new")
     result = json.loads(out)
-    (figure,) = result["figures"]
-    assert (code, result["quality"], figure["name"]) == (0, "tiny", "II-xh")
-    assert figure["files"] == [str(tmp_path / "II-xh.png"), str(tmp_path / "II-xh.pdf")]
-    assert 0.0 < figure["seconds"] <= result["seconds"]
+    assert (code, err, result["quality"]) == (0, "", "tiny")
+    assert [figure["name"] for figure in result["figures"]] == ["I-potential", "II-xh"]
+    files = [file for figure in result["figures"] for file in figure["files"]]
+    assert sorted(files) == sorted(map(str, (tmp_path / "new").iterdir()))
+    assert {Path(file).name for file in files} == {"I-potential.pdf", "I-potential.png", "II-xh.pdf", "II-xh.png"}
+    assert 0.0 < result["figures"][0]["seconds"] <= result["seconds"]
 
 
 def test_list_names_all_figures_and_writes_nothing(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -53,17 +46,6 @@ def test_list_names_all_figures_and_writes_nothing(run: Run, tmp_path: Path, mon
     assert code == 0
     assert list(json.loads(out)["figures"]) == [*FIGURES, "tables"]
     assert not any(tmp_path.iterdir())
-
-
-def test_unknown_figure_is_rejected_before_any_is_made(run: Run, tmp_path: Path) -> None:
-    code, out, err = run("reproduce", "I-xh", "IV-xh", "--output", tmp_path / "new")
-    assert (code, out, err.count("\n")) == (INVALID_REQUEST, "", 1)
-    assert "IV-xh" in err
-    assert not any(tmp_path.iterdir())
-
-
-def test_output_without_parent_folder_is_rejected(run: Run, tmp_path: Path) -> None:
-    assert run("reproduce", "I-xh", "--output", tmp_path / "no" / "such")[0] == INVALID_REQUEST
 
 
 def test_ctrl_c_keeps_finished_figures(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,9 +60,3 @@ def test_ctrl_c_keeps_finished_figures(run: Run, tmp_path: Path, monkeypatch: py
     assert (code, out) == (INTERRUPTED, "")
     assert "1 of 2" in err
     assert [path.name for path in tmp_path.iterdir()] == ["I-potential.png"]
-
-
-def test_help_contains_examples(run: Run) -> None:
-    code, out, _ = run("reproduce", "--help")
-    assert code == 0
-    assert "escape-explorer reproduce --quick" in out.partition("Examples:")[2]

@@ -59,16 +59,3 @@ def test_folder_named_app_in_the_working_directory_is_not_imported(tmp_path: Pat
         [*python, "-c", script], cwd=tmp_path, env=server_environment(), capture_output=True, text=True, check=True
     )
     assert process.stdout.strip() == app.__file__
-
-
-@pytest.mark.parametrize("port", [0, 70000])
-def test_invalid_port_is_rejected(port: int, run: Run) -> None:
-    assert run("serve", "--port", port)[0] == 2
-
-
-def test_invalid_setting_ends_the_server_with_one_sentence(tmp_path: Path) -> None:
-    command = serve_arguments(5006, "127.0.0.1", [], show=False)
-    environment = {**server_environment(), "ESCAPE_EXPLORER_MOST_SESSIONS": "many"}
-    ended = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    sentence = "ESCAPE_EXPLORER_MOST_SESSIONS='many': must be a whole number from 1 to 100000\n"
-    assert (ended.returncode, ended.stdout, ended.stderr) == (2, "", sentence)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +13,7 @@ import pytest
 import xarray as xr
 
 import engine
-from cli.main import FAILED, INTERRUPTED, INVALID_REQUEST
+from cli.main import INTERRUPTED, INVALID_REQUEST
 from engine import CASES, Execution, Plane, Sweep, SweepSpec
 
 Run = Callable[..., tuple[int, str, str]]
@@ -70,31 +69,8 @@ def test_store_of_another_sweep_is_rejected(run: Run, tmp_path: Path) -> None:
     assert "t_max" in err
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        ("--low", 0.13, "--high", 0.2),
-        ("--energy", 0.2, "--low", 0.13),
-        ("--energy", 0.2, "--plane", "x_h"),
-        ("--energy", 0.2, "--threads", 2, "--local-cluster", 2),
-        (),
-    ],
-)
-def test_incomplete_or_contradictory_options_are_rejected(options: tuple[object, ...], run: Run, tmp_path: Path) -> None:
-    code, _, err = run("sweep", "I", *options, "--store", tmp_path / "store.zarr")
-    assert (code, err.count("\n")) == (INVALID_REQUEST, 1)
-    assert not any(tmp_path.iterdir())
-
-
 def test_plan_computes_nothing(run: Run, tmp_path: Path) -> None:
     code, out, _ = run(*SWEEP, "--plan", "--store", tmp_path / "store.zarr")
     assert (code, out.count("\n")) == (0, 1)
     assert "189 orbits" in out
     assert not any(tmp_path.iterdir())
-
-
-def test_missing_dask_is_reported_with_the_install_command(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    code, _, err = run(*SWEEP, "--local-cluster", 1, "--store", tmp_path / "store.zarr")
-    assert code == FAILED
-    assert err == "escape-explorer: distributed is not installed: pip install 'escape-explorer[cluster]'\n"

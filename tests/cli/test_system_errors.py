@@ -26,28 +26,25 @@ def test_a_file_in_the_place_of_a_folder_is_reported_with_its_path(store: str, r
     assert "Errno" not in err
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        (*SWEEP, "out"),
-        ("map", "I", "--energy", 0.19, "--resolution", 4, "--t-max", 5, "--output", "out"),
-        ("orbit", "I", "--energy", 0.19, "--start", 0.0, 0.0, "--t-max", 5, "--output", "out"),
-        ("lyapunov", "I", "--energy", 0.19, "--output", "out"),
-        ("curves", "I", "--low", 0.13, "--high", 0.2, "--count", 2, "--resolution", 4, "--t-max", 5, "--output", "out"),
-        ("reproduce", "--quick", "--output", "out"),
-    ],
-    ids=lambda command: command[0],
-)
-def test_output_of_another_process_is_not_touched(
-    command: tuple[object, ...], run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+COMMANDS = [
+    (*SWEEP, "out"),
+    ("map", "I", "--energy", 0.19, "--resolution", 4, "--t-max", 5, "--output", "out"),
+    ("orbit", "I", "--energy", 0.19, "--start", 0.0, 0.0, "--t-max", 5, "--output", "out"),
+    ("lyapunov", "I", "--energy", 0.19, "--output", "out"),
+    ("curves", "I", "--low", 0.13, "--high", 0.2, "--count", 2, "--resolution", 4, "--t-max", 5, "--output", "out"),
+    ("reproduce", "--quick", "--output", "out"),
+]
+
+
+def test_output_of_another_process_is_not_touched(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "out").mkdir()
     with hold_lock(Path("out")):
-        code, out, err = run(*command)
-        assert (code, out, err.count("\n")) == (FAILED, "", 1)
-        assert "out: is being written by process" in err
-        assert not any((tmp_path / "out").iterdir())
+        for command in COMMANDS:
+            code, out, err = run(*command)
+            assert (code, out, err.count("\n")) == (FAILED, "", 1), command
+            assert "out: is being written by process" in err, command
+            assert not any((tmp_path / "out").iterdir()), command
 
 
 def test_errors_without_a_number_are_shown_as_they_are() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.job_clients.error_messages import sentence
-from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
+from engine import CASES, MapSpec, Plane, compute_map
 from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import map_job
@@ -40,10 +40,7 @@ class FaultyPool(ThreadPoolExecutor):
         raise self._error
 
 
-@pytest.mark.parametrize(
-    "error", [RuntimeError("kernel"), MemoryError(), OSError(28, "No space left on device"), ZeroDivisionError()]
-)
-@pytest.mark.parametrize("good_calls", [0, 1])
+@pytest.mark.parametrize(("error", "good_calls"), [(RuntimeError("kernel"), 0), (MemoryError(), 1)])
 def test_failing_kernel_ends_only_its_job(error: Exception, good_calls: int) -> None:
     with FaultyPool(error, good_calls) as pool:
         jobs, first, second, third = Jobs(pool), Inbox(), Inbox(), Inbox()
@@ -82,21 +79,6 @@ def test_error_reaches_all_subscribers_although_one_callback_fails(caplog: pytes
         assert inbox.done.wait(60)
         assert [type(error) for error in inbox.errors] == [RuntimeError]
     assert "a callback of a job failed" in caplog.text
-
-
-def test_failing_callback_still_receives_the_last_frame() -> None:
-    received: list[EscapeMap] = []
-    done = threading.Event()
-
-    def fail(frame: EscapeMap) -> None:
-        received.append(frame)
-        if frame.complete:
-            done.set()
-        raise LookupError("closed page")
-
-    Jobs().request(map_job(MAP), fail, lambda error: None)
-    assert done.wait(60)
-    assert received[-1].complete
 
 
 @pytest.mark.parametrize("queue", Queue)

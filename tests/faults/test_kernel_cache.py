@@ -64,13 +64,11 @@ def test_a_kernel_is_compiled_once_and_then_loaded(folder: Path) -> None:
     "damage",
     [
         lambda content: b"",
-        lambda content: content[: len(content) // 2],
         lambda content: content[:-1],
-        lambda content: b"\x80\x04garbage" * 100,
         lambda content: content[:500] + bytes([content[500] ^ 1]) + content[501:],
         lambda content: content + b"more",
     ],
-    ids=["empty", "half", "one byte short", "garbage", "one bit", "longer"],
+    ids=["empty", "one byte short", "one bit", "longer"],
 )
 def test_a_damaged_file_is_detected_and_replaced(
     damage: Callable[[bytes], bytes], folder: Path, caplog: pytest.LogCaptureFixture
@@ -87,15 +85,6 @@ def test_a_damaged_file_is_detected_and_replaced(
     after = fresh_kernel()
     assert after(2.0) == 6.0
     assert hits(after) == 1
-
-
-def test_a_folder_in_the_place_of_a_file_is_ignored(folder: Path, caplog: pytest.LogCaptureFixture) -> None:
-    fresh_kernel()(2.0)
-    (file,) = folder.iterdir()
-    file.unlink()
-    file.mkdir()
-    assert fresh_kernel()(2.0) == 6.0
-    assert warnings(caplog)
 
 
 def test_code_for_another_processor_is_not_loaded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -119,17 +108,16 @@ def test_kernels_work_without_a_cache_folder(
     assert obstacle.read_text() == ""
 
 
-@pytest.mark.parametrize("reason", [errno.ENOSPC, errno.EROFS, errno.EACCES, errno.EDQUOT])
 def test_kernels_work_when_files_cannot_be_written(
-    reason: int, folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     def refuse(*arguments: Any) -> None:
-        raise OSError(reason, os.strerror(reason))
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(cache_files.os, "replace", refuse)
     assert fresh_kernel()(2.0) == 6.0
     (message,) = warnings(caplog)
-    assert os.strerror(reason) in message
+    assert os.strerror(errno.ENOSPC) in message
     assert not any(folder.iterdir())
 
 
@@ -233,18 +221,13 @@ def test_the_least_recently_used_files_are_deleted(folder: Path, monkeypatch: py
     for n, path in enumerate((kept, removed)):
         os.utime(path, ns=(n, n))
     assert cache_files.read_cached(kept) == bytes(1000)
+    # An incomplete file of a killed process counts, too.
+    killed = folder / "killed.part"
+    killed.write_bytes(bytes(1000))
+    os.utime(killed, ns=(0, 0))
     monkeypatch.setattr(cache_files, "LARGEST_SIZE", 2500)
     cache_files.write_cached(new, bytes(1000))
     assert {*folder.iterdir()} == {kept, new}
-
-
-def test_incomplete_files_of_killed_processes_count_towards_the_limit(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder.mkdir(parents=True)
-    (folder / "killed.part").write_bytes(bytes(1000))
-    os.utime(folder / "killed.part", ns=(0, 0))
-    monkeypatch.setattr(cache_files, "LARGEST_SIZE", 1500)
-    cache_files.write_cached(folder / f"new{SUFFIX}", bytes(1000))
-    assert [path.name for path in folder.iterdir()] == [f"new{SUFFIX}"]
 
 
 def test_the_number_of_files_is_limited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -255,12 +238,11 @@ def test_the_number_of_files_is_limited(folder: Path, monkeypatch: pytest.Monkey
     assert {path.stem for path in folder.iterdir()} == {"b", "c"}
 
 
-@pytest.mark.parametrize("path", ["constants.py", "kernels/events.py", "source/deep/er.py"])
 def test_a_change_anywhere_in_the_package_gives_another_file(
-    path: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Compiled code contains copies of kernels and constants from other modules and subpackages."""
-    changed = tmp_path / "package" / path
+    changed = tmp_path / "package" / "source" / "deep" / "er.py"
     changed.parent.mkdir(parents=True)
     monkeypatch.setattr(disk_cache, "_PACKAGE", tmp_path / "package")
     for expected, text in enumerate(["A = 1", "A = 2", "A = 2"], 1):

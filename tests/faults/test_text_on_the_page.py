@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from html import escape
@@ -26,47 +25,27 @@ HOSTILE = (
 )
 
 
-def _warning() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    notice = Notice()
-    return notice.warn, notice.layout()
+def orbit_controls() -> OrbitControls:
+    return OrbitControls(OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
 
 
-def _notice() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    notice = Notice()
-    return notice.show, notice.layout()
-
-
-def _controls() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    controls = OrbitControls(OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
-    return controls.say, controls.note
-
-
-def _verdict() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    controls = OrbitControls(OrbitActions(*[lambda *_: None] * len(fields(OrbitActions))))
-    return lambda text: controls.show([ChosenOrbit((0.1, 0.2), problem=text)], 0), controls.text
-
-
-def _curves() -> tuple[Callable[[str], None], pn.pane.HTML]:
+def test_quoted_text_is_escaped() -> None:
+    notice, controls, panel = Notice(), orbit_controls(), PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
     curves = CurvesView(lambda *_: None, lambda *_: None)
-    return curves.say, curves.text
-
-
-def _measures() -> tuple[Callable[[str], None], pn.pane.HTML]:
     measures = BasinMeasuresView(lambda *_: None, lambda text: None, lambda: None)
-    return measures.say, measures.text
-
-
-def _potential() -> tuple[Callable[[str], None], pn.pane.HTML]:
-    panel = PotentialPanel(review_catalogue_entry("I"), lambda system, done: None)
-    return panel.say, panel.message
-
-
-@pytest.mark.parametrize("make", [_warning, _notice, _controls, _verdict, _curves, _measures, _potential])
-def test_html_panes_escape_text(make: Callable[[], tuple[Callable[[str], None], pn.pane.HTML]]) -> None:
-    say, pane = make()
-    say(HOSTILE)
-    assert escape(HOSTILE) in pane.object
-    assert "<img" not in pane.object
+    says: list[tuple[Callable[[str], None], pn.pane.HTML]] = [
+        (notice.warn, notice.layout()),
+        (notice.show, notice.layout()),
+        (controls.say, controls.note),
+        (lambda text: controls.show([ChosenOrbit((0.1, 0.2), problem=text)], 0), controls.text),
+        (curves.say, curves.text),
+        (measures.say, measures.text),
+        (panel.say, panel.message),
+    ]
+    for say, pane in says:
+        say(HOSTILE)
+        assert escape(HOSTILE) in pane.object
+        assert "<img" not in pane.object
 
 
 def _page() -> pn.viewable.Viewable:
@@ -93,7 +72,8 @@ def test_warning_executes_nothing_in_the_browser(address: str, chromium: Browser
     page.goto(address, timeout=120_000)
     shown = page.locator(".alert")
     shown.wait_for(state="attached", timeout=60_000)
-    time.sleep(0.5)
+    # An image that fails to load is reported before the page has drawn two frames.
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     assert page.evaluate("window.hit") is None
     assert (shown.text_content() or "").strip() == HOSTILE
     page.close()

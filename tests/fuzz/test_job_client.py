@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import threading
-import time
 from typing import Any
 
 import pytest
@@ -17,6 +15,7 @@ from engine.jobs.job import Job, Queue
 from engine.jobs.manager import Jobs
 from engine.jobs.map_jobs import map_job
 from engine.jobs.subscription import Subscription
+from tests.engine.jobs.inbox import Inbox, wait_until_idle
 from tests.fuzz.hostile import anything
 
 ORBITS = [Job(integrate_orbit, (CASES["I"], (0.01 * k, 0.0, 0.1, 0.5), 20.0), queue=Queue.LONG_CALL) for k in range(4)]
@@ -28,22 +27,6 @@ actions = st.sampled_from(["cancel", "close", BROKEN, *ORBITS, *MAPS])
 @functools.cache
 def jobs() -> Jobs:
     return Jobs(threads=2)
-
-
-class Inbox:
-    """Callbacks of one request."""
-
-    def __init__(self) -> None:
-        self.errors: list[Exception] = []
-        self.finished = threading.Event()
-
-    def result(self, result: Any) -> None:
-        if getattr(result, "complete", True):
-            self.finished.set()
-
-    def error(self, error: Exception) -> None:
-        self.errors.append(error)
-        self.finished.set()
 
 
 @given(st.integers(1, 4), st.lists(actions, max_size=12))
@@ -70,15 +53,12 @@ def test_concurrent_jobs_stay_within_the_limit(most: int, actions: list[Any]) ->
     for action, subscription, inbox in inboxes:
         # A cancelled request may have been answered before.
         if subscription.open:
-            assert inbox.finished.wait(30)
+            assert inbox.done.wait(30)
         for error in inbox.errors:
             assert isinstance(error, ValueError)
             assert "under way" in str(error) or action is BROKEN
     client.close()
-    end = time.monotonic() + 30
-    while jobs().in_flight and time.monotonic() < end:
-        time.sleep(0.005)
-    assert jobs().in_flight == 0
+    wait_until_idle(jobs(), 30.0)
 
 
 @given(anything)

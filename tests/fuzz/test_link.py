@@ -74,12 +74,6 @@ def test_link_with_a_formula(formula: str, others: dict[str, str]) -> None:
     check({"case": TYPED, **others, "V": formula})
 
 
-@given(st.dictionaries(st.sampled_from(NAMES), st.binary(max_size=60), max_size=3))
-def test_undecodable_bytes(parameters: dict[str, bytes]) -> None:
-    # Decoded as in the session.
-    check({name: value.decode(errors="replace") for name, value in parameters.items()})
-
-
 @given(st.sampled_from([name for name in NAMES if name]), texts)
 def test_link_survives_url_encoding(name: str, value: str) -> None:
     encoded = urlencode({name: value}, errors="replace")

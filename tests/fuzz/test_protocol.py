@@ -5,29 +5,24 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 
-from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
-from tests.browser.served_app import RunningApp, running_app
-from tests.engine.jobs.inbox import wait_until
+from tests.browser.served_app import RunningApp
+from tests.fuzz.attacked_server import ANSWER_SECONDS, fetch_page, open_page, resting_memory, tracebacks
 from tests.fuzz.random_messages import RandomMessages
+from tests.page_channel import Channel
 
 log = logging.getLogger(__name__)
 
-ANSWER_SECONDS = 60.0
 # Messages of one connection before it is cut and the next one begins; every third one has a page of its own.
 LIFE = 600
 CONNECTIONS_PER_PAGE = 3
 BETWEEN_SYNCHRONIZATIONS = 25
 VISITORS = 4
-# A map that takes little time.
-LINK = "?case=I&h=0.3&resolution=48&t_max=100"
 PARTS = 3
 SMALL_CACHE = ("ESCAPE_EXPLORER_CACHE_BYTES", str(32 * 2**20))
 """A setting of the server: its cache of results is full after the first visitors."""
@@ -66,8 +61,7 @@ class Visitor:
             self.sent += 1
             if self._messages.random.random() < 0.005:
                 parts = self._messages.wrong_parts()
-                for part in parts:
-                    channel._socket.write_message(part, binary=isinstance(part, bytes))
+                channel.write(*parts)
                 if len(parts) != PARTS:
                     # The rest of the connection would be one message shifted by these parts.
                     return
@@ -105,34 +99,6 @@ class Visitor:
                 self._messages.learn(parsed)
 
 
-async def fetch_page(address: str) -> str:
-    page = await AsyncHTTPClient().fetch(address + LINK, request_timeout=ANSWER_SECONDS)
-    return page.body.decode()
-
-
-async def open_page(address: str) -> None:
-    """Open a page and wait for the first pixels of its map."""
-    channel = await Channel.connect(address, await fetch_page(address))
-    async for kind, content in channel.messages():
-        if kind == "ACK":
-            channel.send("PULL-DOC-REQ", {})
-        elif kind == "PULL-DOC-REPLY":
-            channel.emit("document_ready")
-        elif kind == "PATCH-DOC" and '"escape_time"' in content:
-            break
-    channel.close()
-
-
-@pytest.fixture
-def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    monkeypatch.setenv(*SMALL_CACHE)
-    # Reached in the first half of the long run.
-    monkeypatch.setenv("ESCAPE_EXPLORER_COMPILED_OPERATIONS", "50000")
-    log = tmp_path / "log"
-    with running_app(log, "--unused-session-lifetime", "5000", "--check-unused-sessions", "500") as app:
-        yield app, log
-
-
 def attack(app: RunningApp, count: int, seed: int) -> int:
     async def run() -> int:
         visitors = [Visitor(app.address, seed + number) for number in range(VISITORS)]
@@ -141,18 +107,6 @@ def attack(app: RunningApp, count: int, seed: int) -> int:
         return sum(visitor.sent for visitor in visitors)
 
     return run_on_new_loop(run)
-
-
-def resting_memory(app: RunningApp) -> float:
-    """Resident memory in bytes, without pages and running jobs."""
-    wait_until(lambda: app.figure("sessions_open") + app.figure("jobs_in_flight") == 0, ANSWER_SECONDS)
-    return app.figure("resident_memory_bytes")
-
-
-def tracebacks(log: Path) -> list[str]:
-    """Lines of tracebacks with their neighbours."""
-    lines = log.read_text().splitlines()
-    return ["\n".join(lines[max(n - 1, 0) : n + 60]) for n, line in enumerate(lines) if "Traceback" in line]
 
 
 @pytest.mark.parametrize(

@@ -4,31 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.app.other_loop import run_on_new_loop
 from tests.app.server.mounted_routes import mounted_routes
-from tests.browser.served_app import RunningApp, running_app
+from tests.browser.served_app import RunningApp
+from tests.fuzz.attacked_server import ANSWER_SECONDS, open_page, resting_memory, tracebacks
 from tests.fuzz.random_requests import RandomRequests
-from tests.fuzz.test_protocol import SMALL_CACHE, open_page, resting_memory, tracebacks
 
 log = logging.getLogger(__name__)
 
-ANSWER_SECONDS = 60.0
 CLIENTS = 8
 LARGEST_GROWTH = 0.15
-
-
-@pytest.fixture
-def served(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[RunningApp, Path]]:
-    monkeypatch.setenv(*SMALL_CACHE)
-    monkeypatch.setenv("ESCAPE_EXPLORER_PAGES_PER_ADDRESS", "10")
-    output = tmp_path / "log"
-    with running_app(output, "--unused-session-lifetime", "2000", "--check-unused-sessions", "500") as app:
-        yield app, output
 
 
 async def send(port: int, request: bytes) -> bytes:

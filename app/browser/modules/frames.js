@@ -210,7 +210,7 @@ export class Picture {
     for (let row = flips[1] ? rows >> 1 : 0; row < rows; row++) {
       const source = flips[1] ? rows - 1 - row : row
       for (let column = flips[1] ? 0 : columns >> 1; column < columns; column++) {
-        const [to, from] = [row * columns + column, source * columns + columns - 1 - column]
+        const [to, from] = [row * columns + column, source * columns + (flips[0] ? columns - 1 - column : column)]
         if (from >= to) continue
         fate[to] = fate[from] > 0 ? this.#mirror[fate[from]] : fate[from]
         time[to] = time[from]

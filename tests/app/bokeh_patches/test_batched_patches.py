@@ -50,29 +50,20 @@ def changes(message: Any) -> list[tuple[str, float]]:
     return [(event["attr"], event["new"]) for event in json.loads(message.content_json)["events"]]
 
 
-def test_changes_of_a_document_are_sent_together_and_in_order() -> None:
-    pending = patches(new_document(), ("first",), ("start", 0.5), ("end", 2.0), ("start", 0.7))
-    [(message, connections)] = serialize_batches(pending)
-    assert connections == ("first",)
-    assert changes(message) == [("start", 0.5), ("end", 2.0), ("start", 0.7)]
-
-
-def test_other_documents_and_connections_get_their_own_message() -> None:
+def test_changes_of_a_document_for_the_same_connections_are_one_message_in_their_order() -> None:
+    document = new_document()
     pending = [
-        *patches(new_document(), ("first",), ("start", 0.5)),
-        *patches(new_document(), ("second",), ("end", 2.0), ("start", 0.6)),
+        *patches(new_document(), ("first",), ("start", 0.5), ("end", 2.0), ("start", 0.7)),
+        *patches(document, ("second",), ("end", 2.0), ("start", 0.6)),
+        *patches(document, ("second", "third"), ("end", 3.0)),
     ]
     batches = serialize_batches(pending)
-    assert [connections for _, connections in batches] == [("first",), ("second",)]
-    assert [changes(message) for message, _ in batches] == [[("start", 0.5)], [("end", 2.0), ("start", 0.6)]]
-
-
-def test_changes_of_a_document_for_other_connections_have_a_message_of_their_own() -> None:
-    document = new_document()
-    pending = [*patches(document, ("first",), ("start", 0.5)), *patches(document, ("first", "second"), ("end", 2.0))]
-    batches = serialize_batches(pending)
-    assert [connections for _, connections in batches] == [("first",), ("first", "second")]
-    assert [changes(message) for message, _ in batches] == [[("start", 0.5)], [("end", 2.0)]]
+    assert [connections for _, connections in batches] == [("first",), ("second",), ("second", "third")]
+    assert [changes(message) for message, _ in batches] == [
+        [("start", 0.5), ("end", 2.0), ("start", 0.7)],
+        [("end", 2.0), ("start", 0.6)],
+        [("end", 3.0)],
+    ]
 
 
 def test_replaced_function_and_patch_fields_are_unchanged_upstream(monkeypatch: pytest.MonkeyPatch) -> None:

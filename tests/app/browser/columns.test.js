@@ -75,7 +75,3 @@ test("a map at another energy or of another window does not", () => {
   assert.ok(!showsWish(server({x: [-1.01]}), wish, 1))
   assert.ok(!showsWish(server({dw: [1]}), wish, 1))
 })
-
-test("a coarse frame may reach beyond the window", () => {
-  assert.ok(showsWish(server({dw: [2.05]}), wish, 1))
-})

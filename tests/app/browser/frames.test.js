@@ -29,18 +29,6 @@ test("half of a symmetric picture is computed, the other half has the mirror ima
   assert.deepEqual([...time.subarray(6)], [3, 2, 1])
 })
 
-test("all of another picture is computed", () => {
-  const picture = new Picture(/** @type {any} */ ({mirror: null}), view)
-  assert.deepEqual(
-    picture.deal(5).map(({rows, columns}) => [rows.length, columns]),
-    [
-      [1, 3],
-      [1, 3],
-      [1, 3],
-    ],
-  )
-})
-
 /** Frames with a pool that answers when it is told to. */
 function startFrames() {
   /** @type {{view: any, finish: () => void}[]} */

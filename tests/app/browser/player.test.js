@@ -36,12 +36,6 @@ test("it stops at the end of the range", () => {
   assert.deepEqual([shown(), player.playing, end.mock.calls[0].arguments], [[1], false, [1]])
 })
 
-test("from the end it starts at the beginning", () => {
-  const {tick, shown} = startPlayer(1)
-  tick(0)
-  assert.ok(shown()[0] < 0.01)
-})
-
 test("stopped, it reports the energy it has reached, once", () => {
   const {player, tick, end} = startPlayer(0)
   tick(10_000)

@@ -19,24 +19,6 @@ const event = (/** @type {string} */ name, /** @type {number} */ x, /** @type {n
   scale,
 })
 
-test("the point between the fingers stays between them at their scale", () => {
-  const ranges = [range(0, 4), range(0, 4)]
-  /** @type {{point: number, side: number}[]} */
-  const held = []
-  followFingers(event("pinchstart", 1, 2), ranges, held)
-  followFingers(event("pinch", 1, 2, 2), ranges, held)
-  assert.deepEqual([ranges[0].start, ranges[0].end, ranges[1].start, ranges[1].end], [0.5, 2.5, 1, 3])
-})
-
-test("fingers that move take the point with them", () => {
-  const ranges = [range(0, 4), range(0, 4)]
-  /** @type {{point: number, side: number}[]} */
-  const held = []
-  followFingers(event("pinchstart", 1, 1), ranges, held)
-  followFingers(event("pinch", 2, 1), ranges, held)
-  assert.deepEqual([ranges[0].start, ranges[0].end], [-1, 3])
-})
-
 test("zooming ends at the smallest window", () => {
   const ranges = [range(0, 4, 1), range(0, 4, 1)]
   /** @type {{point: number, side: number}[]} */

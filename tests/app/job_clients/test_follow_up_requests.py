@@ -26,7 +26,12 @@ class Session:
         self.changed = threading.Condition()
         self.request: Callable[[EscapeMap], Any] = lambda frame: regularity_job(frame.spec)
         follow_up = FollowUp(lambda frame: self.request(frame) if self.state.judge else None, self.show, ("judge",))
-        self.requests = FollowUpRequests(self.state, self.jobs, [follow_up], self.problems.append, lambda function: function)
+        self.requests = FollowUpRequests(self.state, self.jobs, [follow_up], self.fail, lambda function: function)
+
+    def fail(self, sentence: str) -> None:
+        with self.changed:
+            self.problems.append(sentence)
+            self.changed.notify_all()
 
     def show(self, frame: EscapeMap, answer: RegularityMap) -> None:
         with self.changed:
@@ -52,32 +57,18 @@ def bounded_map(energy: float, t_max: float = 100.0) -> EscapeMap:
     return compute_map(MapSpec(CASES["I"], Plane.X_PX, energy, (64, 64), t_max=t_max))
 
 
-def test_a_complete_map_is_analysed(session: Session) -> None:
+def test_maps_are_analysed_while_that_is_wanted(session: Session) -> None:
+    session.state.judge = False
     frame = bounded_map(0.2)
     session.requests.follow(frame)
+    assert session.jobs.in_flight == 0
+    session.state.judge = True
     regularity = session.wait_for_result(frame)
     assert np.any(frame.fate == Fate.BOUNDED)
     assert np.all(regularity.character[frame.fate == Fate.BOUNDED] != Regularity.NOT_JUDGED)
-
-
-def test_each_new_map_is_analysed(session: Session) -> None:
-    for frame in (bounded_map(0.22), bounded_map(0.21)):
-        session.requests.follow(frame)
-        session.wait_for_result(frame)
-
-
-def test_nothing_is_requested_while_it_is_not_wanted(session: Session) -> None:
-    session.state.judge = False
-    session.requests.follow(bounded_map(0.2))
-    assert session.jobs.in_flight == 0
-
-
-def test_an_analysis_is_requested_when_it_becomes_wanted(session: Session) -> None:
-    session.state.judge = False
-    frame = bounded_map(0.2)
-    session.requests.follow(frame)
-    session.state.judge = True
-    session.wait_for_result(frame)
+    other = bounded_map(0.21)
+    session.requests.follow(other)
+    session.wait_for_result(other)
 
 
 def test_an_analysis_is_cancelled_when_it_is_no_longer_wanted(session: Session) -> None:
@@ -108,12 +99,9 @@ def test_a_late_result_is_not_shown(session: Session) -> None:
 
 
 def test_an_error_gives_a_message(session: Session) -> None:
-    frame = bounded_map(0.2)
     bad = MapSpec(CASES["I"], Plane.X_PX, 50.0, (8, 8), (-0.1, 0.1, -0.1, 0.1))
     session.request = lambda frame: regularity_job(bad)
-    session.requests.follow(frame)
-    for _ in range(200):
-        if session.problems:
-            break
-        threading.Event().wait(0.1)
+    session.requests.follow(bounded_map(0.2))
+    with session.changed:
+        assert session.changed.wait_for(lambda: bool(session.problems), 60)
     assert session.problems[0].startswith("h = 50: ")

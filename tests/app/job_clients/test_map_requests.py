@@ -9,10 +9,13 @@ from typing import Any
 import pytest
 
 from app.job_clients.map_requests import MapRequests
+from app.state.system_review import review_system
 from app.state.view_state import ViewState
-from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
+from engine import CASES, EscapeMap, MapSpec, Plane, System, compute_map
 from engine.jobs.manager import Jobs
 from engine.jobs.subscription import Subscription
+from engine.potentials.system import TYPED
+from engine.warmup import prepare_for_maps
 
 
 class Recorder:
@@ -72,6 +75,8 @@ def test_a_map_arrives_in_frames_and_ends_complete(session: Session) -> None:
     recorder.wait_for(recorder.complete)
     assert recorder.names()[0] == "map requested"
     assert recorder.names().count("map arrived") >= 2
+    requests.stop_map()
+    assert "map stopped" not in recorder.names()
 
 
 def test_no_frame_of_an_old_energy_follows_one_of_the_new(session: Session) -> None:
@@ -111,14 +116,14 @@ class ManualJobs:
 
 
 @pytest.fixture
-def compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.job_clients.map_requests.is_ready_for_maps", lambda potential: True)
+def manual() -> tuple[MapRequests, Recorder, ManualJobs, LatestCalls]:
+    prepare_for_maps(CASES["I"])
+    recorder, jobs, session = Recorder(), ManualJobs(), LatestCalls()
+    return MapRequests(ViewState(case="I"), jobs, recorder, session.locked), recorder, jobs, session
 
 
-@pytest.mark.usefixtures("compiled")
-def test_a_late_frame_does_not_replace_the_current_map() -> None:
-    state, recorder, jobs, session = ViewState(case="I"), Recorder(), ManualJobs(), LatestCalls()
-    requests = MapRequests(state, jobs, recorder, session.locked)
+def test_a_late_frame_does_not_replace_the_current_map(manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls]) -> None:
+    requests, recorder, jobs, session = manual
     specs = [MapSpec(CASES["I"], Plane.X_PX, energy, (8, 8), t_max=10.0) for energy in (0.3, 0.31)]
     for _ in specs:
         requests.request_map()
@@ -138,15 +143,11 @@ def test_cancelling_stops_the_job(session: Session) -> None:
     requests.stop_map()
     assert jobs.in_flight == 0
     assert recorder.names()[-1] == "map stopped"
+    requests.request_map()
+    requests.close()
+    assert jobs.in_flight == 0
 
 
-@pytest.fixture
-def manual() -> tuple[MapRequests, Recorder, ManualJobs, LatestCalls]:
-    recorder, jobs, session = Recorder(), ManualJobs(), LatestCalls()
-    return MapRequests(ViewState(case="I"), jobs, recorder, session.locked), recorder, jobs, session
-
-
-@pytest.mark.usefixtures("compiled")
 def test_a_frame_after_a_stop_is_dropped(manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls]) -> None:
     requests, recorder, jobs, session = manual
     spec = MapSpec(CASES["I"], Plane.X_PX, 0.3, (8, 8), t_max=10.0)
@@ -157,11 +158,11 @@ def test_a_frame_after_a_stop_is_dropped(manual: tuple[MapRequests, Recorder, Ma
     assert recorder.names() == ["map requested", "map stopped"]
 
 
-def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_map(
-    manual: tuple[MapRequests, Recorder, ManualJobs, LatestCalls], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("app.job_clients.map_requests.is_ready_for_maps", lambda potential: False)
-    requests, _, jobs, session = manual
+def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_map() -> None:
+    state, jobs, session = ViewState(), ManualJobs(), LatestCalls()
+    # No other test compiles its integrator.
+    state.show_system(review_system(System(TYPED, "½(x² + y²) + x²y − y³/3 + 0.0013x^6")))
+    requests = MapRequests(state, jobs, Recorder(), session.locked)
     requests.request_map()
     jobs.listeners[0](None)
     requests.request_map()
@@ -172,25 +173,9 @@ def test_a_request_that_is_replaced_while_its_integrator_is_compiled_starts_no_m
     assert len(jobs.listeners) == 3
 
 
-def test_a_complete_map_is_not_stopped(session: Session) -> None:
-    _, requests, recorder, _ = session
-    requests.request_map()
-    recorder.wait_for(recorder.complete)
-    requests.stop_map()
-    assert "map stopped" not in recorder.names()
-
-
 def test_an_invalid_energy_gives_a_message(session: Session) -> None:
     state, _, recorder, _ = session
     state.energy = 50.0
     recorder.wait_for(lambda: "map failed" in recorder.names())
     sentence = next(value for what, value in recorder.calls if what == "map failed")
     assert sentence.startswith("h = 50: ")
-
-
-def test_closing_cancels_all_jobs(session: Session) -> None:
-    state, requests, recorder, jobs = session
-    state.param.update(case="III", energy=0.26, t_max=1e6)
-    recorder.wait_for(lambda: recorder.last_frame() is not None)
-    requests.close()
-    assert jobs.in_flight == 0

@@ -15,6 +15,7 @@ from app.job_clients.separation_requests import SeparationRequests
 from app.state.view_state import ViewState
 from engine import IndicatorVerdict, Plane, Separation, Verdict, integrate_orbit
 from engine.jobs.manager import Jobs
+from tests.engine.jobs.inbox import wait_until_idle
 
 
 class Recorder:
@@ -81,14 +82,6 @@ def test_a_start_gets_its_orbit(session: Session) -> None:
     assert (orbit.fate, orbit.escape_time) == (expected.fate, expected.escape_time)
 
 
-def test_several_orbits_keep_their_order(session: Session) -> None:
-    state, _, recorder, _ = session
-    for x in (0.1, 0.2, 0.3):
-        state.add_start((x, 0.0))
-    recorder.wait_for(lambda: recorder.all_computed(3))
-    assert [one.orbit.x[0] for one in recorder.orbits if one.orbit is not None] == [0.1, 0.2, 0.3]
-
-
 def test_a_forbidden_start_gets_a_message(session: Session) -> None:
     state, _, recorder, _ = session
     state.add_start((0.0, 5.0))
@@ -96,37 +89,27 @@ def test_a_forbidden_start_gets_a_message(session: Session) -> None:
     assert "Forbidden" in recorder.orbits[0].problem
 
 
-def test_the_request_of_a_removed_start_is_cancelled(session: Session) -> None:
-    state, _, recorder, jobs = session
+def test_the_requests_of_removed_starts_and_closed_pages_are_cancelled(session: Session) -> None:
+    state, requests, recorder, jobs = session
     state.param.update(case="III", energy=0.25, t_max=1e6)
     state.add_start((0.0, 0.1))
     state.remove_start(0)
     assert recorder.orbits == ()
     assert jobs.in_flight == 0
+    state.add_start((0.0, 0.1))
+    requests.close()
+    assert jobs.in_flight == 0
 
 
-def test_orbits_follow_the_energy(session: Session) -> None:
-    state, _, recorder, _ = session
-    state.add_start((0.1, 0.05))
-    state.energy = 0.3
-    recorder.wait_for(lambda: recorder.all_computed(1) and recorder.orbits[0].orbit.energy == pytest.approx(0.3))  # type: ignore[union-attr]
-
-
-def test_a_cached_orbit_is_delivered_at_once(session: Session) -> None:
+def test_a_cached_orbit_is_delivered_at_once_and_follows_the_energy(session: Session) -> None:
     state, _, recorder, _ = session
     state.add_start((0.1, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(1))
     state.remove_start(0)
     state.add_start((0.1, 0.05))
     assert recorder.all_computed(1)
-
-
-def test_closing_cancels_all_jobs(session: Session) -> None:
-    state, requests, _, jobs = session
-    state.param.update(case="III", energy=0.25, t_max=1e6)
-    state.add_start((0.0, 0.1))
-    requests.close()
-    assert jobs.in_flight == 0
+    state.energy = 0.3
+    recorder.wait_for(lambda: recorder.all_computed(1) and recorder.orbits[0].orbit.energy == pytest.approx(0.3))  # type: ignore[union-attr]
 
 
 def test_the_divergent_start_has_another_fate_and_is_chosen(session: Session) -> None:
@@ -149,24 +132,18 @@ def test_without_a_start_there_is_no_search(session: Session) -> None:
     assert recorder.messages == ["Click a start first: its twin is the nearest start that escapes elsewhere."]
 
 
-def test_a_late_divergent_start_is_not_added(session: Session) -> None:
+@pytest.mark.parametrize("change", ["energy", "close"])
+def test_a_twin_that_comes_too_late_is_not_added(session: Session, change: str) -> None:
     state, _, recorder, jobs = session
     search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)
     state.add_start((0.1, 0.05))
     search.search()
-    search.close()
-    recorder.wait_for(lambda: jobs.in_flight == 0 or recorder.all_computed(1))
-    assert len(state.starts) == 1
-
-
-def test_a_twin_of_another_energy_is_not_added(session: Session) -> None:
-    state, _, recorder, jobs = session
-    search = DivergentStartRequests(state, jobs, recorder.notify, unlocked)
-    state.add_start((0.1, 0.05))
-    search.search()
-    state.energy = 0.3
+    if change == "close":
+        search.close()
+    else:
+        state.energy = 0.3
     recorder.wait_for(lambda: recorder.all_computed(1))
-    recorder.wait_for(lambda: jobs.in_flight == 0)
+    wait_until_idle(jobs)
     assert len(state.starts) == 1
 
 
@@ -181,8 +158,11 @@ def test_a_search_without_result_gives_a_message(session: Session) -> None:
 def test_the_last_two_orbits_are_compared(session: Session) -> None:
     state, _, recorder, jobs = session
     separation = SeparationRequests(state, jobs, recorder.show_separation, recorder.notify, unlocked)
-    for x in (0.1, 0.1001):
-        state.add_start((x, 0.05))
+    state.add_start((0.1, 0.05))
+    recorder.wait_for(lambda: recorder.all_computed(1))
+    separation.follow(recorder.orbits)
+    assert recorder.separations == [(None, None)]
+    state.add_start((0.1001, 0.05))
     recorder.wait_for(lambda: recorder.all_computed(2))
     separation.follow(recorder.orbits)
     recorder.wait_for(lambda: bool(recorder.separations) and recorder.separations[-1][1] is not None)
@@ -190,14 +170,6 @@ def test_the_last_two_orbits_are_compared(session: Session) -> None:
     assert pair == (0, 1)
     assert found is not None
     assert found.distance[0] == pytest.approx(np.hypot(1e-4, 0.0), rel=0.1)
-
-
-def test_one_orbit_has_no_separation(session: Session) -> None:
-    state, _, recorder, jobs = session
-    state.add_start((0.1, 0.05))
-    recorder.wait_for(lambda: recorder.all_computed(1))
-    SeparationRequests(state, jobs, recorder.show_separation, recorder.notify, unlocked).follow(recorder.orbits)
-    assert recorder.separations == [(None, None)]
 
 
 @pytest.mark.parametrize(
@@ -223,6 +195,8 @@ def test_an_escaping_orbit_gets_no_conclusion(session: Session) -> None:
     IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked).follow(recorder.orbits)
     assert [verdict.conclusion for verdict in recorder.verdicts[-1]] == [None, None]
     assert jobs.in_flight == 0
+    IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked).follow(())
+    assert recorder.verdicts[-1] == ()
 
 
 def test_all_bounded_orbits_get_their_certificate_and_keep_it(session: Session) -> None:
@@ -248,12 +222,6 @@ def test_closing_cancels_the_requests_for_digits(session: Session) -> None:
     indicators.follow(recorder.orbits)
     indicators.close()
     assert jobs.in_flight == 0
-
-
-def test_without_an_orbit_there_is_no_verdict(session: Session) -> None:
-    state, _, recorder, jobs = session
-    IndicatorsRequests(state, jobs, recorder.show_verdicts, recorder.notify, unlocked).follow(())
-    assert recorder.verdicts == [()]
 
 
 def test_on_the_energy_plane_each_start_has_its_own_energy(session: Session) -> None:

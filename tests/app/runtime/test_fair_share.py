@@ -36,17 +36,6 @@ def test_the_longest_wait_is_limited() -> None:
     assert share.wait_seconds() == BURST_SECONDS / SHARE
 
 
-def test_a_pause_restores_the_burst() -> None:
-    clock = Clock()
-    share = FairShare(clock.monotonic)
-    share.take(BURST_SECONDS)
-    clock.now += 1000.0
-    share.take(BURST_SECONDS)
-    assert share.wait_seconds() == 0.0
-    share.take(1.0)
-    assert share.wait_seconds() == 1.0 / SHARE
-
-
 def test_only_the_steps_of_a_coroutine_count() -> None:
     clock = Clock()
     share = FairShare(clock.monotonic, clock.monotonic)

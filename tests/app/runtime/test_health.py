@@ -1,87 +1,72 @@
-"""Readiness and admission."""
+"""When a server is ready, and whom it admits."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
 
 import pytest
 
 from app.runtime.health import not_ready_reason, refusal_reason, resident_bytes
 from app.runtime.process_state import ProcessState
 from app.runtime.settings import Settings
-from engine.taylor.jit.compiled_operations import LARGEST_CODE, CompiledOperations
+from engine.taylor.jit.compiled_operations import LARGEST_CODE, compiled_operations
 
 HERE, ELSEWHERE = "192.0.2.1", "192.0.2.2"
 
 
-@pytest.fixture
-def state() -> ProcessState:
-    ready = ProcessState(Settings(most_sessions=2))
-    ready.kernels_ready.set()
-    return ready
-
-
-def test_ready(state: ProcessState) -> None:
-    assert not_ready_reason(state) is None
-    assert refusal_reason(state, HERE) is None
-
-
-def test_not_ready_but_open_during_compilation(state: ProcessState) -> None:
-    state.kernels_ready.clear()
-    assert not_ready_reason(state) == "The integrators are being compiled."
-    assert refusal_reason(state, HERE) is None
-
-
-def test_not_ready_after_failed_compilation(state: ProcessState) -> None:
-    state.kernels_ready.clear()
-    state.kernels_failed.set()
-    assert "could not be compiled" in str(not_ready_reason(state))
-
-
-def test_full_server_refuses_sessions(state: ProcessState) -> None:
+def fill(state: ProcessState) -> None:
     state.sessions = lambda: [object()] * 2
-    assert not_ready_reason(state) == refusal_reason(state, HERE) == "All 2 places are taken."
 
 
-def test_overloaded_server_refuses_sessions(state: ProcessState) -> None:
+def overload(state: ProcessState) -> None:
     state.overload.add(1000.0)
     state.sockets[ELSEWHERE] += 1
-    assert not_ready_reason(state) == refusal_reason(state, HERE)
-    assert str(refusal_reason(state, HERE)).startswith("The server is busy")
 
 
-def test_overloaded_server_admits_its_only_visitor(state: ProcessState) -> None:
+def overload_by_oneself(state: ProcessState) -> None:
     state.overload.add(1000.0)
-    assert refusal_reason(state, HERE) is None
     # The connection of the page before a reload, for example.
     state.sockets[HERE] += 1
-    assert refusal_reason(state, HERE) is None
-    assert str(not_ready_reason(state)).startswith("The server is busy")
 
 
-def test_stopping_server_refuses_sessions(state: ProcessState) -> None:
-    state.stopping.set()
-    assert str(not_ready_reason(state)).startswith("The server is stopping.")
-    assert str(refusal_reason(state, HERE)).startswith("The server is stopping.")
+def fail_to_compile(state: ProcessState) -> None:
+    state.kernels_ready.clear()
+    state.kernels_failed.set()
 
 
-def test_not_ready_above_memory_ceiling(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
-    state.settings = replace(state.settings, memory_ceiling=1000)
-    monkeypatch.setattr("app.runtime.health.resident_bytes", lambda: 1001)
-    assert not_ready_reason(state) == "The server holds 1001 bytes, above ESCAPE_EXPLORER_MEMORY_CEILING=1000."
-
-
-def test_not_ready_when_little_room_for_compiled_code_is_left(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
-    operations = CompiledOperations()
-    operations.most = state.settings.compiled_operations
-    monkeypatch.setattr("app.runtime.health.compiled_operations", operations)
-    assert not_ready_reason(state) is None
+def compile_potentials(state: ProcessState) -> None:
     for number in range(5):
-        operations.add(f"potential {number}", LARGEST_CODE)
-    assert str(not_ready_reason(state)).endswith("ESCAPE_EXPLORER_COMPILED_OPERATIONS=250000. Restart the server.")
-    # The catalogue is served as before.
-    assert refusal_reason(state, HERE) is None
+        compiled_operations.add(f"potential {number}", LARGEST_CODE)
 
 
-def test_resident_memory_is_plausible() -> None:
+@pytest.mark.parametrize(
+    ("change", "not_ready", "refusal"),
+    [
+        (lambda state: None, "", ""),
+        (lambda state: state.kernels_ready.clear(), "The integrators are being compiled.", ""),
+        (fail_to_compile, "could not be compiled", ""),
+        (fill, "All 2 places are taken.", "All 2 places are taken."),
+        (overload, "The server is busy", "The server is busy"),
+        (overload_by_oneself, "The server is busy", ""),
+        (lambda state: state.stopping.set(), "The server is stopping.", "The server is stopping."),
+        # The catalogue is served as before.
+        (compile_potentials, "ESCAPE_EXPLORER_COMPILED_OPERATIONS=250000. Restart the server.", ""),
+    ],
+    ids=["ready", "compiling", "failed", "full", "busy", "busy with this visitor", "stopping", "code"],
+)
+def test_a_server_says_why_it_is_not_ready_and_whom_it_refuses(
+    change: Callable[[ProcessState], None], not_ready: str, refusal: str
+) -> None:
+    state = ProcessState(Settings(most_sessions=2))
+    state.kernels_ready.set()
+    change(state)
+    for expected, reason in ((not_ready, not_ready_reason(state)), (refusal, refusal_reason(state, HERE))):
+        assert (reason is None) == (not expected)
+        assert expected in (reason or "")
+
+
+def test_a_server_above_its_memory_ceiling_is_not_ready() -> None:
+    state = ProcessState(Settings(memory_ceiling=1000))
+    state.kernels_ready.set()
     assert 2**20 < resident_bytes() < 2**40
+    assert str(not_ready_reason(state)).endswith(" bytes, above ESCAPE_EXPLORER_MEMORY_CEILING=1000.")

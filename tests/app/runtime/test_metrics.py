@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import logging
 
-from prometheus_client import REGISTRY
-
 from app.runtime.metrics import LogRecordCounter
 from app.runtime.process_state import ProcessState
 from app.server.endpoints import status_page
@@ -22,11 +20,6 @@ def test_log_records_are_counted_by_level_and_exception() -> None:
     assert read("escape_explorer_log_records_total", {"level": "warning", "exception": ""}) == 1
     assert read("escape_explorer_log_records_total", {"level": "error", "exception": "ValueError"}) == 1
     assert read("escape_explorer_log_records_total", {"level": "info", "exception": ""}) is None
-
-
-def test_global_registry_is_not_used() -> None:
-    ProcessState()
-    assert not [family.name for family in REGISTRY.collect() if family.name.startswith("escape_explorer")]
 
 
 def test_status_page_has_one_row_per_metric_without_histogram_buckets() -> None:

@@ -27,6 +27,11 @@ async def new_session() -> tuple[ServerSession, ApplicationContext]:
     return await context.create_session_if_needed("session"), context  # type: ignore[arg-type]
 
 
+def is_held(session: ServerSession) -> bool:
+    """Whether changes wait to be sent together."""
+    return session.document.callbacks.hold_value == "combine"
+
+
 async def wait_for(condition: Callable[[], Any]) -> None:
     async with asyncio.timeout(10):
         while not condition():
@@ -38,24 +43,14 @@ def test_calls_of_threads_run_on_the_loop_with_lock_and_document() -> None:
         (session, _owner), seen = await new_session(), list[Any]()
         with set_curdoc(session.document):
             call = SessionCallbacks(session.document).every(
-                lambda value: seen.append((value, threading.get_ident(), session._lock.locked(), pn.state.curdoc))
+                lambda value: seen.append(
+                    (value, threading.get_ident(), session._lock.locked(), pn.state.curdoc, is_held(session))
+                )
             )
         for value in range(3):
             await asyncio.to_thread(call, value)
         await wait_for(lambda: len(seen) == 3)
-        assert seen == [(value, threading.get_ident(), True, session.document) for value in range(3)]
-
-    run_on_new_loop(scenario)
-
-
-def test_all_changes_of_a_call_are_held_and_sent_together() -> None:
-    async def scenario() -> None:
-        (session, _owner), seen = await new_session(), list[Any]()
-        document = session.document
-        SessionCallbacks(document).every(lambda: seen.append(document.callbacks.hold_value))()
-        await wait_for(lambda: seen)
-        assert seen == ["combine"]
-        await wait_for(lambda: document.callbacks.hold_value is None)
+        assert seen == [(value, threading.get_ident(), True, session.document, True) for value in range(3)]
 
     run_on_new_loop(scenario)
 
@@ -75,36 +70,29 @@ def test_of_waiting_calls_only_the_latest_runs() -> None:
     run_on_new_loop(scenario)
 
 
-async def call_during_a_held_change(wrap: Callable[[Document, Callable[..., Any]], Callable[..., Any]]) -> list[str]:
-    """Results of a call from a thread while held events are copied and then replaced, as Panel and Bokeh do."""
-    (session, _owner), seen = await new_session(), list[str]()
-    document = session.document
-    call = wrap(document, seen.append)
+def test_a_call_of_a_thread_while_changes_are_held_is_not_lost() -> None:
+    """Held events are copied and then replaced, as Panel and Bokeh do: ``Document.locked_callback`` loses such a call."""
 
-    def change() -> None:
-        document.hold()
-        document.title = "changed"
-        events = list(document.callbacks._held_events)
-        caller = threading.Thread(target=call, args=("frame",))
-        caller.start()
-        caller.join()
-        document.callbacks._held_events = events
-        document.unhold()
+    async def scenario() -> None:
+        (session, _owner), seen = await new_session(), list[str]()
+        document = session.document
+        call = SessionCallbacks(document).latest(seen.append)
 
-    await session.with_document_locked(change)
-    await asyncio.sleep(0.05)
-    return seen
+        def change() -> None:
+            document.hold()
+            document.title = "changed"
+            events = list(document.callbacks._held_events)
+            caller = threading.Thread(target=call, args=("frame",))
+            caller.start()
+            caller.join()
+            document.callbacks._held_events = events
+            document.unhold()
 
+        await session.with_document_locked(change)
+        await wait_for(lambda: seen)
+        assert seen == ["frame"]
 
-def test_call_during_a_held_change_is_not_lost() -> None:
-    wrap = lambda document, function: SessionCallbacks(document).latest(function)  # noqa: E731
-    assert run_on_new_loop(lambda: call_during_a_held_change(wrap)) == ["frame"]
-
-
-def test_bokeh_loses_a_call_during_a_held_change() -> None:
-    """The reason for `SessionCallbacks`; when this fails, ``Document.locked_callback`` can take its place."""
-    wrap = lambda document, function: document.locked_callback(function, policy="latest")  # noqa: E731
-    assert run_on_new_loop(lambda: call_during_a_held_change(wrap)) == []
+    run_on_new_loop(scenario)
 
 
 def test_failed_call_does_not_stop_the_next(caplog: pytest.LogCaptureFixture) -> None:
@@ -134,14 +122,6 @@ def test_calls_after_the_session_are_dropped() -> None:
     document = run_on_new_loop(scenario)
     gc.collect()
     assert document() is None
-
-
-def test_calls_after_the_server_are_dropped() -> None:
-    async def scenario() -> Callable[..., Any]:
-        session, _owner = await new_session()
-        return SessionCallbacks(session.document).every(lambda value: None)
-
-    run_on_new_loop(scenario)(1)
 
 
 def test_functions_are_called_directly_without_a_session() -> None:

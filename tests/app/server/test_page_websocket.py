@@ -19,19 +19,17 @@ from bokeh.server.server import Server
 from bokeh.server.session import ServerSession
 from panel.io.application import Application
 from panel.io.state import set_curdoc
-from tornado.httpclient import AsyncHTTPClient
 from tornado.ioloop import IOLoop
 
 from app.bokeh_patches.batched_patches import batch_patches
 from app.bokeh_patches.inline_callbacks import call_inline
-from app.runtime import fair_share as fair_share_module
-from app.runtime import process_state as process_state_module
+from app.runtime.fair_share import BURST_SECONDS, SHARE
 from app.runtime.process_state import ProcessState
 from app.server.page_websocket import DELAYED_NOTICE, PageWebSocket
 from app.server.url_patterns import PageHandler
 from app.views.components.notice import Notice
-from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
+from tests.page_channel import Channel
 
 # More than the buffers of a connection hold.
 LONG = "x" * 8 * 2**20
@@ -40,11 +38,10 @@ PATTERNS = [("/?", PageHandler), ("/ws", PageWebSocket)]
 
 
 @pytest.fixture
-def state(monkeypatch: pytest.MonkeyPatch) -> ProcessState:
+def state(start_state: Callable[..., ProcessState], monkeypatch: pytest.MonkeyPatch) -> ProcessState:
     """The state of a process."""
     monkeypatch.setattr(bokeh_tornado, "per_app_patterns", PATTERNS)
-    monkeypatch.setattr(process_state_module, "_started", state := ProcessState())
-    return state
+    return start_state()
 
 
 def build(document: Document) -> None:
@@ -60,8 +57,7 @@ async def pages(count: int, make: Callable[[Document], None] = build) -> AsyncIt
     address, channels = f"http://127.0.0.1:{server.port}/app", []
     try:
         for _ in range(count):
-            page = await AsyncHTTPClient().fetch(address)
-            channels.append(await Channel.connect(address, page.body.decode()))
+            channels.append(await Channel.open(address))
             assert await receive(channels[-1], "ACK")
         yield channels[-1], server.get_sessions("/app")[-1].document
     finally:
@@ -105,12 +101,10 @@ async def move_slider(channel: Channel, document: Document) -> None:
     await receive(channel, "SERVER-INFO-REPLY")
 
 
-def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState, monkeypatch: pytest.MonkeyPatch) -> None:
-    # The page has to make up for at most this.
-    monkeypatch.setattr(fair_share_module, "BURST_SECONDS", 0.5 * fair_share_module.SHARE)
-
+def test_messages_of_a_page_beyond_its_share_wait(state: ProcessState) -> None:
     async def scenario(channel: Channel, document: Document) -> None:
-        state.fair_share(document).take(10.0)
+        # What has to be made up for takes half a second.
+        state.fair_share(document).take(BURST_SECONDS + 0.5 * SHARE)
         channel.set(slider_of(document).id, value=5)
         assert DELAYED_NOTICE in await receive(channel, "PATCH-DOC")
         assert slider_of(document).value == 0
@@ -137,9 +131,7 @@ def test_websockets_beyond_the_limits_are_closed(limit: str, state: ProcessState
     state.settings = replace(state.settings, **{limit: 2})
 
     async def scenario(channel: Channel, document: Document) -> None:
-        address = channel._socket.request.url.replace("ws://", "http://").removesuffix("/ws")
-        page = await AsyncHTTPClient().fetch(address)
-        third = await Channel.connect(address, page.body.decode())
+        third = await Channel.open(channel.address)
         assert [kind async for kind, _ in third.messages()] == []
         third.close()
         assert state.sockets == {"127.0.0.1": 2}
@@ -208,9 +200,7 @@ def test_a_socket_that_is_closed_while_it_is_opened_leaves_no_connection(
     async def scenario(channel: Channel, document: Document) -> None:
         monkeypatch.setattr(PageWebSocket, "_async_open", open_after_the_end)
         monkeypatch.setattr(PageWebSocket, "on_close", tell)
-        address = channel._socket.request.url.replace("ws://", "http://").removesuffix("/ws")
-        page = await AsyncHTTPClient().fetch(address)
-        (await Channel.connect(address, page.body.decode())).close()
+        (await Channel.open(channel.address)).close()
         await opened.wait()
         sessions = document.session_context.server_context.sessions
         assert sum(session.connection_count for session in sessions) == 1

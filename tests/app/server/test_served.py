@@ -23,8 +23,8 @@ import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 
 from app.browser.module_files import ADDRESS
-from benchmarks.simulated_sessions import Channel
 from tests.app.other_loop import run_on_new_loop
+from tests.page_channel import Channel
 
 ROOT = Path(__file__).parents[3]
 START_SECONDS = 240
@@ -85,22 +85,19 @@ def serving(log: Path, *command: str) -> Iterator[Served]:
         process.wait(30)
 
 
-PANEL = ("panel", "serve", "app")
-
-
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    with serving(tmp_path_factory.mktemp("served") / "log", *PANEL) as server:
-        server.wait_for("/liveness", 200)
-        yield server
-
-
-@pytest.fixture
 def _default_sigint() -> Iterator[None]:
     """Processes started in the background ignore SIGINT, and so would the server."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory, _default_sigint: None) -> Iterator[Served]:
+    with serving(tmp_path_factory.mktemp("served") / "log", "cli", "serve") as server:
+        server.wait_for("/liveness", 200)
+        yield server
 
 
 def test_server_answers_during_compilation_and_is_ready_afterwards(served: Served) -> None:
@@ -110,14 +107,14 @@ def test_server_answers_during_compilation_and_is_ready_afterwards(served: Serve
     assert served.metric("kernels_ready") == 1
 
 
-@pytest.mark.parametrize("path", ["/status", "/metrics", "/readiness", "/nothing", "/static/js/bokeh.min.js"])
-def test_responses_have_security_headers(served: Served, path: str) -> None:
-    _, _, headers = served.get(path)
-    assert headers["Content-Security-Policy"].startswith("default-src 'self'; ")
-    assert headers["X-Content-Type-Options"] == "nosniff"
-    assert headers["Referrer-Policy"]
-    assert headers["Permissions-Policy"]
-    assert "Server" not in headers
+def test_responses_have_security_headers(served: Served) -> None:
+    for path in ("/status", "/metrics", "/readiness", "/nothing", "/static/js/bokeh.min.js"):
+        _, _, headers = served.get(path)
+        assert headers["Content-Security-Policy"].startswith("default-src 'self'; "), path
+        assert headers["X-Content-Type-Options"] == "nosniff", path
+        assert headers["Referrer-Policy"], path
+        assert headers["Permissions-Policy"], path
+        assert "Server" not in headers, path
 
 
 def test_modules_of_the_engine_in_the_browser_can_be_kept(served: Served) -> None:
@@ -135,15 +132,16 @@ def test_metrics_are_shown_for_prometheus_and_as_a_table(served: Served) -> None
     assert "Open sessions" in served.get("/status")[1]
 
 
-@pytest.mark.parametrize("module", ["unittest.__main__", "venv.__main__", "cli.__main__", "antigravity"])
-def test_addresses_import_no_module(module: str, served: Served) -> None:
-    assert served.get(f"/components/{module}/x/_css/x")[0] == 404
-    assert served.get("/liveness")[0] == 200
-
-
-@pytest.mark.parametrize("path", ["/app/autoload.js?bokeh-autoload-element=x", "/app/metadata", "/app/", "/session_info"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/app/autoload.js?bokeh-autoload-element=x", "/app/metadata", "/app/", "/session_info", "//app", "/static/%00",
+        *(f"/components/{module}/x/_css/x" for module in ("unittest.__main__", "cli.__main__", "antigravity")),
+    ],
+)  # fmt: skip
 def test_routes_that_the_page_does_not_need_are_refused(path: str, served: Served) -> None:
     assert served.get(path)[0] == 404
+    assert served.get("/liveness")[0] == 200
     assert served.metric("sessions_created_total") == 0
 
 
@@ -197,37 +195,32 @@ def test_websocket_of_another_origin_is_refused(served: Served) -> None:
     assert upgrade(served, token[1], f"http://localhost:{served.port}") == 101
 
 
-def test_server_stops_within_five_seconds_during_a_computation(served: Served) -> None:
-    run_on_new_loop(lambda: stop_during_a_map(served, signal.SIGTERM))
+def check_stop(served: Served, number: signal.Signals) -> None:
+    """A signal ends the server within five seconds, with a whole log."""
+    run_on_new_loop(lambda: stop_during_a_map(served, number))
     assert served.process.wait(30) == 0
     assert time.monotonic() - served.stopped_at < 5.0
-
-
-def test_log_is_json_without_tracebacks(served: Served) -> None:
     check_log(served)
 
 
-@pytest.mark.usefixtures("_default_sigint")
-@pytest.mark.parametrize(
-    "command",
-    [pytest.param(PANEL, marks=pytest.mark.slow, id="panel serve"), pytest.param(("cli", "serve"), id="escape-explorer serve")],
-)
-def test_ctrl_c_stops_the_server_during_a_computation(tmp_path: Path, command: tuple[str, ...]) -> None:
-    with serving(tmp_path / "log", *command) as server:
+def test_ctrl_c_stops_the_server_during_a_computation(served: Served) -> None:
+    check_stop(served, signal.SIGINT)
+
+
+@pytest.mark.slow
+def test_the_end_of_a_service_stops_panel_during_a_computation(tmp_path: Path) -> None:
+    with serving(tmp_path / "log", "panel", "serve", "app") as server:
         server.wait_for("/liveness", 200)
         server.pages = [server.get(f"/app?{urlencode(LONG_MAP)}")[1]]
-        run_on_new_loop(lambda: stop_during_a_map(server, signal.SIGINT))
-        assert server.process.wait(30) == 0
-        assert time.monotonic() - server.stopped_at < 5.0
-        assert "Traceback" not in server.log.read_text()
-        check_log(server)
+        check_stop(server, signal.SIGTERM)
 
 
 def check_log(served: Served) -> None:
     """The last record is that of the stop, and no record has a traceback."""
-    lines = [line for line in served.log.read_text().splitlines() if line.startswith("{")]
-    records = [json.loads(line) for line in lines]
+    text = served.log.read_text()
+    records = [json.loads(line) for line in text.splitlines() if line.startswith("{")]
     assert records[-1]["message"] == "stopping"
+    assert "Traceback" not in text
     assert [record for record in records if "traceback" in record] == []
 
 

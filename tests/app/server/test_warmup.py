@@ -5,7 +5,6 @@ from __future__ import annotations
 from app.runtime.process_state import ProcessState
 from app.server.warmup import STEPS, start_warmup
 from app.state.view_state import ViewState
-from engine import CASES
 
 
 def fail() -> None:
@@ -36,8 +35,3 @@ def test_shutdown_ends_the_warmup_before_the_next_step() -> None:
 def test_the_map_of_the_opened_page_comes_first() -> None:
     first, *_ = STEPS
     assert first == f"the kernels of case {ViewState().case} for maps"
-
-
-def test_maps_of_all_cases_come_before_other_kernels() -> None:
-    purposes = [name.rpartition(" for ")[2] for name in STEPS if " for " in name]
-    assert purposes == [purpose for purpose in ("maps", "certificates", "orbits and analyses") for _ in CASES]

@@ -13,9 +13,9 @@ def locked_by(changed: threading.Condition) -> Locked:
     """Runs functions under a condition, and notifies those that wait for it."""
 
     def locked(function: Callable[..., None]) -> Callable[..., None]:
-        def call(*arguments: Any) -> None:
+        def call(*arguments: Any, **named: Any) -> None:
             with changed:
-                function(*arguments)
+                function(*arguments, **named)
                 changed.notify_all()
 
         return call

@@ -99,52 +99,29 @@ def begin(open_sessions: list[Session], jobs: Jobs) -> Callable[..., Session]:
     return begin_session
 
 
-def test_nothing_is_requested_by_default(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin()
-    session.show(frame)
-    assert session.jobs.in_flight == 0
-
-
-def test_doubtful_pixels_are_marked_and_counted(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_doubtful_pixels_are_marked_until_they_are_switched_off_or_the_map_is_another(
+    begin: Callable[..., Session], frame: EscapeMap
+) -> None:
     session = begin(trust=True)
     session.show(frame)
     session.wait_for(lambda: session.analyses.trust is not None)
     trust = session.analyses.trust
     assert trust is not None
-    marks = session.maps.overlays.doubts.data["doubt"][0]
-    np.testing.assert_array_equal(marks > 0, trust.trust == Trust.DOUBTFUL)
+    marks = session.maps.overlays.doubts
+    np.testing.assert_array_equal(marks.data["doubt"][0] > 0, trust.trust == Trust.DOUBTFUL)
     assert "doubtful" in session.presenter.notes.object
-
-
-def test_marks_are_removed_when_they_are_switched_off(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(trust=True)
+    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (112, 112), t_max=1e3))
+    assert (session.analyses, marks.data["doubt"]) == (MapAnalyses(), [])
     session.show(frame)
     session.wait_for(lambda: session.analyses.trust is not None)
     session.state.trust = False
-    assert session.maps.overlays.doubts.data["doubt"] == []
-    assert session.analyses == MapAnalyses()
-    assert session.presenter.notes.object == ""
+    assert (session.analyses, marks.data["doubt"], session.presenter.notes.object) == (MapAnalyses(), [], "")
 
 
-def test_analyses_are_removed_with_their_map(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(trust=True)
-    session.show(frame)
-    session.wait_for(lambda: session.analyses.trust is not None)
-    session.presenter.begin(MapSpec(CASES["II"], Plane.X_PX, 0.26, (112, 112), t_max=1e3))
-    assert session.analyses == MapAnalyses()
-    assert session.maps.overlays.doubts.data["doubt"] == []
-
-
-def test_manifolds_are_drawn_over_the_section(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(manifolds=True)
-    session.show(frame)
-    session.wait_for(lambda: session.analyses.manifolds is not None)
-    assert session.analyses.manifolds is not None
-    assert len(session.maps.overlays.manifolds.data["xs"]) == len(session.analyses.manifolds.arcs) > 0
-
-
-def test_one_image_of_the_manifolds_is_drawn_and_downloaded(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_manifolds_are_drawn_over_their_section_all_or_one_image(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(manifolds=True, images=1)
+    session.show(compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.25, (16, 16), t_max=100.0)))
+    assert session.jobs.in_flight == 0
     session.show(frame)
     session.wait_for(lambda: session.analyses.manifolds is not None)
     numbers = []
@@ -155,43 +132,32 @@ def test_one_image_of_the_manifolds_is_drawn_and_downloaded(begin: Callable[...,
         assert {arc.image for arc in shown} == ({image} if image else {1, 2, 3})
         numbers.append(len(shown))
         assert len(session.maps.overlays.manifolds.data["xs"]) == len(shown)
-    assert numbers[0] < numbers[1] < numbers[2]
+    assert 0 < numbers[0] < numbers[1] < numbers[2]
 
 
-def test_no_manifolds_are_requested_on_other_planes(begin: Callable[..., Session]) -> None:
-    session = begin(manifolds=True)
-    session.show(compute_map(MapSpec(CASES["II"], Plane.X_Y, 0.25, (16, 16), t_max=100.0)))
-    assert session.jobs.in_flight == 0
-
-
-def test_origins_have_a_picture_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(origins=True)
+def test_origins_and_regularity_have_pictures_while_they_are_switched_on(begin: Callable[..., Session], frame: EscapeMap) -> None:
+    session = begin(origins=True, judge=True)
     session.maps.show(frame, {**session.maps.source.data})
     session.show(frame)
-    session.wait_for(lambda: session.analyses.origins is not None)
+    session.wait_for(lambda: session.analyses.origins is not None and session.analyses.regularity is not None)
     assert session.maps.source.data["passage"][0].shape == frame.fate.shape
     grid = session.maps.grid.layout()
     pictures = len(grid.objects)
     session.state.origins = False
     assert len(grid.objects) == pictures - 1
+    session.state.judge = False
+    assert session.analyses == MapAnalyses()
 
 
-def test_basins_are_measured_and_laws_are_fitted(begin: Callable[..., Session], frame: EscapeMap) -> None:
+def test_basins_are_measured_and_laws_are_fitted_in_the_box(begin: Callable[..., Session], frame: EscapeMap) -> None:
     session = begin(analysis=Analysis.MEASURES)
     session.show(frame)
-    text = session.presenter.measures.text
-    session.wait_for(lambda: all(name in text.object for name in ("Basin entropy", "Wada", "Escape law")))
-    assert len(session.presenter.measures.steps.data["t"]) > 10
-
-
-def test_laws_follow_the_box(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(analysis=Analysis.MEASURES)
-    session.show(frame)
-    steps = session.presenter.measures.steps
-    session.wait_for(lambda: len(steps.data["t"]) > 10)
-    whole = float(steps.data["share"][0])
+    measures = session.presenter.measures
+    session.wait_for(lambda: all(name in measures.text.object for name in ("Basin entropy", "Wada", "Escape law")))
+    assert len(measures.steps.data["t"]) > 10
+    whole = float(measures.steps.data["share"][0])
     session.state.box = Window(-0.2, 0.3, -0.2, 0.2)
-    session.wait_for(lambda: len(steps.data["t"]) > 0 and float(steps.data["share"][0]) != whole)
+    session.wait_for(lambda: len(measures.steps.data["t"]) > 0 and float(measures.steps.data["share"][0]) != whole)
 
 
 @pytest.mark.slow
@@ -218,7 +184,7 @@ def test_another_map_cancels_the_measurement_of_the_exponent(begin: Callable[...
     assert session.jobs.in_flight == 0
 
 
-def test_curves_arrive_energy_by_energy_and_can_be_stopped(begin: Callable[..., Session]) -> None:
+def test_curves_arrive_one_by_one_stop_at_a_click_and_end_with_their_case(begin: Callable[..., Session]) -> None:
     session = begin(analysis=Analysis.ENERGIES)
     curves = session.presenter.curves
     curves.button.clicks += 1
@@ -228,39 +194,13 @@ def test_curves_arrive_energy_by_energy_and_can_be_stopped(begin: Callable[..., 
     assert not curves.running
     assert session.jobs.in_flight == 0
     assert f"of {SWEPT_VALUES + REFINED_VALUES}" in curves.text.object
-
-
-def test_another_case_removes_the_curves(begin: Callable[..., Session]) -> None:
-    session = begin(analysis=Analysis.ENERGIES)
-    curves = session.presenter.curves
-    curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["value"]) >= 1)
+    energies = np.sort(curves.points.data["value"])
+    curves.open_near(float(energies[1]) + 1e-4)
+    assert (session.state.energy, session.state.plane) == (energies[1], Plane.X_PX)
     session.state.param.update(case="III", energy=0.4)
-    assert not curves.running
     assert len(curves.points.data["value"]) == 0
     curves.open_near(0.3)
     assert session.state.energy == 0.4
-
-
-def test_regularity_is_removed_when_it_is_switched_off(begin: Callable[..., Session], frame: EscapeMap) -> None:
-    session = begin(judge=True)
-    session.show(frame)
-    session.wait_for(lambda: session.analyses.regularity is not None)
-    session.state.judge = False
-    assert session.analyses == MapAnalyses()
-
-
-@pytest.mark.slow
-def test_a_click_on_a_curve_opens_the_nearest_energy(begin: Callable[..., Session]) -> None:
-    session = begin(analysis=Analysis.ENERGIES)
-    curves = session.presenter.curves
-    curves.button.clicks += 1
-    session.wait_for(lambda: len(curves.points.data["value"]) >= 2)
-    curves.button.clicks += 1
-    energies = np.sort(curves.points.data["value"])
-    curves.open_near(float(energies[1]) + 1e-4)
-    assert session.state.energy == energies[1]
-    assert session.state.plane is Plane.X_PX
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from app.views.maps.markers import Markers
 from app.views.maps.well import WellView
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.jobs.manager import Jobs
+from tests.app.session.session_lock import locked_by
 
 
 class RecordingMarkers(Markers):
@@ -34,29 +35,28 @@ class Session:
     def __init__(self, plane: Slice) -> None:
         self.changed = threading.Condition()
         self.state, self.marks = ViewState(case="I", energy=0.19, t_max=1e3, plane=plane), RecordingMarkers()
-        self.drawn = False
+        self.well = WellView()
         self.opened: list[tuple[System, dict[str, Any]]] = []
         self.presenter = OrbitPresenter(
             self.state,
             Jobs(),
             self.marks,
-            WellView(),
+            self.well,
             lambda x, ordinate: None,
             lambda orbits: None,
             lambda text: None,
             lambda system, values: self.opened.append((system, values)),
-            self.locked,
-            self.locked,
+            locked_by(self.changed),
+            locked_by(self.changed),
         )
 
-    def locked(self, function: Callable[..., None]) -> Callable[..., None]:
-        def call(*arguments: Any) -> None:
-            with self.changed:
-                function(*arguments)
-                self.drawn = any(orbit.drawing is not None for orbit in self.presenter._shown)
-                self.changed.notify_all()
+    def has_paths(self) -> bool:
+        sources = [each.data_source for each in self.well.plot.renderers]
+        return any(source.name == "paths" and len(source.data["xs"]) for source in sources)
 
-        return call
+    def wait_for_paths(self) -> None:
+        with self.changed:
+            assert self.changed.wait_for(self.has_paths, 60.0)
 
 
 @pytest.fixture
@@ -76,23 +76,29 @@ def begin() -> Iterator[Callable[[Slice], Session]]:
 def test_section_points_are_shown_on_their_plane_only(begin: Callable[[Slice], Session], plane: Plane, on_section: bool) -> None:
     session = begin(plane)
     session.state.add_start((-0.3, 0.0))
-    with session.changed:
-        assert session.changed.wait_for(lambda: session.drawn, 60.0)
-        assert [points > 0 for points in session.marks.points] == [on_section]
+    session.wait_for_paths()
+    assert [points > 0 for points in session.marks.points] == [on_section]
 
 
-def test_an_orbit_along_a_parameter_opens_the_section_of_its_system(begin: Callable[[Slice], Session]) -> None:
-    session = begin(Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))))
-    session.state.add_start((0.1, 1.5))
-    session.presenter._open_plane()
+@pytest.mark.parametrize(
+    ("plane", "start", "expected", "energy"),
+    [
+        (
+            Slice(Coordinate.X, ParameterAxis("epsilon", 0.5, 2.0, System("I"))),
+            (0.1, 1.5),
+            System("I", parameters={"epsilon": 1.5}),
+            0.19,
+        ),
+        (Plane.X_H, (0.1, 0.25), System("I"), 0.25),
+    ],
+    ids=["parameter", "energy"],
+)
+def test_an_orbit_opens_the_section_of_its_system_at_its_energy(
+    begin: Callable[[Slice], Session], plane: Slice, start: tuple[float, float], expected: System, energy: float
+) -> None:
+    session = begin(plane)
+    session.state.add_start(start)
+    session.presenter.controls.open_plane.clicks += 1
     [(system, values)] = session.opened
-    assert system == System("I", parameters={"epsilon": 1.5})
-    assert (values["plane"], values["energy"], values["starts"]) == (Plane.X_PX, 0.19, ((0.1, 0.0),))
-
-
-def test_an_orbit_on_h_opens_the_section_at_its_energy(begin: Callable[[Slice], Session]) -> None:
-    session = begin(Plane.X_H)
-    session.state.add_start((0.1, 0.25))
-    session.presenter._open_plane()
-    [(system, values)] = session.opened
-    assert (system, values["energy"], values["starts"]) == (System("I"), 0.25, ((0.1, 0.0),))
+    assert system == expected
+    assert (values["plane"], values["energy"], values["starts"]) == (Plane.X_PX, energy, ((0.1, 0.0),))

@@ -11,26 +11,21 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from bokeh.application import Application
-from bokeh.application.handlers import FunctionHandler
-from bokeh.document import Document
-from bokeh.server.contexts import ApplicationContext
 from bokeh.server.session import ServerSession
-from panel.io.state import set_curdoc
-from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 
 from app.session.explorer import Explorer
-from app.session.page import explorer_page
 from app.state.view_state import LAYERS, Analysis
 from app.views.components.analysis_choice import LAYER_LABELS
 from app.views.maps.map_toolbar import Drag
 from engine import Plane
+from tests.app.browser_messages import send
 from tests.app.other_loop import run_on_new_loop
+from tests.app.session.opened_page import opened_page
 
 CHANGES: list[Callable[[Explorer], Any]] = [
     # Moves the markers of the orbit plots.
-    lambda explorer: explorer.orbits.playback.player._on_step(10),
-    lambda explorer: explorer.controls.exact_energy._receive({"number": 0.3, "typed": 1}),
+    lambda explorer: send(explorer.orbits.playback.player, {"step": 10, "begin": 0, "end": 10}),
+    lambda explorer: send(explorer.controls.exact_energy, {"number": 0.3, "typed": 1}),
     lambda explorer: explorer.controls.case.param.update(value="II"),
     lambda explorer: explorer.controls.plane.param.update(value=Plane.X_Y),
     # As the lists do.
@@ -57,37 +52,27 @@ async def run_callbacks(session: ServerSession) -> None:
         await asyncio.sleep(0.01)
 
 
-async def with_session(change: Callable[[Explorer], Any]) -> None:
-    """Call a function with the explorer of a new session as current one, without its lock."""
-    built: list[Explorer] = []
+def with_page(change: Callable[[Explorer], Any]) -> None:
+    """Call a function with the explorer of a page that shows orbits, without its lock."""
 
-    def build(document: Document) -> None:
-        with set_curdoc(document):
-            built.append(Explorer())
-            built[0].orbits.inspector.follow(2, 2)
-            built[0].orbits.playback.follow((0.0, 10.0))
-            explorer_page(built[0]).server_doc(document)
+    def show_orbits(explorer: Explorer) -> None:
+        explorer.orbits.inspector.follow(2, 2)
+        explorer.orbits.playback.follow((0.0, 10.0))
 
-    context = ApplicationContext(Application(FunctionHandler(build)))
-    context._can_initialize_document_in_worker = lambda: False  # type: ignore[method-assign]
-    headers = HTTPHeaders({"Host": "localhost"})
-    request = HTTPServerRequest(start_line=RequestStartLine("GET", "/app", "HTTP/1.1"), headers=headers)
-    session = await context.create_session_if_needed("session", request)  # type: ignore[arg-type]
-    [explorer] = built
-    try:
-        await run_callbacks(session)
-        with set_curdoc(session.document):
+    async def run() -> None:
+        async with opened_page(prepare=show_orbits) as (explorer, session):
+            await run_callbacks(session)
             change(explorer)
-        await run_callbacks(session)
-    finally:
-        explorer.close()
+            await run_callbacks(session)
+
+    run_on_new_loop(run)
 
 
 def test_widget_changes_need_no_lock(caplog: pytest.LogCaptureFixture) -> None:
-    run_on_new_loop(lambda: with_session(lambda explorer: [change(explorer) for change in CHANGES]))
+    with_page(lambda explorer: [change(explorer) for change in CHANGES])
     assert [record for record in caplog.records if record.exc_info] == []
 
 
 def test_bare_models_need_the_lock() -> None:
     with pytest.raises(RuntimeError, match="document lock"):
-        run_on_new_loop(lambda: with_session(lambda explorer: explorer.orbits.plots.set_time(1.0)))
+        with_page(lambda explorer: explorer.orbits.plots.set_time(1.0))

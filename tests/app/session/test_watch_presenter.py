@@ -16,6 +16,7 @@ from app.state.watched_starts import StartsFrom, WatchedStarts
 from engine import CASES, Plane, compute_flux
 from engine.jobs.manager import Jobs
 from engine.warmup import prepare_for_maps
+from tests.app.browser_messages import send
 from tests.app.session.session_lock import locked_by
 
 
@@ -31,7 +32,7 @@ class Session:
         self.player = player
 
     def send(self, **choice: Any) -> None:
-        self.presenter._take({"where": "view", "count": 1000, "seed": 4, "radius": -3, **choice})
+        send(self.player, {"where": "view", "count": 1000, "seed": 4, "radius": -3, **choice})
 
 
 @pytest.fixture(scope="module")
@@ -50,14 +51,10 @@ def session(jobs: Jobs) -> Iterator[Session]:
     ("case", "missing"), [("III", set[str]()), ("Earth-Moon", {"tubes"}), ("Copenhagen", {"exits", "tubes"})]
 )
 def test_starts_are_offered_where_a_system_has_them(session: Session, case: str, missing: set[str]) -> None:
-    session.state.show_system(review_catalogue_entry(case))
-    assert set(StartsFrom) - set(session.player.places) == missing
-
-
-def test_starts_that_a_system_does_not_have_are_replaced(session: Session) -> None:
     session.state.watched = WatchedStarts(StartsFrom.TUBES)
-    session.state.show_system(review_catalogue_entry("Earth-Moon"))
-    assert session.player.where == StartsFrom.WELL
+    session.state.show_system(review_catalogue_entry(case))
+    assert session.player.where == (StartsFrom.WELL if "tubes" in missing else StartsFrom.TUBES)
+    assert set(StartsFrom) - set(session.player.places) == missing
 
 
 def test_the_player_has_the_choices_of_the_state(session: Session) -> None:
@@ -69,17 +66,13 @@ def test_the_player_has_the_choices_of_the_state(session: Session) -> None:
     assert player.point == []
 
 
-def test_a_choice_in_the_browser_changes_the_state(session: Session) -> None:
+def test_choices_of_the_browser_change_the_state_and_other_messages_nothing(session: Session) -> None:
+    wrong = [{"where": "moon"}, {"count": 7}, {"seed": -1}, {"radius": 3}, {"radius": None}, {"count": "1"}]
+    for change in wrong:
+        session.send(**change)
+    assert session.state.watched == WatchedStarts()
     session.send()
     assert session.state.watched == WatchedStarts(StartsFrom.VIEW, 1000, 4, -3.0)
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"where": "moon"}, {"count": 7}, {"seed": -1}, {"radius": 3}, {"radius": None}, {"count": "1"}]
-)
-def test_messages_that_are_not_expected_change_nothing(session: Session, wrong: dict[str, Any]) -> None:
-    session.send(**wrong)
-    assert session.state.watched == WatchedStarts()
 
 
 def test_the_player_gets_the_rate_of_mixed_motion(session: Session) -> None:

@@ -6,15 +6,9 @@ import re
 
 import pytest
 
-from app.state.glossary import GLOSSARY, glossary_list, with_terms
-from engine import CASES, EscapeMap, MapSpec, compute_basin_entropy, compute_map
+from app.state.glossary import GLOSSARY, with_terms
 
 BUTTON = re.compile(r"<button[^>]* popovertarget='([^']*)'>([^<]*)</button>")
-
-
-@pytest.fixture(scope="module")
-def escape_map() -> EscapeMap:
-    return compute_map(MapSpec(CASES["II"], "x_px", 0.2, (40, 40), t_max=100.0))
 
 
 @pytest.mark.parametrize("term", GLOSSARY)
@@ -37,12 +31,3 @@ def test_the_longest_term_is_explained() -> None:
 @pytest.mark.parametrize("text", ["<i title='SALI'>x</i>", "SALIent", "uncertified", "no terms"])
 def test_other_text_stays_as_it_is(text: str) -> None:
     assert with_terms(text) == text
-
-
-def test_the_terms_of_the_entropy_are_those_of_the_measure(escape_map: EscapeMap) -> None:
-    labels = [label for _, label in BUTTON.findall(with_terms(compute_basin_entropy(escape_map).describe()))]
-    assert labels == ["S_b", "S_bb"]
-
-
-def test_the_list_has_all_terms() -> None:
-    assert all(f"<dt>{term}</dt>" in glossary_list() for term in GLOSSARY)

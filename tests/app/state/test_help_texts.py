@@ -12,16 +12,9 @@ from app.views.maps.map_plots import MAPS
 from app.views.orbits.orbit_plots import TITLES as ORBITS
 
 
-def test_every_picture_has_a_help_text() -> None:
-    assert {"well", *MAPS} <= set(HELP_TEXTS)
-
-
-def test_every_plot_has_a_help_text() -> None:
-    assert {*ORBITS, "separation", "histogram", "probabilities"} <= set(HELP_TEXTS)
-
-
-def test_every_measure_has_a_help_text() -> None:
-    assert {"uncertainty", "survival", "watch", *CURVES} <= set(HELP_TEXTS)
+def test_every_picture_plot_and_measure_has_a_help_text() -> None:
+    plots = {*ORBITS, "separation", "histogram", "probabilities", "uncertainty", "survival", "watch", *CURVES}
+    assert {"well", *MAPS} | plots <= set(HELP_TEXTS)
 
 
 @pytest.mark.parametrize("name", HELP_TEXTS)

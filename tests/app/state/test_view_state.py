@@ -11,29 +11,10 @@ from engine.potentials.catalogue import PAPER_ENERGIES
 from plots.palette import MOST_ORBITS
 
 
-def test_the_map_has_the_chosen_parameters() -> None:
-    spec = ViewState(case="III", plane=Plane.X_Y, energy=0.45, t_max=1e3, resolution=112).map_spec()
-    assert (spec.potential, spec.plane, spec.energy, spec.resolution, spec.t_max) == (
-        CASES["III"],
-        Plane.X_Y,
-        0.45,
-        (112, 112),
-        1e3,
-    )
-
-
 @pytest.mark.parametrize("case", list(CASES))
 def test_the_energy_plane_spans_from_the_escape_energy_to_the_end_of_the_slider(case: str) -> None:
     spec = ViewState(case=case, plane=Plane.X_H).map_spec()
     assert spec.energy == (CASES[case].escape_energy, PAPER_ENERGIES[case].high)
-
-
-def test_a_start_gets_its_py_from_the_energy() -> None:
-    job = ViewState(case="I", plane=Plane.X_PX, energy=0.2).orbit_job((0.1, 0.05))
-    assert job is not None
-    _, state, _ = job.arguments
-    assert state[:3] == (0.1, 0.0, 0.05)
-    assert CASES["I"].energy(np.array(state)) == pytest.approx(0.2, abs=1e-15)
 
 
 def test_on_the_energy_plane_the_ordinate_is_the_energy() -> None:
@@ -50,17 +31,11 @@ def starts_of(count: int) -> list[tuple[float, float]]:
     return [(0.01 * k, 0.0) for k in range(count)]
 
 
-def test_a_new_start_is_the_last_and_chosen() -> None:
+def test_a_new_start_is_chosen_and_one_beyond_the_maximal_number_is_refused() -> None:
     view = ViewState()
-    for start in starts_of(3):
-        view.add_start(start)
-        assert view.chosen_start == start
-    assert view.starts == tuple(starts_of(3))
-
-
-def test_a_start_beyond_the_maximal_number_is_refused() -> None:
-    view = ViewState()
+    assert view.chosen_start is None
     added = [view.add_start(start) for start in starts_of(MOST_ORBITS + 1)]
+    assert view.chosen_start == starts_of(MOST_ORBITS)[-1]
     assert added == [True] * MOST_ORBITS + [False]
     assert view.starts == tuple(starts_of(MOST_ORBITS))
 
@@ -78,12 +53,6 @@ def test_after_a_removal_another_start_is_chosen(place: int, chosen: int) -> Non
     view.remove_start(place)
     assert len(view.starts) == 2
     assert view.chosen == chosen
-
-
-def test_without_starts_none_is_chosen() -> None:
-    view = ViewState(starts=tuple(starts_of(1)))
-    view.remove_start(0)
-    assert view.chosen_start is None
 
 
 @pytest.mark.parametrize("case", list(CASES))

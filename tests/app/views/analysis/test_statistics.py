@@ -26,22 +26,9 @@ def view(frame: EscapeMap) -> StatisticsView:
     return view
 
 
-def test_nothing_is_counted_before_the_statistics_are_shown(view: StatisticsView) -> None:
-    assert view.table.object == ""
-
-
-def test_the_whole_view_or_a_box_is_counted(view: StatisticsView, frame: EscapeMap) -> None:
-    view.activate(True)
-    whole, part = compute_statistics(frame), compute_statistics(frame, BOX)
-    assert whole.shares[1] != part.shares[1]
-    for box, statistics, place in ((None, whole, "the whole view"), (BOX, part, "the box"), (None, whole, "the whole view")):
-        view.show_box(box)
-        assert f"Interior starts in {place}" in view.table.object
-        assert percent(statistics.shares[1], 2) in view.table.object
-        assert view.whole.visible == (box is not None)
-
-
 def test_the_charts_count_every_escape(view: StatisticsView, frame: EscapeMap) -> None:
+    # Nothing is counted before it is shown.
+    assert view.table.object == ""
     view.activate(True)
     statistics = compute_statistics(frame)
     assert view._times.handles["source"].data["top"].sum() == statistics.escaped

@@ -4,41 +4,39 @@ from __future__ import annotations
 
 from app.state.view_state import LAYERS, Analysis, ViewState
 from app.views.components.analysis_choice import ANALYSIS_LABELS, LAYER_LABELS, AnalysisTabs, LayerSwitches
+from app.views.components.widgets import SegmentedControl
 
 
-def test_there_is_a_labelled_switch_for_each_layer() -> None:
-    switches = LayerSwitches(ViewState()).switches
-    assert list(switches) == list(LAYERS) == list(LAYER_LABELS)
-    assert [switch.options for switch in switches.values()] == [[label] for label in LAYER_LABELS.values()]
-
-
-def test_a_switch_changes_the_state() -> None:
-    state = ViewState()
-    LayerSwitches(state).switches["trust"].value = [LAYER_LABELS["trust"]]
-    assert [name for name in LAYERS if getattr(state, name)] == ["trust"]
-
-
-def test_the_switches_follow_the_state() -> None:
+def test_there_is_a_labelled_switch_for_each_layer_that_changes_the_state_and_follows_it() -> None:
     state = ViewState(judge=True)
-    layers = LayerSwitches(state)
-    assert [name for name, switch in layers.switches.items() if switch.value] == ["judge"]
+    switches = LayerSwitches(state).switches
+    assert list(switches) == list(LAYERS) == list(LAYER_LABELS)
+    assert [name for name, switch in switches.items() if switch.value] == ["judge"]
     state.param.update(judge=False, manifolds=True)
-    assert [name for name, switch in layers.switches.items() if switch.value] == ["manifolds"]
+    assert [name for name, switch in switches.items() if switch.value] == ["manifolds"]
+    switches["trust"].value = [LAYER_LABELS["trust"]]
+    assert [name for name in LAYERS if getattr(state, name)] == ["trust", "manifolds"]
 
 
-def test_there_is_a_labelled_tab_for_each_analysis() -> None:
-    assert list(AnalysisTabs(ViewState()).tabs.options.values()) == list(Analysis) == list(ANALYSIS_LABELS)
-
-
-def test_a_tab_changes_the_state() -> None:
-    state = ViewState()
-    AnalysisTabs(state).tabs.value = Analysis.MEASURES
+def test_there_is_a_labelled_tab_for_each_analysis_that_changes_the_state_and_follows_it() -> None:
+    state = ViewState(analysis=Analysis.ENERGIES)
+    tabs = AnalysisTabs(state).tabs
+    assert list(tabs.options.values()) == list(Analysis) == list(ANALYSIS_LABELS)
+    assert tabs.value is Analysis.ENERGIES
+    tabs.value = Analysis.MEASURES
     assert state.analysis is Analysis.MEASURES
 
 
-def test_the_tabs_follow_the_state() -> None:
-    state = ViewState(analysis=Analysis.ENERGIES)
-    tabs = AnalysisTabs(state).tabs
-    assert tabs.value is Analysis.ENERGIES
-    state.analysis = Analysis.STATISTICS
-    assert tabs.value is Analysis.STATISTICS
+def test_the_image_of_the_manifolds_can_be_chosen_while_they_are_on() -> None:
+    state = ViewState()
+    layers = LayerSwitches(state)
+    assert layers.parts() == [*layers.switches.values()]
+    state.manifolds = True
+    images = layers.parts()[-1]
+    assert isinstance(images, SegmentedControl)
+    images.value = 2
+    assert state.images == 2
+    state.images = 0
+    assert images.value == 0
+    state.manifolds = False
+    assert layers.parts() == [*layers.switches.values()]

@@ -29,6 +29,8 @@ def test_a_warning_is_text_in_an_alert_until_it_is_cleared() -> None:
 
 def test_the_server_finds_the_notice_in_a_document() -> None:
     document = Document()
+    # Without a notice it is left alone.
+    show_lasting_notice(document, "restart")
     pn.Column(Notice().layout()).server_doc(document)
     show_lasting_notice(document, "<i>restart</i>")
     assert "restart" in document.get_model_by_name(NAME).text
@@ -43,7 +45,3 @@ def test_a_passing_notice_of_the_server_can_be_shown_twice() -> None:
         texts.add(document.get_model_by_name(NAME).text)
     assert len(texts) == 2
     assert all("notice passing" in text for text in texts)
-
-
-def test_a_document_without_a_notice_is_left_alone() -> None:
-    show_lasting_notice(Document(), "restart")

@@ -59,10 +59,6 @@ def test_the_button_stops_and_continues() -> None:
     assert (view.button.label, view.button.styles["visibility"]) == (CONTINUE, "visible")
     view.button.clicks += 1
     assert calls == ["cancel", "resume"]
-
-
-def test_without_a_map_there_is_neither_text_nor_button() -> None:
-    view, _ = make_view()
     view.start()
     view.fail()
     assert (view.text.object, view.button.styles["visibility"], view.bar.styles["opacity"]) == ("", "hidden", "0")

@@ -37,20 +37,18 @@ def test_exits_and_outcomes_have_the_colours_of_the_palette(palette: Palette) ->
     assert {colours[word] == palette.outcomes[fate].colour for fate, word in words.items()} == {True}
 
 
-def test_only_outcomes_that_the_map_has_are_named() -> None:
+def test_only_outcomes_that_the_map_has_are_named_and_short_labels_have_the_whole_ones_as_titles() -> None:
     labels = [label for label, _ in entries(map_legend("basins", described(fates=frozenset({int(Fate.BOUNDED)})), []))]
     assert labels == ["1", "2", "3", "bounded"]
-
-
-def test_a_short_label_has_the_whole_one_as_its_title() -> None:
     html = map_legend("basins", described(), [])
     assert f"title='{PAPER.outcomes[Fate.FORBIDDEN].label}'" in html
     assert "title='channel 2'" in html
 
 
-def test_crossings_have_their_classes() -> None:
+def test_crossings_have_their_classes_and_what_is_drawn_over_them() -> None:
     expected = [(entry.label, entry.colour) for entry in PAPER.crossing_entries]
     assert entries(map_legend("crossings", described(), [])) == expected
+    assert ("doubtful pixels", "#123456") in entries(map_legend("crossings", described(), [Entry("doubtful pixels", "#123456")]))
 
 
 def test_the_scale_has_both_ends_and_says_whether_it_is_locked() -> None:
@@ -68,10 +66,6 @@ def test_layers_have_legends_of_their_own() -> None:
     assert "bounded and chaotic" in html
     assert "1 % are chaotic." in html
     assert "Enters by" in map_legend("origins", described(), [])
-
-
-def test_what_is_drawn_over_a_map_is_named() -> None:
-    assert ("doubtful pixels", "#123456") in entries(map_legend("crossings", described(), [Entry("doubtful pixels", "#123456")]))
 
 
 def test_a_collision_has_its_label_and_colour() -> None:

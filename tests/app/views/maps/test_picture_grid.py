@@ -32,11 +32,6 @@ def test_every_picture_has_a_short_title() -> None:
     assert tuple(SHORT_TITLES) == PICTURES
 
 
-@pytest.mark.parametrize("on_demand", [(), ("origins",), tuple(ON_DEMAND)])
-def test_pictures_on_demand_are_on_the_page_while_they_are_shown(on_demand: tuple[str, ...]) -> None:
-    assert sorted(pane.object.name for pane in panes(grid(*on_demand))) == sorted([*ALWAYS, *on_demand])
-
-
 def test_two_views_stand_side_by_side_before_the_well_and_their_difference() -> None:
     maps = make_maps()
     maps.show_pictures(PICTURES_COMPARED)
@@ -74,15 +69,6 @@ def test_an_enlarged_picture_stands_above_a_row_of_many_others() -> None:
     assert len(named(pictures, "small")) == len(ALWAYS) + len(ON_DEMAND) - 1
 
 
-def test_all_pictures_are_shown_again_as_before() -> None:
-    pictures = grid()
-    before = [(pane.object.css_classes, pane.object.min_border_left) for pane in panes(pictures)]
-    pictures.enlarge("well")
-    pictures.enlarge("")
-    assert [(pane.object.css_classes, pane.object.min_border_left) for pane in panes(pictures)] == before
-    assert "enlarged" not in pictures.layout().css_classes
-
-
 def test_a_picture_that_is_not_on_the_page_is_enlarged_when_it_comes() -> None:
     maps = make_maps()
     maps.show_pictures(PICTURES_ALONE)
@@ -100,16 +86,9 @@ def test_the_picker_of_a_narrow_page_offers_the_pictures_and_reports_the_choice(
     assert list(pictures.picker.options.values()) == [*ALWAYS, "origins"]
     assert pictures.picker.value == "origins"
     pictures.picker.value = "basins"
-    assert chosen == ["basins"]
-
-
-def test_the_picker_follows_the_picture_that_is_enlarged() -> None:
-    chosen: list[str] = []
-    pictures = grid(chosen=chosen)
-    pictures.offer_choice()
     pictures.enlarge("well")
     assert pictures.picker.value == "well"
-    assert chosen == []
+    assert chosen == ["basins"]
 
 
 def test_the_picture_of_a_layer_that_shows_nothing_is_not_the_largest() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.views.orbits.playback import Playback
+from tests.app.browser_messages import send
 
 
 @pytest.fixture
@@ -20,7 +21,7 @@ def playback(times: list[float | None]) -> Playback:
 
 
 def move(playback: Playback, step: int) -> None:
-    playback.player._receive({"step": step, "begin": playback.player.begin, "end": playback.player.end})
+    send(playback.player, {"step": step, "begin": playback.player.begin, "end": playback.player.end})
 
 
 def test_steps_are_times_of_the_interval(playback: Playback, times: list[float | None]) -> None:

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import panel as pn
 import pytest
+from panel.widgets import Widget
 
 from app.state.view_state import ViewState
-from app.views.panels.controls import ControlActions, Controls
+from app.views.components.widgets import Switches
+from app.views.panels.controls import LOCK, ControlActions, Controls
 from engine import Plane, System
 from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
+from plots.time_scale import TimeScale
+from tests.app.browser_messages import send
 
 
 class Page:
     """Controls with their state, and the calls they made."""
 
     def __init__(self) -> None:
+        self.locks: list[bool] = []
         self.state = ViewState(case="I", energy=0.19)
         self.controls = Controls(
             self.state,
@@ -23,15 +28,11 @@ class Page:
                 play=lambda: None,
                 choose_potential=lambda: None,
                 choose_slice=lambda: None,
-                compare=lambda on: None,
+                compare=lambda on: self.state.param.update(compared=self.state.present_view() if on else None),
                 swap=lambda: None,
-                lock_times=lambda locked: None,
+                lock_times=self.locks.append,
             ),
         )
-
-    def release_at(self, energy: float) -> None:
-        """A message of the browser when the slider is released."""
-        self.controls.energy._receive({"energy": energy})
 
 
 @pytest.fixture
@@ -39,24 +40,10 @@ def page() -> Page:
     return Page()
 
 
-def test_releasing_the_slider_sets_the_energy(page: Page) -> None:
-    page.release_at(0.25)
+def test_energies_are_released_at_the_slider_or_typed_beyond_it(page: Page) -> None:
+    send(page.controls.energy, {"energy": 0.25})
     assert page.state.energy == 0.25
-
-
-@pytest.mark.parametrize("message", [{"energy": "0.3"}, {"energy": float("nan")}, {}, None])
-def test_other_messages_of_the_slider_are_ignored(page: Page, message: object) -> None:
-    page.controls.energy._receive(message)
-    assert page.state.energy == 0.19
-
-
-def test_the_slider_chooses_no_energy_beyond_its_ends(page: Page) -> None:
-    page.release_at(17.0)
-    assert page.state.energy == page.controls.energy.high
-
-
-def test_an_energy_beyond_the_slider_can_be_typed(page: Page) -> None:
-    page.controls.exact_energy._receive({"number": 0.7, "typed": 1})
+    send(page.controls.exact_energy, {"number": 0.7, "typed": 1})
     assert page.state.energy == 0.7
     assert "beyond the end of the slider" in page.controls.energy.note
 
@@ -74,27 +61,46 @@ def test_the_controls_follow_a_preset(page: Page) -> None:
     assert page.controls.energy.energy == 0.22
 
 
-def open_quality(page: Page) -> dict[str, pn.widgets.Select]:
-    """The lists of the closed fold, by label."""
+def open_quality(page: Page) -> dict[str, Widget]:
+    """The widgets of the closed fold, by label."""
     parts = page.controls.layout()
     fold = next(part for part in parts if isinstance(part, pn.widgets.Button) and "Quality" in part.label)
     assert fold.label == "▸ Quality and colours"
     fold.clicks += 1
     section = parts[parts.index(fold) + 1]
-    return {part.label: part for part in section.objects if isinstance(part, pn.widgets.Select)}
+    return {LOCK if isinstance(part, Switches) else part.label: part for part in section.objects if isinstance(part, Widget)}
 
 
-def test_the_lists_follow_a_preset(page: Page) -> None:
+def test_the_lists_change_the_state_and_follow_a_preset(page: Page) -> None:
     lists = open_quality(page)
+    shown = {"t_max": 1e3, "Resolution": 112, "Colours": "safe"}
     page.state.param.update(t_max=1e3, resolution=112, palette="safe")
-    assert {label: box.value for label, box in lists.items()} == {"t_max": 1e3, "Resolution": 112, "Colours": "safe"}
-
-
-def test_the_lists_change_the_state(page: Page) -> None:
-    lists = open_quality(page)
-    for label, value in (("t_max", 1e4), ("Resolution", 450), ("Colours", "safe")):
+    assert {label: lists[label].value for label in shown} == shown
+    for label, value in (("t_max", 1e4), ("Resolution", 450), ("Colours", "paper")):
         lists[label].value = value
-    assert (page.state.t_max, page.state.resolution, page.state.palette) == (1e4, 450, "safe")
+    assert (page.state.t_max, page.state.resolution, page.state.palette) == (1e4, 450, "paper")
+
+
+def test_the_lock_asks_for_the_limits_of_the_map_and_follows_the_state(page: Page) -> None:
+    lock = open_quality(page)[LOCK]
+    lock.value = [LOCK]
+    assert page.locks == [True]
+    page.state.lock_times = TimeScale(1.0, 500.0)
+    page.state.lock_times = None
+    assert (lock.value, page.locks) == ([], [True])
+    page.state.lock_times = TimeScale(1.0, 500.0)
+    assert lock.value == [LOCK]
+    lock.value = []
+    assert page.locks == [True, False]
+
+
+def test_the_switch_of_the_comparison_follows_the_state_and_asks_for_it(page: Page) -> None:
+    comparison = page.controls.comparison
+    page.state.compared = page.state.present_view()
+    assert comparison.switch.value
+    assert "Case I, (x, px), h = 0.19" in comparison.view.object
+    comparison.switch.value = []
+    assert page.state.compared is None
 
 
 def test_on_a_touch_device_all_folds_are_closed(page: Page) -> None:

@@ -24,19 +24,14 @@ def source(code: str) -> str:
 
 
 @pytest.mark.parametrize(("focus", "picture"), [("", "basins"), ("times", "times")])
-def test_the_frame_shows_the_picture_that_is_large_or_else_the_basins(focus: str, picture: str) -> None:
-    state = ViewState(case="III", energy=0.4, plane=Plane.X_Y, focus=focus)
+def test_the_frame_shows_the_view_and_its_large_picture_or_else_the_basins(focus: str, picture: str) -> None:
+    state = ViewState(case="III", energy=0.4, plane=Plane.X_Y, focus=focus, starts=((0.1, 0.2),), judge=True)
     address = source(embed_code(ADDRESS, state))
-    assert address.startswith(f"{ADDRESS}?case=III&plane=x_y&h=0.4&")
-    assert f"embed={picture}" in urlsplit(address).query.split("&")
-
-
-def test_the_frame_shows_the_view() -> None:
-    state = ViewState(case="III", energy=0.4, starts=((0.1, 0.2),), judge=True)
-    values, problems = read_link(dict(parse_qsl(urlsplit(source(embed_code(ADDRESS, state))).query)))
+    values, problems = read_link(dict(parse_qsl(urlsplit(address).query)))
+    assert address.startswith(f"{ADDRESS}?")
     assert problems == []
     assert ViewState(**values).map_spec() == state.map_spec()
-    assert (values["starts"], values["judge"]) == (((0.1, 0.2),), True)
+    assert (values["focus"], values["starts"], values["judge"]) == (picture, ((0.1, 0.2),), True)
 
 
 def test_texts_are_no_markup() -> None:

@@ -12,6 +12,7 @@ from app.views.panels.slice_panel import SlicePanel
 from engine import Coordinate, ParameterAxis, Plane, Slice, System
 from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
+from tests.app.browser_messages import send
 
 C = Coordinate
 
@@ -31,7 +32,7 @@ class Drawer:
 
     def type(self, label: str, number: float) -> None:
         """A number that is typed into a box."""
-        self.boxes[label]._receive({"number": number, "typed": 1})
+        send(self.boxes[label], {"number": number, "typed": 1})
 
 
 @pytest.fixture
@@ -43,40 +44,25 @@ def test_the_drawer_shows_the_slice_of_the_state(drawer: Drawer) -> None:
     drawer.state.show_slice(Plane.TANGENTIAL)
     assert [axis.value for axis in drawer.panel.axes] == ["x", "y"]
     assert drawer.panel.mode.value == "speed, at angle β from the radius"
+    assert len(drawer.panel.mode.options) == 6
     assert list(drawer.boxes) == ["β ="]
     assert drawer.boxes["β ="].shown["number"] == math.pi / 2
 
 
-def test_another_axis_is_chosen(drawer: Drawer) -> None:
-    drawer.panel.axes[1].value = "theta"
-    assert drawer.state.plane == Slice(C.X, C.THETA)
-
-
-def test_a_parameter_as_axis_has_boxes_for_its_range(drawer: Drawer) -> None:
+def test_axes_ranges_and_held_coordinates_are_chosen(drawer: Drawer) -> None:
+    assert drawer.panel.mode.options == ["py > 0", "py < 0"]
+    drawer.panel.mode.value = "py < 0"
+    assert drawer.state.plane == Slice(C.X, C.PX, C.PY, -1)
+    drawer.panel.mode.value = "py > 0"
+    drawer.type("y =", 0.1)
+    assert drawer.state.plane == Slice(C.X, C.PX, fixed=((C.Y, 0.1),))
+    # The axis of the other exchanges both.
+    drawer.panel.axes[0].value = "px"
+    assert drawer.state.plane.axis_names == ("px", "x")
+    drawer.state.show_slice(Plane.X_PX)
     drawer.panel.axes[1].value = "epsilon"
     drawer.type("to", 1.5)
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 1.5, System("I")))
-
-
-def test_the_axis_of_the_other_exchanges_both(drawer: Drawer) -> None:
-    drawer.panel.axes[0].value = "px"
-    assert drawer.state.plane.axis_names == ("px", "x")
-
-
-def test_a_held_coordinate_is_typed(drawer: Drawer) -> None:
-    drawer.type("y =", 0.1)
-    assert drawer.state.plane == Slice(C.X, C.PX, fixed=((C.Y, 0.1),))
-
-
-def test_what_the_energy_decides_is_chosen(drawer: Drawer) -> None:
-    drawer.panel.mode.value = "py < 0"
-    assert drawer.state.plane == Slice(C.X, C.PX, C.PY, -1)
-
-
-def test_only_legal_decisions_are_offered(drawer: Drawer) -> None:
-    assert drawer.panel.mode.options == ["py > 0", "py < 0"]
-    drawer.state.show_slice(Plane.X_Y)
-    assert len(drawer.panel.mode.options) == 6
 
 
 def test_a_slice_that_is_none_is_refused_with_its_reason_and_the_last_one_stays(drawer: Drawer) -> None:
@@ -86,21 +72,16 @@ def test_a_slice_that_is_none_is_refused_with_its_reason_and_the_last_one_stays(
     assert drawer.state.plane.axis_names == ("x", "epsilon")
 
 
-def test_letters_of_a_formula_are_axes(drawer: Drawer) -> None:
-    reviewed = review_system(System(TYPED, "0.5(x^2+y^2) - a x y^2"))
-    drawer.state.show_system(reviewed)
-    drawer.panel.axes[1].value = "a"
-    assert drawer.state.plane.parameter == ParameterAxis("a", 0.5, 2.0, reviewed.system)
-
-
 def test_a_parameter_slice_follows_another_system_that_has_the_parameter(drawer: Drawer) -> None:
     drawer.panel.axes[1].value = "epsilon"
     drawer.state.show_system(review_system(System("III")))
     assert drawer.state.plane == Slice(C.X, ParameterAxis("epsilon", 0.5, 2.0, System("III")))
 
 
-def test_a_system_without_the_parameter_has_the_usual_plane(drawer: Drawer) -> None:
-    drawer.state.show_system(review_system(System(TYPED, "0.5(x^2+y^2) - a x y^2")))
+def test_letters_of_a_formula_are_axes_which_another_system_does_not_have(drawer: Drawer) -> None:
+    reviewed = review_system(System(TYPED, "0.5(x^2+y^2) - a x y^2"))
+    drawer.state.show_system(reviewed)
     drawer.panel.axes[1].value = "a"
+    assert drawer.state.plane.parameter == ParameterAxis("a", 0.5, 2.0, reviewed.system)
     drawer.state.show_system(review_system(System("III")))
     assert drawer.state.plane is Plane.X_PX

@@ -1,0 +1,172 @@
+"""What the server hears from the components in the browser: legal messages are reported, and all others are ignored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import pytest
+from panel.custom import JSComponent
+
+from app.browser.energy_slider import EnergySlider
+from app.browser.engine_component import BrowserEngine
+from app.browser.formula_box import LONGEST_TYPED, FormulaBox
+from app.browser.image_copier import ImageCopier
+from app.browser.number_box import NumberBox
+from app.browser.orbit_list import OrbitList
+from app.browser.orbit_player import OrbitPlayer
+from app.browser.parameter_slider import ParameterSlider
+from app.state.presets import PRESETS
+from app.views.panels.browser_events import BrowserActions, BrowserEvents
+from app.views.panels.gallery import Gallery
+from tests.app.browser_messages import send
+
+Report = Callable[..., None]
+NAN = float("nan")
+# Wrong for every component.
+NEVER = [None, 7, "x", [], {}, {"other": 1}]
+
+
+@dataclass(frozen=True)
+class Example:
+    """A component, messages with what is reported of them, and messages that are ignored."""
+
+    make: Callable[[Report], JSComponent]
+    legal: list[tuple[Any, tuple[Any, ...]]]
+    ignored: list[Any] = field(default_factory=list)
+
+
+def make_engine(report: Report) -> JSComponent:
+    engine = BrowserEngine(report)
+    engine.play(0.2, 0.1, 0.5)
+    return engine.layout()
+
+
+def make_events(report: Report) -> JSComponent:
+    def named(name: str) -> Report:
+        return lambda *values: report(name, *values)
+
+    return BrowserEvents(BrowserActions(*[named(each.name) for each in fields(BrowserActions)])).layout()
+
+
+def make_player(report: Report) -> JSComponent:
+    return OrbitPlayer(report, begin=5.0, end=12.5)
+
+
+def make_slider(report: Report) -> JSComponent:
+    return ParameterSlider(report, low=0.2, high=2.0, lowest=0.1, highest=10.0)
+
+
+EXAMPLES = {
+    "number box": Example(
+        lambda report: NumberBox(report, 0.19),
+        [({"number": 0.3, "typed": 1}, (0.3,)), ({"number": 1, "typed": 2}, (1.0,))],
+        [{"number": 0.3}, {"number": "0.3", "typed": 1}, {"number": NAN, "typed": 1}],
+    ),
+    "formula box": Example(
+        FormulaBox,
+        [
+            ({"text": "x", "typed": 1, "done": False}, ("x", False)),
+            ({"text": "x" * LONGEST_TYPED, "typed": 2, "done": True}, ("x" * LONGEST_TYPED, True)),
+        ],
+        [
+            {"text": "x", "typed": 1},
+            {"text": 1, "typed": 1, "done": True},
+            {"text": "x", "typed": "1", "done": True},
+            {"text": "x" * (LONGEST_TYPED + 1), "typed": 1, "done": True},
+        ],
+    ),
+    "slider of a parameter": Example(
+        make_slider,
+        [
+            ({"number": 1.13, "chosen": 1, "done": False}, (1.13, False)),
+            ({"number": 10, "chosen": 2, "done": True}, (10.0, True)),
+        ],
+        [
+            {"number": 1.0, "chosen": 1},
+            {"number": "1", "chosen": 1, "done": True},
+            *({"number": number, "chosen": 1, "done": True} for number in (NAN, 0.05, 11.0)),
+        ],
+    ),
+    "slider of the energy": Example(
+        lambda report: EnergySlider(report, low=0.0, high=0.5),
+        [({"energy": 0.25}, (0.25,)), ({"energy": 17}, (0.5,)), ({"energy": -1.0}, (0.0,))],
+        [{"energy": "0.3"}, {"energy": NAN}],
+    ),
+    "end of playing, once": Example(
+        make_engine, [({"energy": 0.3}, (0.3,))], [{"energy": 0.4}, {"energy": "0.3"}, {"energy": float("inf")}]
+    ),
+    "button that copies an image": Example(
+        lambda report: ImageCopier(lambda: report("wanted"), report),
+        [({"wanted": True}, ("wanted",)), ({"copied": True}, (True,)), ({"copied": False}, (False,))],
+        [{"wanted": 1}, {"copied": "yes"}, {"image": None}],
+    ),
+    "list of orbits": Example(
+        lambda report: OrbitList(report, rows=["first", "second"]),
+        [({"chosen": 1}, (1,)), ({"chosen": 0}, (0,))],
+        [{"chosen": place} for place in (-1, 2, 0.5, True, "1")],
+    ),
+    "player of orbits": Example(
+        make_player,
+        # Numbers of a browser have no type: 5.0 arrives as 5.
+        [({"step": step, "begin": 5, "end": 12.5}, (step,)) for step in (0, 1, 600)],
+        [
+            {"step": 3},
+            *({"step": step, "begin": 5, "end": 12.5} for step in (3.5, -1, 601)),
+            {"step": 3, "begin": 0, "end": 12.5},
+            {"step": 3, "begin": 5, "end": "12.5"},
+        ],
+    ),
+    "player without an interval": Example(
+        lambda report: OrbitPlayer(report, begin=0.0, end=0.0), [], [{"step": 3, "begin": 0, "end": 0}]
+    ),
+    "gallery": Example(
+        lambda report: Gallery(report).build()[0],
+        [(PRESETS[1].key, (PRESETS[1],))],
+        ["no such key", [PRESETS[0].key], {PRESETS[0].key: 1}],
+    ),
+    "keys and history": Example(
+        make_events,
+        [
+            ({"key": "h"}, ("key", "h")),
+            ({"link": "?case=II", "entry": 3, "steps": 1}, ("navigate", "?case=II", 3, 1)),
+            ({"dark": True}, ("dark", True)),
+            ({"touch": True}, ("touch",)),
+            ({"narrow": True}, ("narrow",)),
+            ({"copied": False}, ("copied", False)),
+        ],
+        [{"key": "x"}, {"key": 7}, {"dark": "yes"}, {"touch": False}, {"link": 7, "entry": 1, "steps": 1}],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_legal_messages_are_reported_and_all_others_ignored(name: str) -> None:
+    example, reported = EXAMPLES[name], list[tuple[Any, ...]]()
+    component = example.make(lambda *values: reported.append(values))
+    send(component, *(message for message, _ in example.legal), *NEVER, *example.ignored)
+    assert reported == [expected for _, expected in example.legal]
+
+
+@pytest.mark.parametrize(
+    ("component", "message", "shown"),
+    [
+        (NumberBox(lambda number: None, 0.19), {"number": 0.3, "typed": 1}, {"number": 0.25, "typed": 1}),
+        (FormulaBox(lambda *_: None), {"text": "x", "typed": 1, "done": False}, {"text": 0.25, "typed": 1}),
+        (make_slider(lambda *_: None), {"number": 1.13, "chosen": 1, "done": False}, {"number": 0.25, "chosen": 1}),
+    ],
+    ids=["number box", "formula box", "slider of a parameter"],
+)
+def test_what_the_server_shows_has_the_count_of_what_was_typed_before(component: Any, message: Any, shown: Any) -> None:
+    send(component, message)
+    component.show(0.25)
+    assert component.shown == shown
+
+
+def test_commands_that_repeat_differ() -> None:
+    engine, commands = BrowserEngine(lambda energy: None), []
+    for _ in range(2):
+        engine.play(0.2, 0.1, 0.5)
+        commands.append(engine.layout().command)
+    assert commands[0] != commands[1]
