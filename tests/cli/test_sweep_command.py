@@ -24,7 +24,7 @@ SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist(
 
 
 def load(store: Path) -> xr.Dataset:
-    return xr.open_zarr(store, chunks=None, consolidated=False).load()
+    return xr.open_zarr(store, chunks=None).load()
 
 
 def test_store_equals_the_maps_of_the_engine(run: Run, tmp_path: Path) -> None:
