@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from bokeh.models import Range1d
 
-from app.views.analysis.curves import TITLES, CurvesView
+from app.views.analysis.curves import CurvesView
 from engine import CASES, Plane, SweepSpec, compute_sweep
 from engine.sweeps.measures import CURVES
+from plots.sweep_panels import CURVE_PANELS
 
 
 def test_there_are_no_axes_before_the_first_curves() -> None:
@@ -16,7 +17,7 @@ def test_there_are_no_axes_before_the_first_curves() -> None:
     assert plots.objects == []
     view.show(compute_sweep(SweepSpec(CASES["I"], Plane.X_PX, (0.2, 0.3), (20, 20), t_max=100.0, measures=CURVES)))
     assert plots.visible
-    assert len(plots.objects) == len(TITLES)
+    assert len(plots.objects) == 1 + len(CURVE_PANELS)
     view.show(None)
     assert not plots.visible
 
