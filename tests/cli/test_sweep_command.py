@@ -42,6 +42,12 @@ def test_listed_energies_equal_spaced_ones(run: Run, tmp_path: Path) -> None:
     xr.testing.assert_identical(load(tmp_path / "listed.zarr"), load(tmp_path / "spaced.zarr"))
 
 
+def test_a_store_can_hold_measures_alone(run: Run, tmp_path: Path) -> None:
+    run(*SWEEP, "--measure", "shares", "--measure", "islands", "--store", tmp_path / "store.zarr")
+    wanted = engine.compute_sweep(replace(SPEC, measures=("shares", "islands"))).dataset
+    xr.testing.assert_equal(load(tmp_path / "store.zarr"), wanted)
+
+
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compute_sweep = engine.compute_sweep
 
