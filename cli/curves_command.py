@@ -63,13 +63,13 @@ def draw_curves(
     from cli.potential_argument import file_name_part, find_potential, find_system
     from cli.run_context import cancellable_run
     from engine import ParameterAxis, SweepSpec, compute_sweep
-    from engine.sweeps.measures import CURVES
+    from engine.sweeps.measures import CURVES, QUICK_CURVES
     from plots.figure_style import FigureFormat, FigureStyle
 
     style, values = FigureStyle(width, dpi, font_size, titles), space_energies(low, high, count)
     along = None if against == "h" else ParameterAxis(against, low, high, find_system(case))
     slice_of_starts, sides = find_plane(plane, fix, case), read_resolution(resolution)
-    measures = CURVES if exponent else [name for name in CURVES if name != "uncertainty_exponent"]
+    measures = CURVES if exponent else QUICK_CURVES
     spec = SweepSpec(
         find_potential(case), slice_of_starts, values, sides, t_max=t_max, measures=measures, along=along, energy=energy,
         refine=refine,

@@ -40,6 +40,12 @@ def sweep_energies(
     resolution: options.Resolution = "224",
     t_max: options.TMax = 1e5,
     certify: options.Certify = True,
+    measure: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--measure", help="What is kept of each map, such as shares or basin_entropy; repeat. By default its arrays."
+        ),
+    ] = None,
     plan: Annotated[bool, typer.Option("--plan", help="Only estimate the cost.")] = False,
     threads: options.Threads = None,
     scheduler: options.Scheduler = None,
@@ -60,7 +66,9 @@ def sweep_energies(
     energies = space_energies(low, high, count, energy)
     frame = None if window is None else Window(*window)
     sides = read_resolution(resolution)
-    spec = SweepSpec(find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, certify)
+    spec = SweepSpec(
+        find_potential(case), find_plane(plane, fix, case), energies, sides, frame, t_max, certify, measure or ("maps",)
+    )
     try:
         with cluster_executor(scheduler, local_cluster, threads) as executor, cancellable_run(threads, executor) as run:
             if plan:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,23 +15,15 @@ from engine import DecayLaws, EscapeStatistics, Fate, Outcome, Sweep
 from engine.measures.decay_laws import LawFit
 from plots.figure_axes import add_panel_legend, label_axes, name_panel, new_figure, style_axes
 from plots.figure_style import SCREEN, FigureStyle
-from plots.palette import LAW_COLOURS, MEASURED, PAPER
+from plots.palette import LAW_COLOURS, MEASURED, PAPER, THRESHOLD
 from plots.statistics_charts import BINS, MOST_CROSSINGS
+from plots.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
 
 # Equal curves, such as those of channels that are mirror images, coincide: the second is dashed.
 _DASHED = (0, (4.0, 3.0))
 _SAMPLES = 300
 # Height of the figure of curves, in units of its width: with two columns and with one.
 _HEIGHT, _HEIGHT_OF_COLUMN = 1.2, 4.5
-_ESCAPE_TIME = "Escape time"
-# Curves of each panel but the first with their names, name of the axis, title.
-_MEASURES: Sequence[tuple[Mapping[str, str], str, str]] = (
-    ({"s_b": "$S_b$", "s_bb": "$S_{bb}$"}, "entropy", "Basin entropy"),
-    ({"exponent": "α"}, "α", "Uncertainty exponent"),
-    ({"mean_escape_time": "mean", "median_escape_time": "median"}, "escape time", _ESCAPE_TIME),
-    ({"decay_rate": "κ"}, "κ", "Decay rate"),
-    ({"bounded_area": "all", "largest_island": "largest island"}, "area", "Area of the bounded starts"),
-)
 # If more than this share remains, the curve is in the upper half of its panel.
 _MOST_STAY = 0.4
 _SYMBOLS = {"exponential": r"\kappa", "power law": r"\gamma"}
@@ -54,30 +47,33 @@ def draw_curves_figure(curves: Sweep, style: FigureStyle) -> Figure:
     starts = " × ".join(str(side) for side in request["resolution"])
     title = f"{request['potential']}, {request['plane']}, {starts} starts, t_max = {request['t_max']:g}"
     figure = new_figure(style, style.width * (_HEIGHT if columns == 2 else _HEIGHT_OF_COLUMN), title)
-    measures = [entry for entry in _MEASURES if set(entry[0]) <= set(curves.dataset)]
-    panels = np.ravel(figure.subplots(math.ceil((1 + len(measures)) / columns), columns)).tolist()
-    draw_shares(panels[0], curves.values, curves["share"], curves.outcomes, style)
-    for axes, (lines, up, words) in zip(panels[1:], measures, strict=False):
-        _draw_measures(axes, curves, lines, style)
-        label_axes(axes, curves.symbol, up, style)
-        name_panel(axes, words, style)
-        if words == _ESCAPE_TIME:
-            axes.set_yscale("log")
-    for axes in panels[1 + len(measures) :]:
+    shown = [panel for panel in CURVE_PANELS if panel.is_of(curves)]
+    grid = np.ravel(figure.subplots(math.ceil((1 + len(shown)) / columns), columns)).tolist()
+    draw_shares(grid[0], curves.values, curves["share"], curves.outcomes, style)
+    label_axes(grid[0], curves.symbol, "percentage of starts", style)
+    name_panel(grid[0], SHARES_TITLE, style)
+    add_panel_legend(grid[0], "best", style)
+    for axes, panel in zip(grid[1:], shown, strict=False):
+        _draw_panel(axes, curves, panel, style)
+    for axes in grid[1 + len(shown) :]:
         axes.remove()
-    label_axes(panels[0], curves.symbol, "percentage of starts", style)
-    name_panel(panels[0], "Shares of the interior starts", style)
-    add_panel_legend(panels[0], "best", style)
     return figure
 
 
-def _draw_measures(axes: Axes, curves: Sweep, lines: Mapping[str, str], style: FigureStyle) -> None:
-    for (name, label), colour in zip(lines.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
-        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=label)
+def _draw_panel(axes: Axes, curves: Sweep, panel: CurvePanel, style: FigureStyle) -> None:
+    for (name, label), colour in zip(panel.labels.items(), (MEASURED, LAW_COLOURS["exponential"]), strict=False):
+        words = re.sub(r"_(\w+)", r"$_{\1}$", label)
+        axes.plot(curves.values, curves[name], color=colour, linewidth=1.4, marker="o", markersize=2.2, label=words)
         axes.fill_between(curves.values, *curves.interval(name), color=colour, alpha=0.25, linewidth=0.0)
+    if panel.level is not None:
+        axes.axhline(panel.level[0], color=THRESHOLD, linestyle="--", linewidth=1.2, label=panel.level[1])
+    if panel.logarithmic:
+        axes.set_yscale("log")
     axes.set_xlim(float(curves.values[0]), float(curves.values[-1]))
     style_axes(axes, style, grid=True)
-    if len(lines) > 1:
+    label_axes(axes, curves.symbol, panel.axis, style)
+    name_panel(axes, panel.title, style)
+    if len(axes.lines) > 1:
         add_panel_legend(axes, "best", style)
 
 

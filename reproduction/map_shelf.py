@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from concurrent.futures import CancelledError
 from dataclasses import replace
+from typing import Any
 
 from engine import (
     CASES,
@@ -33,12 +34,14 @@ from reproduction.quality import Quality
 class MapShelf:
     """Complete maps of one quality, stored without the state of their orbits, and analyses of them.
 
+    All methods raise `concurrent.futures.CancelledError` when the execution is cancelled.
+
     Parameters
     ----------
     quality
         Resolution.
     execution
-        How the computations run; when it is cancelled, they raise CancelledError.
+        How the computations run.
     on_map
         Called with each computed map.
     """
@@ -52,116 +55,70 @@ class MapShelf:
         self.quality = quality
         self.execution = execution
         self._on_map = on_map
-        self._maps: dict[MapSpec, EscapeMap] = {}
-        self._curves: dict[tuple[str, Slice], Sweep] = {}
-        self._regularities: dict[MapSpec, RegularityMap] = {}
-        self._searches: dict[MapSpec, SuperStickySearch] = {}
-        self._exponents: dict[MapSpec, UncertaintyExponent] = {}
+        self._kept: dict[Hashable, Any] = {}
 
     def map(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> EscapeMap:
-        """Map of a case of the paper.
-
-        Parameters
-        ----------
-        case
-            Key of `engine.CASES`.
-        plane, energy, window
-            As in `engine.MapSpec`.
-
-        Raises
-        ------
-        concurrent.futures.CancelledError
-            If cancelled.
-        ValueError
-            As in `engine.MapSpec`.
-        """
+        """Map of a case of `engine.CASES`; other parameters as in `engine.MapSpec`."""
         return self._stored(self._spec(case, plane, energy, window))
 
     def curves(self, case: str, plane: Slice) -> Sweep:
-        """Shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored.
-
-        Raises
-        ------
-        concurrent.futures.CancelledError
-            If cancelled.
-        """
-        if (case, plane) not in self._curves:
-            energies, side = curve_energies(case, self.quality.curve_points), self.quality.resolution
-            spec = SweepSpec(
-                CASES[case], plane, energies, (side, side), t_max=self.quality.t_max, measures=("shares", "accuracy")
-            )
-            self._curves[case, plane] = compute_sweep(
-                spec, measure=lambda point: compute_point(point, frame=self._unstored(point.map_spec)), execution=self.execution
-            )
-        return self._curves[case, plane]
+        """Shares at the energies of `curve_energies`, and the largest energy error; new maps are not stored."""
+        return self._once(("curves", case, plane), lambda: self._sweep(case, plane))
 
     def regularity(self, frame: EscapeMap) -> RegularityMap:
-        """Classification of the bounded orbits of a map as regular or chaotic.
-
-        Raises
-        ------
-        concurrent.futures.CancelledError
-            If cancelled.
-        """
-        if frame.spec not in self._regularities:
-            regularity = compute_regularity(frame, execution=self.execution)
-            if not regularity.complete:
-                raise CancelledError
-            self._regularities[frame.spec] = regularity
-        return self._regularities[frame.spec]
+        """Classification of the bounded orbits of a map as regular or chaotic."""
+        return self._once(("regularity", frame.spec), lambda: self._judge(frame))
 
     def super_sticky(self) -> SuperStickySearch:
-        """Continuation of the chaotic bounded orbits of case III at h = 0.26 on (x, px).
-
-        Raises
-        ------
-        concurrent.futures.CancelledError
-            If cancelled.
-        """
+        """Continuation of the chaotic bounded orbits of case III at h = 0.26 on (x, px)."""
         return self._search(STICKY_CASE, STICKY_ENERGY, self.quality.search_resolution)
 
     def late_escapes(self, case: str, energy: float) -> SuperStickySearch:
-        """Continuation of the chaotic bounded orbits of case I or II on (x, px), from fewer starts.
-
-        Raises
-        ------
-        concurrent.futures.CancelledError
-            If cancelled.
-        """
+        """Continuation of the chaotic bounded orbits of case I or II on (x, px), from fewer starts."""
         return self._search(case, energy, self.quality.classified_resolution)
 
     def exponent(self, case: str, plane: Slice, energy: float) -> UncertaintyExponent:
-        """Uncertainty exponent of the basins of a case.
+        """Uncertainty exponent of the basins of a case."""
+        spec, work = self._spec(case, plane, energy), self.quality.exponent_work
+        return self._once(("exponent", spec), lambda: compute_uncertainty_exponent(spec, work=work, execution=self.execution))
 
-        Raises
-        ------
-        concurrent.futures.CancelledError
-            If cancelled.
-        """
-        spec = self._spec(case, plane, energy)
-        if spec not in self._exponents:
-            self._exponents[spec] = compute_uncertainty_exponent(spec, work=self.quality.exponent_work, execution=self.execution)
-        return self._exponents[spec]
+    def _once[Found](self, key: Hashable, compute: Callable[[], Found]) -> Found:
+        """What is kept under a key; it is computed at the first call."""
+        if key not in self._kept:
+            self._kept[key] = compute()
+        found: Found = self._kept[key]
+        return found
 
     def _search(self, case: str, energy: float, side: int) -> SuperStickySearch:
-        spec = replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side))
-        if spec not in self._searches:
-            frame = self._stored(spec)
-            self._searches[spec] = find_super_sticky_orbits(
-                frame, self.regularity(frame), self.quality.search_t_max, execution=self.execution
-            )
-        return self._searches[spec]
+        frame = self._stored(replace(self._spec(case, Plane.X_PX, energy), resolution=(side, side)))
+        t_max, execution = self.quality.search_t_max, self.execution
+        return self._once(
+            ("search", frame.spec),
+            lambda: find_super_sticky_orbits(frame, self.regularity(frame), t_max, execution=execution),
+        )
+
+    def _sweep(self, case: str, plane: Slice) -> Sweep:
+        """A sweep that takes the maps that are stored."""
+        energies, side, t_max = curve_energies(case, self.quality.curve_points), self.quality.resolution, self.quality.t_max
+        spec = SweepSpec(CASES[case], plane, energies, (side, side), t_max=t_max, measures=("shares", "accuracy"))
+        return compute_sweep(
+            spec,
+            measure=lambda point: compute_point(point, frame=self._kept.get(point.map_spec) or self._compute(point.map_spec)),
+            execution=self.execution,
+        )
+
+    def _judge(self, frame: EscapeMap) -> RegularityMap:
+        regularity = compute_regularity(frame, execution=self.execution)
+        if not regularity.complete:
+            raise CancelledError
+        return regularity
 
     def _spec(self, case: str, plane: Slice, energy: float | tuple[float, float], window: Window | None = None) -> MapSpec:
         side, t_max = self.quality.resolution, self.quality.t_max
         return MapSpec(CASES[case], plane, energy, (side, side), window, t_max)
 
-    def _unstored(self, spec: MapSpec) -> EscapeMap:
-        return self._maps[spec] if spec in self._maps else self._compute(spec)
-
     def _stored(self, spec: MapSpec) -> EscapeMap:
-        self._maps[spec] = self._unstored(spec)
-        return self._maps[spec]
+        return self._once(spec, lambda: self._compute(spec))
 
     def _compute(self, spec: MapSpec) -> EscapeMap:
         computed = run_map(spec, self.execution)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from engine.potentials.potential import Potential
 from engine.slices.axes import ParameterAxis
 from engine.slices.slice import Slice
-from engine.sweeps.measures import CURVES
+from engine.sweeps.measures import CURVES, QUICK_CURVES
 from engine.sweeps.spec import SweepSpec
 from engine.sweeps.sweep import Sweep, compute_sweep
 
@@ -28,7 +28,7 @@ def _make_curves_spec(
     energy: float | None = None,
     refine: int = 0,
 ) -> SweepSpec:
-    measures = CURVES if exponent else CURVES[:-1]
+    measures = CURVES if exponent else QUICK_CURVES
     return SweepSpec(
         potential, plane, values, resolution, t_max=t_max, measures=measures, along=along, energy=energy, refine=refine
     )

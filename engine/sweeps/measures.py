@@ -245,5 +245,8 @@ MEASURES: Mapping[str, Callable[[MeasuredMap], Variables]] = MappingProxyType(
 )
 """The measures of a sweep by name; each gives variables of its dataset."""
 
-CURVES = ("shares", "escape_times", "islands", "basin_entropy", "wada", "decay_rate", "uncertainty_exponent")
-"""Measures that are curves against the energy or a parameter; the last one takes longest."""
+QUICK_CURVES = ("shares", "escape_times", "islands", "basin_entropy", "wada", "decay_rate")
+"""Measures that are curves against the energy or a parameter and take little longer than the map."""
+
+CURVES = (*QUICK_CURVES, "uncertainty_exponent")
+"""All measures that are curves."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -78,7 +79,8 @@ class SweepStore:
             for pattern in ("*/zarr.json", f"*/c/{self._finished}", f"*/c/{self._finished}/**/*"):
                 for file in self._path.glob(pattern):
                     _sync_to_disk(file)
-            zarr.open_group(self._path, mode="r+").attrs[_FINISHED] = self._finished + 1
+            zarr.open_group(self._path, mode="r+", use_consolidated=False).attrs[_FINISHED] = self._finished + 1
+            _consolidate(self._path)
         self._finished += 1
 
     def _open(self) -> None:
@@ -87,7 +89,7 @@ class SweepStore:
 
         if not (self._path / "zarr.json").exists():
             raise ValueError(f"store={self._path}: holds other files; must be new, empty, or the store of this sweep")
-        group = zarr.open_group(self._path, mode="r+")
+        group = zarr.open_group(self._path, mode="r+", use_consolidated=False)
         check_same_sweep(f"store={self._path}", group.attrs, self._attributes)
         self._finished = int(group.attrs[_FINISHED])  # type: ignore[arg-type]
         if self._finished == self._attributes["count"]:
@@ -108,6 +110,15 @@ def check_same_sweep(label: str, found: Mapping[str, Any], wanted: Mapping[str, 
     for name, value in wanted.items():
         if name not in but and (name not in found or np.ravel(found[name]).tolist() != np.ravel(value).tolist()):
             raise ValueError(f"{label}: holds another sweep, with {name}={found.get(name)!r}; must have {name}={value!r}")
+
+
+def _consolidate(path: Path) -> None:
+    """Put the metadata of all arrays into one file, an extension of format 3 without which xarray warns and opens more slowly."""
+    import zarr
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Consolidated metadata", zarr.errors.ZarrUserWarning)
+        zarr.consolidate_metadata(path, zarr_format=3)
 
 
 def _sync_to_disk(file: Path) -> None:

@@ -23,7 +23,7 @@ SPEC = SweepSpec(CASES["I"], Plane.X_PX, tuple(np.linspace(0.13, 0.2, 3).tolist(
 
 
 def load(store: Path) -> xr.Dataset:
-    return xr.open_zarr(store, chunks=None, consolidated=False).load()
+    return xr.open_zarr(store, chunks=None).load()
 
 
 def test_store_equals_the_maps_of_the_engine(run: Run, tmp_path: Path) -> None:
@@ -39,6 +39,12 @@ def test_listed_energies_equal_spaced_ones(run: Run, tmp_path: Path) -> None:
     run("sweep", "I", *listed, "--resolution", "9x7", "--t-max", 50, "--store", tmp_path / "listed.zarr")
     run(*SWEEP, "--store", tmp_path / "spaced.zarr")
     xr.testing.assert_identical(load(tmp_path / "listed.zarr"), load(tmp_path / "spaced.zarr"))
+
+
+def test_a_store_can_hold_measures_alone(run: Run, tmp_path: Path) -> None:
+    run(*SWEEP, "--measure", "shares", "--measure", "islands", "--store", tmp_path / "store.zarr")
+    wanted = engine.compute_sweep(replace(SPEC, measures=("shares", "islands"))).dataset
+    xr.testing.assert_equal(load(tmp_path / "store.zarr"), wanted)
 
 
 def test_interrupted_sweep_is_resumed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,7 +74,6 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 def test_sweep_resumes_after_space_is_made_on_a_full_disk(
     small_disk: Path, tmp_path: Path, run_limited: Callable[..., Finished]
 ) -> None:
-    subprocess.run(["mount", "-o", "remount,size=128k", str(small_disk)], check=True)
     full = run_limited(10**9, small_disk, *SWEEP)
     assert full.code == FAILED
     assert is_one_sentence(full.err), full.err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from html import escape
+from typing import Any
 
 import numpy as np
 import panel as pn
@@ -18,16 +19,8 @@ from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Outcome, Sweep, System
 from engine.potentials.system import PARAMETERS
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
+from plots.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
 
-TITLES = {
-    "shares": "Shares of the interior starts",
-    "entropies": "Basin entropy",
-    "exponents": "Uncertainty exponent",
-    "escapes": "Escape time",
-    "islands": "Area of the bounded starts",
-    "decays": "Decay rate",
-    "boundaries": "Distance of the boundaries",
-}
 START, STOP = "Compute the curves", "Stop"
 SWEPT_VALUES, REFINED_VALUES = 25, 8
 """Energies, or values of a parameter, of the curves, and further ones where the shares change most."""
@@ -36,29 +29,15 @@ HINT = (
     "Shares, basin entropy, uncertainty exponent, escape times and their decay, islands and Wada distance at "
     f"{SWEPT_VALUES + REFINED_VALUES} values, closer together where the shares change: a minute or more."
 )
-_SECOND = LAW_COLOURS["exponential"]
+_COLOURS = MEASURED, LAW_COLOURS["exponential"]
 _NO_SHARES: dict[str, list[object]] = {"xs": [], "ys": [], "colour": [], "dash": [], "fate": []}
 _DASH = "8 8"
-# Least height of the axes of areas and of decay rates.
-_SMALLEST_AREA = _SMALLEST_RATE = 1e-6
-# Of the vertical axes before there are curves; that of the entropies has room for the line at ln 2.
-_FIRST_RANGE = {"entropies": (0.0, 0.75), "escapes": (1.0, 100.0), "islands": (0.0, 1.0), "boundaries": (0.0, 10.0)}
+# Range of a logarithmic axis before there are numbers.
+_FIRST_DECADES = 1.0, 100.0
 _SHARES_TEXT = "<b>$snap_y{custom}</b> of the interior starts @fate<br>at $snap_x{custom}"
-_WORDS = {
-    "s_b": "basin entropy <b>S_b = @s_b{custom}</b>",
-    "s_bb": "entropy of the boundary boxes <b>S_bb = @s_bb{custom}</b>",
-    "exponent": "<b>α = @exponent{custom}</b>, 95 % interval @exponent_low{custom} to @exponent_high{custom}",
-    "mean_escape_time": "mean escape time <b>@mean_escape_time{custom}</b>",
-    "median_escape_time": "median escape time <b>@median_escape_time{custom}</b>",
-    "bounded_area": "bounded starts cover <b>@bounded_area{custom}</b> of the slice, in @islands islands",
-    "decay_rate": "<b>κ = @decay_rate{custom}</b>, 95 % interval @decay_rate_low{custom} to @decay_rate_high{custom}",
-    "wada_distance": "99 % of the boundary pixels lie within <b>@wada_distance{custom} pixels</b> of all basins",
-    "largest_island": "area of the largest island <b>@largest_island{custom}</b>",
-}
-_COLUMNS = (
-    "value", "s_b", "s_bb", "exponent", "exponent_low", "exponent_high", "mean_escape_time", "median_escape_time",
-    "bounded_area", "islands", "largest_island", "decay_rate", "decay_rate_low", "decay_rate_high", "wada_distance",
-)  # fmt: skip
+_SHARES = "shares"
+_NAMES = tuple(name for panel in CURVE_PANELS for name in panel.labels)
+_NO_POINTS: dict[str, list[float]] = {"value": [], **{f"{name}{end}": [] for name in _NAMES for end in ("", "_low", "_high")}}
 
 
 class CurvesView:
@@ -82,8 +61,10 @@ class CurvesView:
         self.text = TextPane(HINT, name="sweep", margin=(4, 10), sizing_mode="stretch_width", css_classes=["whole-row"])
         self._axis = Range1d(0.0, 1.0)
         # Automatic ranges would warn in the browser as long as there are no numbers.
-        self._values = {name: Range1d(*_FIRST_RANGE.get(name, (0.0, 1.0))) for name in TITLES}
-        self.points = ColumnDataSource({name: [] for name in _COLUMNS}, name="curve_points")
+        self._values = {
+            panel.name: Range1d(*(_FIRST_DECADES if panel.logarithmic else (0.0, panel.least_top))) for panel in CURVE_PANELS
+        }
+        self.points = ColumnDataSource(_NO_POINTS, name="curve_points")
         self._shares = ColumnDataSource(_NO_SHARES, name="share_curves")
         self._energy, self._system = 0.0, System("I")
         self._here = Span(location=0.0, dimension="height", line_color=MARK_EDGE, line_dash="dotted")
@@ -118,10 +99,14 @@ class CurvesView:
             self._plots.objects = self._build_plots()
         self._plots.visible = curves is not None
         if curves is None:
-            self.points.data, self._shares.data = {name: [] for name in _COLUMNS}, _NO_SHARES
+            self.points.data, self._shares.data = _NO_POINTS, _NO_SHARES
             self.text.object = HINT
             return
-        self.points.data = {name: curves.values if name == "value" else curves[name] for name in _COLUMNS}
+        points = {"value": curves.values}
+        for name in _NAMES:
+            points[name] = curves[name]
+            points[f"{name}_low"], points[f"{name}_high"] = curves.interval(name)
+        self.points.data = points
         shares, outcomes = curves["share"].T, curves.outcomes
         entries = self._entries(outcomes)
         # Symmetric channels have equal shares: dashed curves, drawn last, leave the solid ones visible.
@@ -144,16 +129,13 @@ class CurvesView:
         self._legend.object = legend(entries)
 
     def _scale_values(self, curves: Sweep) -> None:
-        """Fit the ranges of all but the shares and the exponents."""
-        entropies = _finite(curves, "s_b", "s_bb")
-        set_range(self._values["entropies"], 0.0, 1.05 * max([*entropies, _FIRST_RANGE["entropies"][1]]))
-        set_range(self._values["islands"], 0.0, 1.05 * max([*_finite(curves, "bounded_area"), _SMALLEST_AREA]))
-        set_range(self._values["decays"], 0.0, 1.05 * max([*_finite(curves, "decay_rate_high"), _SMALLEST_RATE]))
-        distances = _finite(curves, "wada_distance")
-        set_range(self._values["boundaries"], 0.0, 1.05 * max([*distances, _FIRST_RANGE["boundaries"][1]]))
-        times = _finite(curves, "mean_escape_time", "median_escape_time")
-        if times.size:
-            set_decades(self._values["escapes"], float(times.min()), float(times.max()))
+        """Fit the ranges of all but the shares."""
+        for panel in CURVE_PANELS:
+            numbers, axis = panel.find_numbers(curves), self._values[panel.name]
+            if not panel.logarithmic:
+                set_range(axis, 0.0, 1.05 * max([*numbers, panel.least_top]))
+            elif numbers.size:
+                set_decades(axis, float(numbers.min()), float(numbers.max()))
 
     def say(self, sentence: str) -> None:
         """Show why there are no curves."""
@@ -181,70 +163,40 @@ class CurvesView:
         return [row, self.text, self._plots]
 
     def _build_plots(self) -> list[pn.viewable.Viewable]:
-        below = {
-            "shares": [self._legend],
-            "entropies": [_key({"S_b": MEASURED, "S_bb": _SECOND, "ln 2": THRESHOLD})],
-            "exponents": [_key({"α with its 95 % interval": MEASURED})],
-            "escapes": [_key({"mean": MEASURED, "median": _SECOND})],
-            "islands": [_key({"all islands": MEASURED, "the largest": _SECOND})],
-            "decays": [_key({"κ with its 95 % interval": MEASURED})],
-            "boundaries": [_key({"pixels, of 99 % of the boundary": MEASURED})],
-        }
-        return [
-            pn.Column(
-                FigurePane(plot, {Tap: lambda event: self.open_near(event.x)}),
-                *below[name],
-                margin=0,
-                sizing_mode="stretch_width",
-            )
-            for name, plot in self._draw().items()
-        ]
-
-    def _draw(self) -> dict[str, figure]:
-        logarithmic = {"escapes": {"y_axis_type": "log"}}
-        figures = {
-            name: square_figure(
-                name, title, x_axis_label=" ", x_range=self._axis, y_range=self._values[name], **logarithmic.get(name, {})
-            )
-            for name, title in TITLES.items()
-        }
-        self._figures = list(figures.values())
+        below = [self._legend, *(_make_key(panel) for panel in CURVE_PANELS)]
+        self._figures = [self._draw_shares(), *(self._draw_panel(panel) for panel in CURVE_PANELS)]
         for plot in self._figures:
             plot.add_layout(self._here)
-        shares = figures["shares"].add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
+        return [
+            pn.Column(FigurePane(plot, {Tap: lambda event: self.open_near(event.x)}), key, margin=0, sizing_mode="stretch_width")
+            for plot, key in zip(self._figures, below, strict=True)
+        ]
+
+    def _draw_shares(self) -> figure:
+        plot = square_figure(_SHARES, SHARES_TITLE, x_axis_label=" ", x_range=self._axis, y_range=Range1d(0.0, 1.0))
+        shares = plot.add_glyph(self._shares, MultiLine(line_color="colour", line_width=2, line_dash="dash"))
         values = {"$snap_x": "number", "$snap_y": "percent"}
-        figures["shares"].add_tools(chart_hover(_SHARES_TEXT, values, [shares], line_policy="nearest"))
-        drawn = {
-            "entropies": {"s_b": MEASURED, "s_bb": _SECOND},
-            "exponents": {"exponent": MEASURED},
-            "escapes": {"mean_escape_time": MEASURED, "median_escape_time": _SECOND},
-            "islands": {"bounded_area": MEASURED, "largest_island": _SECOND},
-            "decays": {"decay_rate": MEASURED},
-            "boundaries": {"wada_distance": MEASURED},
-        }
-        for name, curves in drawn.items():
-            for column, colour in curves.items():
-                _draw_curve(figures[name], self.points, column, colour)
-        for name, column in (("exponents", "exponent"), ("decays", "decay_rate")):
-            ends = {"x0": "value", "x1": "value", "y0": f"{column}_low", "y1": f"{column}_high"}
-            figures[name].add_glyph(self.points, Segment(**ends, line_color=MEASURED, line_alpha=0.6))
-        ln2 = Span(location=float(np.log(2.0)), dimension="width", line_color=THRESHOLD, line_dash="dashed", line_width=1.5)
-        figures["entropies"].add_layout(ln2)
-        return figures
+        plot.add_tools(chart_hover(_SHARES_TEXT, values, [shares], line_policy="nearest"))
+        return plot
 
-
-def _draw_curve(plot: figure, source: ColumnDataSource, column: str, colour: str) -> None:
-    plot.add_glyph(source, Line(x="value", y=column, line_color=colour, line_width=2))
-    points = plot.add_glyph(source, Scatter(x="value", y=column, size=5, fill_color=colour, line_color=colour))
-    ends = (f"@{name}_{end}" for name in ("exponent", "decay_rate") for end in ("low", "high"))
-    values = dict.fromkeys(("@value", f"@{column}", *ends), "number")
-    plot.add_tools(chart_hover(f"{_WORDS[column]}<br>at @value{{custom}}", values, [points], mode="vline"))
-
-
-def _finite(curves: Sweep, *columns: str) -> np.ndarray:
-    """The numbers in some columns, without NaN."""
-    values = np.concatenate([curves[column] for column in columns])
-    return values[np.isfinite(values)]
+    def _draw_panel(self, panel: CurvePanel) -> figure:
+        scale = {"y_axis_type": "log"} if panel.logarithmic else {}
+        plot = square_figure(
+            panel.name, panel.title, x_axis_label=" ", x_range=self._axis, y_range=self._values[panel.name], **scale
+        )
+        for (name, label), colour in zip(panel.labels.items(), _COLOURS, strict=False):
+            low, high = f"{name}_low", f"{name}_high"
+            plot.add_glyph(self.points, Line(x="value", y=name, line_color=colour, line_width=2))
+            plot.add_glyph(self.points, Segment(x0="value", x1="value", y0=low, y1=high, line_color=colour, line_alpha=0.6))
+            marks = plot.add_glyph(self.points, Scatter(x="value", y=name, size=5, fill_color=colour, line_color=colour))
+            bars = f", {panel.bars} @{low}{{custom}} to @{high}{{custom}}" if panel.bars else ""
+            text = f"{panel.title}, {label}: <b>@{name}{{custom}}</b>{bars}<br>at @value{{custom}}"
+            formats = dict.fromkeys(("@value", f"@{name}", f"@{low}", f"@{high}"), "number")
+            plot.add_tools(chart_hover(text, formats, [marks], mode="vline"))
+        if panel.level is not None:
+            line: dict[str, Any] = {"line_color": THRESHOLD, "line_dash": "dashed", "line_width": 1.5}
+            plot.add_layout(Span(location=panel.level[0], dimension="width", **line))
+        return plot
 
 
 def _is_dashed(code: int) -> bool:
@@ -252,8 +204,12 @@ def _is_dashed(code: int) -> bool:
     return code > 0 and code % 2 == 0
 
 
-def _key(entries: dict[str, str]) -> pn.viewable.Viewable:
-    return TextPane(legend(Entry(label, colour) for label, colour in entries.items()), margin=(0, 10))
+def _make_key(panel: CurvePanel) -> pn.viewable.Viewable:
+    bars = f" with its {panel.bars}" if panel.bars else ""
+    entries = [Entry(label + bars, colour) for label, colour in zip(panel.labels.values(), _COLOURS, strict=False)]
+    if panel.level is not None:
+        entries.append(Entry(panel.level[1], THRESHOLD))
+    return TextPane(legend(entries), margin=(0, 10))
 
 
 def _progress(curves: Sweep) -> str:

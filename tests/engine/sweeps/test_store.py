@@ -93,7 +93,7 @@ def run_until(spec: SweepSpec, store: Path, share: float) -> None:
 
 def test_a_store_has_the_sweep_of_memory(finished: Path) -> None:
     """It opens without a warning, which would be an error."""
-    with xr.open_zarr(finished, consolidated=False) as found:
+    with xr.open_zarr(finished) as found:
         xr.testing.assert_equal(found, compute_sweep(SPEC).dataset)
         assert found["fate"].dtype == np.int8
 

@@ -35,11 +35,10 @@ from engine import (
     fit_decay_laws,
 )
 from engine.slices.default_window import default_window
-from engine.sweeps.measures import CURVES, SweepPoint, compute_point
+from engine.sweeps.measures import QUICK_CURVES, SweepPoint, compute_point
 from tests.engine.slices.test_parameter_family import THIRD_EXIT
 
-QUICK = CURVES[:-1]
-SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=QUICK)
+SPEC = SweepSpec(CASES["II"], Plane.X_PX, (0.3, 0.1, 0.2, 0.25, 0.2), (40, 40), t_max=500.0, measures=QUICK_CURVES)
 
 
 @pytest.fixture(scope="module")
