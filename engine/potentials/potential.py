@@ -15,7 +15,7 @@ import numpy as np
 
 from engine.expressions.nodes import Expression
 from engine.potentials.forms.expression_form import ExpressionForm
-from engine.potentials.forms.form import Form
+from engine.potentials.forms.form import Form, hessian_matrix
 from engine.potentials.forms.polynomial_form import PolynomialForm, checked_form
 from engine.potentials.outcomes import Centre, Outcome, checked_radius
 from engine.potentials.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
@@ -117,7 +117,7 @@ class Potential(Result):
     @cached_property
     def well(self) -> Well:
         """What follows from the potential: critical points, exits, symmetries, units."""
-        return self.lineage.make_well(self)
+        return self.lineage.make_well(self.form, self.rotation, self.centres, self.escape_radius)
 
     @property
     def critical_points(self) -> np.ndarray:
@@ -172,9 +172,9 @@ class Potential(Result):
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
         )
 
-    def continued(self, family: str, saddles: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
+    def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
         """The same potential as a member of a family, with exits that were found before; parameters as of `ContinuedWell`."""
-        return replace(self, lineage=Lineage(family, partial(ContinuedWell, saddles=saddles, maxima=maxima, around=around)))
+        return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
     def _changed(self, **values: Any) -> Potential:
         """Another potential, whose well is searched."""
@@ -296,8 +296,7 @@ class Potential(Result):
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
         """(2, 2) the Hessian matrix of V at one point."""
-        vxx, vxy, vyy = self.hessian(x, y)
-        return np.array([[vxx, vxy], [vxy, vyy]])
+        return hessian_matrix(self.form, x, y)
 
     def energy(self, states: Any) -> Any:
         """H of states (…, 4) = x, y, px, py."""
