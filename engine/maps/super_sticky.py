@@ -23,7 +23,6 @@ from engine.potentials.outcomes import OutcomeKind
 from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
-from engine.validation import checked_t_max
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -201,5 +200,5 @@ def _check(escape_map: EscapeMap, regularity: RegularityMap, t_max: float) -> No
         raise ValueError(f"escape_map: is on {escape_map.spec.plane.title}; must be on a slice without an axis h")
     if regularity.spec != escape_map.spec or not regularity.complete:
         raise ValueError("regularity: must be complete and of the same map")
-    if checked_t_max(t_max, unit=lambda: escape_map.spec.potential.well.exact_time_unit) < escape_map.spec.t_max:
+    if escape_map.spec.potential.checked_t_max(t_max) < escape_map.spec.t_max:
         raise ValueError(f"t_max={t_max}: must be at least the t_max of the map, {escape_map.spec.t_max:g}")

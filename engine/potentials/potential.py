@@ -22,7 +22,7 @@ from engine.potentials.related_wells import SEARCHED, ContinuedWell, Lineage, Sc
 from engine.potentials.well import Well
 from engine.potentials.well_units import WellUnits
 from engine.results.result import Result
-from engine.validation import check_type, checked_number, replace_unchecked
+from engine.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
 
 Terms = tuple[tuple[int, int, float], ...]
 
@@ -240,6 +240,10 @@ class Potential(Result):
     def reversed_in_time(self) -> Potential:
         """The potential whose orbits, with the velocities reversed, are those of this one backward in time: Ω is reversed."""
         return self._changed(rotation=-self.rotation) if self.rotation else self
+
+    def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
+        """`t_max` as a float, 0 < t_max ≤ longest; in units of the well where its unit of time is longer than 1."""
+        return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
 
     def check_same_motion(self, other: Potential, what: str) -> None:
         """Raise ValueError if the equations of motion are not those of another potential, of which a result is."""

@@ -21,7 +21,7 @@ from engine.potentials.well_units import AREA, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_pieces
-from engine.validation import checked_count, checked_state, checked_t_max, short_repr
+from engine.validation import checked_count, checked_state, short_repr
 
 MAX_INTERVALS = 100_000
 """Largest number of intervals: more than any screen or page can show."""
@@ -85,7 +85,7 @@ def compute_radius_envelope(
     ValueError
         If a parameter is out of range, or the start lies outside.
     """
-    start, t_max = checked_state("state", state), checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
+    start, t_max = checked_state("state", state), potential.checked_t_max(t_max)
     intervals = checked_count("intervals", intervals, 1, MAX_INTERVALS)
     units, well = potential.units, potential.in_well_units
     start, t_max = start / units.state, t_max / units.time
