@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from engine.potentials.forms.expression_form import ExpressionForm
 from engine.potentials.forms.form import Form, hessian_matrix
 from engine.potentials.forms.polynomial_form import PolynomialForm, checked_form
 from engine.potentials.outcomes import Centre, Outcome, checked_radius
+from engine.potentials.parameters import WELL_PARAMETERS, symbol_of
 from engine.potentials.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.potentials.well import Well
 from engine.potentials.well_units import WellUnits
@@ -25,11 +25,6 @@ from engine.results.result import Result
 from engine.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
 
 Terms = tuple[tuple[int, int, float], ...]
-
-PARAMETER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
-    {"omega_1": (0.1, 10.0), "omega_2": (0.1, 10.0), "epsilon": (0.01, 100.0)}
-)
-"""Legal ranges of the parameters ω1, ω2 and ε of Zotos (2014)."""
 
 
 @dataclass(frozen=True, init=False)
@@ -327,13 +322,14 @@ class Potential(Result):
         ValueError
             If a parameter is out of range.
         """
-        for (name, (low, high)), value in zip(PARAMETER_RANGES.items(), (omega_1, omega_2, epsilon), strict=True):
+        chosen = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
+        for name, value in chosen.items():
+            low, high = WELL_PARAMETERS[name].range
             if not low <= checked_number(name, value) <= high:
                 raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
         is_changed = not omega_1 == omega_2 == epsilon == 1.0
         if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
-        symbols = (("ω1", omega_1), ("ω2", omega_2), ("ε", epsilon))
-        changed = ", ".join(f"{symbol}={value:g}" for symbol, value in symbols if value != 1.0)
+        changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
         return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)

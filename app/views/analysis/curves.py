@@ -18,7 +18,7 @@ from app.views.components.plots import FigurePane, set_decades, set_range, squar
 from app.views.components.texts import TextPane
 from app.views.components.widgets import button
 from engine import Curves, Outcome, System
-from engine.potentials.system import PARAMETERS
+from engine.potentials.parameters import symbol_of
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 
 TITLES = {
@@ -95,7 +95,7 @@ class CurvesView:
 
     def follow_system(self, system: System) -> None:
         """Offer the parameters of a system."""
-        self.against.options = {"h": "h"} | {PARAMETERS.get(name, name): name for name in system.parameter_names}
+        self.against.options = {"h": "h"} | {symbol_of(name): name for name in system.parameter_names}
 
     def follow_energy(self, energy: float) -> None:
         """Mark the energy in view."""
