@@ -15,7 +15,7 @@ import numpy as np
 
 from engine import CASES, Certificate, EscapeMap, Fate, MapSpec, Plane, compute_map
 from engine.execution import DEFAULT_EXECUTION
-from engine.potentials.catalogue import PAPER_ENERGIES
+from engine.potentials.catalogue.table import PAPER_ENERGIES
 
 SLOWEST = 5
 EARLY = [code for code in Certificate if code > Certificate.INTEGRATED]

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from engine import LyapunovOrbit, Potential, System, classify_orbits, find_lyapunov_orbits, sample_orbits, sample_starts
+from engine.potentials.catalogue.rotating_systems import ROTATING_ENTRIES
 from engine.potentials.outcomes import Centre
-from engine.potentials.rotating_systems import ROTATING_ENTRIES
 from engine.taylor.kernels.events import exit_distance
 
 STARTS, FAR = 600, 3.0

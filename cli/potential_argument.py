@@ -6,7 +6,7 @@ import re
 import reprlib
 
 from engine import POTENTIALS, Potential, System, review_potential
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import formula_letters
 from engine.potentials.parameters import WELL_PARAMETERS
 from engine.potentials.system import TYPED

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from engine import System
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import checked_letter_value, formula_letters
 from engine.potentials.parameters import WELL_PARAMETERS
 from engine.potentials.system import TYPED

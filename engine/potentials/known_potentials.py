@@ -8,8 +8,8 @@ from functools import cache
 from math import comb
 
 from engine.polynomials import HIGHEST_DEGREE
-from engine.potentials.catalogue import CATALOGUE, PAPER_ENERGIES
-from engine.potentials.names import ByName
+from engine.potentials.catalogue.names import ByName
+from engine.potentials.catalogue.table import CATALOGUE, PAPER_ENERGIES
 from engine.potentials.potential import Potential
 from engine.potentials.system import System
 from engine.validation import checked_count

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from engine.potentials.catalogue import CATALOGUE
-from engine.potentials.catalogue_entry import CatalogueEntry
+from engine.potentials.catalogue.entry import CatalogueEntry
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, formula_letters, parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.parameters import ROTATION, WELL_PARAMETERS, symbol_of

@@ -15,7 +15,7 @@ from app.views.components.flex_row import flex_row
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button
 from engine import PotentialReview, System
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
 from engine.potentials.parameters import WELL_PARAMETERS
 from engine.potentials.review.potential_review import SystemReview

@@ -9,7 +9,7 @@ import pytest
 from app.state.link_picture import LONGEST_TIME, SIDE, LinkPicture, picture_of
 from app.state.permalink import read_link
 from engine import CASES, MapSpec, Plane
-from engine.potentials.catalogue import PAPER_ENERGIES
+from engine.potentials.catalogue.table import PAPER_ENERGIES
 from engine.potentials.review.potential_review import review_system
 
 
