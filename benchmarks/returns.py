@@ -11,6 +11,7 @@ import numpy as np
 from engine import LyapunovOrbit, Potential, System, classify_orbits, find_lyapunov_orbits, sample_orbits, sample_starts
 from engine.potentials.catalogue.rotating_systems import ROTATING_ENTRIES
 from engine.potentials.outcomes import Centre
+from engine.potentials.review.potential_review import review_system
 from engine.taylor.kernels.events import exit_distance
 
 STARTS, FAR = 600, 3.0
@@ -58,7 +59,7 @@ def main() -> None:
     print("| system | h | left | came back |\n|---|---|---|---|")
     for entry in ROTATING_ENTRIES:
         system = System(entry.name)
-        potential, high = system.potential, system.energies.high
+        potential, high = system.potential, review_system(system).energies.high
         for share in SHARES if potential.channels else ():
             energy = potential.escape_energy + share * (high - potential.escape_energy)
             exits = exit_states(potential, energy)

@@ -78,9 +78,9 @@ _ENTRIES = (
     ),
 )
 
+_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
+
 CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
-    "potential",
-    {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)},
-    {entry.name: entry.title for entry in (*_ENTRIES, *ROTATING_ENTRIES)},
+    "potential", _BY_NAME, _BY_NAME.__getitem__, {name: entry.title for name, entry in _BY_NAME.items()}
 )
 """The potentials included in the engine with their descriptions, by name; the three cases of Zotos (2014) come first."""
