@@ -6,9 +6,10 @@ import re
 import reprlib
 
 from engine import POTENTIALS, Potential, System, review_potential
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import formula_letters
-from engine.potentials.system import PARAMETERS, TYPED
+from engine.potentials.parameters import WELL_PARAMETERS
+from engine.potentials.system import TYPED
 from plots.accepted_potentials import refusal
 
 
@@ -50,7 +51,7 @@ def find_system(case: str) -> System:
 
 
 def _read_parameters(case: str, formula: str, text: str) -> dict[str, float]:
-    legal = CATALOGUE[formula].adjustable if formula in CATALOGUE else (*PARAMETERS, *_letters(formula))
+    legal = CATALOGUE[formula].adjustable if formula in CATALOGUE else (*WELL_PARAMETERS, *_letters(formula))
     chosen: dict[str, float] = {}
     for part in text.split(","):
         name, _, value = part.partition("=")

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from engine import System
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import checked_letter_value, formula_letters
-from engine.potentials.system import RANGES, TYPED
+from engine.potentials.parameters import WELL_PARAMETERS
+from engine.potentials.system import TYPED
 
 LETTERS = "letters"
 """Parameter with the values of the letters of a formula, such as a:1.5,b:-2."""
@@ -16,7 +17,7 @@ LETTERS = "letters"
 def read_letters(text: str) -> dict[str, float]:
     """Values of letters from "a:1.5,b:-2"."""
     pairs = [pair.split(":") for pair in text.split(",")]
-    if any(name in RANGES for name, *_ in pairs):
+    if any(name in WELL_PARAMETERS for name, *_ in pairs):
         raise ValueError
     return {name: checked_letter_value(name, float(value)) for name, value in pairs}
 
@@ -31,7 +32,7 @@ def drop_unknown_letters(values: dict[str, Any]) -> list[str]:
     """Drop values of letters that the formula does not have, and return a message for them."""
     letters = _letters(values)
     given = values.get("parameters", {})
-    unknown = [name for name in given if name not in RANGES and name not in letters]
+    unknown = [name for name in given if name not in WELL_PARAMETERS and name not in letters]
     if not unknown:
         return []
     values["parameters"] = {name: value for name, value in given.items() if name not in unknown}

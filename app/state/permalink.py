@@ -26,8 +26,9 @@ from app.state.view_state import (
 from app.state.watched_starts import COUNTS, DEFAULT_STARTS, StartsFrom, WatchedStarts
 from engine import POTENTIALS, Plane, Slice, System, Window
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT
+from engine.potentials.parameters import WELL_PARAMETERS
 from engine.potentials.review.potential_review import SystemReview
-from engine.potentials.system import RANGES, TYPED
+from engine.potentials.system import TYPED
 from engine.slices.slice_text import read_slice, write_slice
 from engine.validation import LARGEST_NUMBER
 from plots.map_images import ON_DEMAND
@@ -137,7 +138,7 @@ def _system_in_link(system: System) -> dict[str, str]:
     return {
         "case": system.case,
         **({"V": system.formula} if system.case == TYPED else {}),
-        **{name: repr(value) for name, value in system.parameters.items() if name in RANGES},
+        **{name: repr(value) for name, value in system.parameters.items() if name in WELL_PARAMETERS},
         **letters_in_link(system),
     }
 
@@ -320,7 +321,7 @@ def _listed(choices: Iterable[str]) -> str:
 _CASES = {name: name for name in (*POTENTIALS, TYPED)}
 _PLANE, _FIX = "plane", "fix"
 _COMPARED = "with_"
-_DESCRIBES_VIEW = ("case", "V", *RANGES, LETTERS, _PLANE, _FIX)
+_DESCRIBES_VIEW = ("case", "V", *WELL_PARAMETERS, LETTERS, _PLANE, _FIX)
 _SWITCH = {"yes": True, "no": False}
 _ANALYSES = {analysis.value: analysis for analysis in Analysis}
 _PICTURES = {name: name for name in PICTURES}
@@ -334,7 +335,7 @@ _READERS: dict[str, tuple[str, Callable[[str], Any], str]] = {
     "V": ("formula", str, f"a formula in x and y of at most {LONGEST_TEXT} characters"),
     **{
         name: ("parameters", _parameter(name, low, high), f"a number from {low:g} to {high:g}")
-        for name, (low, high) in RANGES.items()
+        for name, (_, _, (low, high)) in WELL_PARAMETERS.items()
     },
     LETTERS: (
         "parameters",

@@ -16,8 +16,8 @@ from app.state.system_review import map_energy, review_catalogue_entry
 from app.state.watched_starts import DEFAULT_STARTS, WatchedStarts
 from engine import POTENTIALS, MapSpec, Orbit, Plane, Potential, Slice, System, Window, integrate_orbit, start_states
 from engine.jobs.job import Job, Queue
-from engine.potentials.catalogue import PAPER_ENERGIES
-from engine.potentials.catalogue_entry import EnergyRange
+from engine.potentials.catalogue.entry import EnergyRange
+from engine.potentials.catalogue.table import PAPER_ENERGIES
 from engine.potentials.review.potential_review import SystemReview
 from engine.potentials.system import TYPED
 from engine.validation import LARGEST_NUMBER

@@ -16,7 +16,7 @@ from engine.potentials.outcomes import Outcome
 from engine.potentials.potential import Potential
 from engine.potentials.well_units import TIME
 from engine.results.arrays import read_only
-from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checked_t_max, checks_types
+from engine.validation import LARGEST_NUMBER, checked_array, checked_number, checks_types
 
 ENERGY_TOLERANCE = 1e-9
 """Largest difference between the energy of a start and the given energy, in units of the well."""
@@ -109,7 +109,7 @@ def classify_orbits(
     ([1, 1, 1], [45.7, 2.03, 1.82])
     """
     states = _checked_states(potential, energy, states)
-    t_max = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
+    t_max = potential.checked_t_max(t_max)
     units, well = potential.units, potential.in_well_units
     outcomes = classify_in_well_units(well, energy / units.energy, states / units.state, t_max / units.time, execution)
     return replace(units.restore(outcomes), t_max=t_max, outcomes=potential.outcomes_at(energy))

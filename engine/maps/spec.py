@@ -22,7 +22,7 @@ from engine.slices.slice_text import write_slice
 from engine.slices.window import GivenWindow, Window, checked_window
 from engine.taylor.source.recurrence import TOLERANCE
 from engine.taylor.source.series import ORDER
-from engine.validation import check_type, checked_flag, checked_t_max, replace_unchecked, short_repr
+from engine.validation import check_type, checked_flag, replace_unchecked, short_repr
 
 LARGEST_SIDE = 4096
 """Largest number of columns or rows of a map."""
@@ -97,7 +97,7 @@ class MapSpec:
             "energy": plane.checked_energy(self.energy),
             "resolution": _checked_resolution(self.resolution),
             "window": None if self.window is None else checked_window(self.window),
-            "t_max": checked_t_max(self.t_max, unit=lambda: self.potential.well.exact_time_unit),
+            "t_max": self.potential.checked_t_max(self.t_max),
             "certify": checked_flag("certify", self.certify),
             "backward": checked_flag("backward", self.backward),
         }

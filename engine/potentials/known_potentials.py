@@ -2,36 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
 from math import comb
 
 from engine.polynomials import HIGHEST_DEGREE
-from engine.potentials.catalogue import CATALOGUE, PAPER_ENERGIES
-from engine.potentials.names import ByName
+from engine.potentials.catalogue.names import ByName
+from engine.potentials.catalogue.table import CATALOGUE, PAPER_ENERGIES
 from engine.potentials.potential import Potential
 from engine.potentials.system import System
 from engine.validation import checked_count
-
-
-class _Potentials(Mapping[str, Potential]):
-    """The potentials of entries of the catalogue, each made at its first use."""
-
-    def __init__(self, names: Iterable[str]) -> None:
-        self._names = tuple(names)
-
-    def __getitem__(self, name: str) -> Potential:
-        return _potential(name)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._names
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
 
 
 @cache
@@ -39,11 +20,11 @@ def _potential(name: str) -> Potential:
     return System(name).potential
 
 
-CASES: Mapping[str, Potential] = ByName("case", _Potentials(PAPER_ENERGIES))
+CASES: Mapping[str, Potential] = ByName("case", PAPER_ENERGIES, _potential)
 """The three cases of Zotos (2014): V = (x² + y²)/2 + V1 with V1 = −x y², −x (x²/3 − y²) and −x² y²."""
 
 POTENTIALS: Mapping[str, Potential] = ByName(
-    "potential", _Potentials(CATALOGUE), {name: entry.title for name, entry in CATALOGUE.items()}
+    "potential", CATALOGUE, _potential, {name: entry.title for name, entry in CATALOGUE.items()}
 )
 """All potentials included in the engine, by name: ``POTENTIALS["HH"]``; the three cases of Zotos (2014) come first."""
 

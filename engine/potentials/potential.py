@@ -8,28 +8,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from engine.expressions.nodes import Expression
 from engine.potentials.forms.expression_form import ExpressionForm
-from engine.potentials.forms.form import Form
+from engine.potentials.forms.form import Form, hessian_matrix
 from engine.potentials.forms.polynomial_form import PolynomialForm, checked_form
 from engine.potentials.outcomes import Centre, Outcome, checked_radius
+from engine.potentials.parameters import WELL_PARAMETERS, symbol_of
 from engine.potentials.related_wells import SEARCHED, ContinuedWell, Lineage, ScaledWell
 from engine.potentials.well import Well
 from engine.potentials.well_units import WellUnits
 from engine.results.result import Result
-from engine.validation import check_type, checked_number, replace_unchecked
+from engine.validation import LONGEST_TIME, check_type, checked_number, checked_t_max, replace_unchecked
 
 Terms = tuple[tuple[int, int, float], ...]
-
-PARAMETER_RANGES: Mapping[str, tuple[float, float]] = MappingProxyType(
-    {"omega_1": (0.1, 10.0), "omega_2": (0.1, 10.0), "epsilon": (0.01, 100.0)}
-)
-"""Legal ranges of the parameters ω1, ω2 and ε of Zotos (2014)."""
 
 
 @dataclass(frozen=True, init=False)
@@ -117,7 +112,7 @@ class Potential(Result):
     @cached_property
     def well(self) -> Well:
         """What follows from the potential: critical points, exits, symmetries, units."""
-        return self.lineage.make_well(self)
+        return self.lineage.make_well(self.form, self.rotation, self.centres, self.escape_radius)
 
     @property
     def critical_points(self) -> np.ndarray:
@@ -172,9 +167,9 @@ class Potential(Result):
             lineage=replace(self.lineage, make_well=partial(ScaledWell, stated=self.well)),
         )
 
-    def continued(self, family: str, saddles: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
+    def continued(self, family: str, found: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> Potential:
         """The same potential as a member of a family, with exits that were found before; parameters as of `ContinuedWell`."""
-        return replace(self, lineage=Lineage(family, partial(ContinuedWell, saddles=saddles, maxima=maxima, around=around)))
+        return replace(self, lineage=Lineage(family, partial(ContinuedWell, found=found, maxima=maxima, around=around)))
 
     def _changed(self, **values: Any) -> Potential:
         """Another potential, whose well is searched."""
@@ -241,6 +236,10 @@ class Potential(Result):
         """The potential whose orbits, with the velocities reversed, are those of this one backward in time: Ω is reversed."""
         return self._changed(rotation=-self.rotation) if self.rotation else self
 
+    def checked_t_max(self, t_max: Any, longest: float = LONGEST_TIME, *, name: str = "t_max") -> float:
+        """`t_max` as a float, 0 < t_max ≤ longest; in units of the well where its unit of time is longer than 1."""
+        return checked_t_max(t_max, longest, lambda: self.well.exact_time_unit, name=name)
+
     def check_same_motion(self, other: Potential, what: str) -> None:
         """Raise ValueError if the equations of motion are not those of another potential, of which a result is."""
         if (self.form, self.rotation) != (other.form, other.rotation):
@@ -296,8 +295,7 @@ class Potential(Result):
 
     def hessian_matrix(self, x: float, y: float) -> np.ndarray:
         """(2, 2) the Hessian matrix of V at one point."""
-        vxx, vxy, vyy = self.hessian(x, y)
-        return np.array([[vxx, vxy], [vxy, vyy]])
+        return hessian_matrix(self.form, x, y)
 
     def energy(self, states: Any) -> Any:
         """H of states (…, 4) = x, y, px, py."""
@@ -324,13 +322,14 @@ class Potential(Result):
         ValueError
             If a parameter is out of range.
         """
-        for (name, (low, high)), value in zip(PARAMETER_RANGES.items(), (omega_1, omega_2, epsilon), strict=True):
+        chosen = {"omega_1": omega_1, "omega_2": omega_2, "epsilon": epsilon}
+        for name, value in chosen.items():
+            low, high = WELL_PARAMETERS[name].range
             if not low <= checked_number(name, value) <= high:
                 raise ValueError(f"{name}={value}: must be between {low:g} and {high:g}")
         is_changed = not omega_1 == omega_2 == epsilon == 1.0
         if is_changed and not np.isfinite(self.hessian_matrix(0.0, 0.0)).all():
             raise ValueError(f"omega_1, omega_2, epsilon: V of {self.name} has no expansion about the origin; must be 1")
-        symbols = (("ω1", omega_1), ("ω2", omega_2), ("ε", epsilon))
-        changed = ", ".join(f"{symbol}={value:g}" for symbol, value in symbols if value != 1.0)
+        changed = ", ".join(f"{symbol_of(name)}={value:g}" for name, value in chosen.items() if value != 1.0)
         form = self.form.with_parameters(omega_1, omega_2, epsilon)
         return self._changed(name=f"{self.name} ({changed})" if changed else self.name, form=form)

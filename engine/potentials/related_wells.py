@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,24 +13,18 @@ from engine.potentials.well import Well
 from engine.potentials.well_units import WellUnits
 from engine.results.arrays import read_only
 
-if TYPE_CHECKING:
-    from engine.potentials.potential import Potential
 
-
+@dataclass(frozen=True, eq=False)
 class ScaledWell(Well):
     """The well of a potential in units of its well.
 
-    Parameters
+    Attributes
     ----------
-    potential
-        The potential in these units.
     stated
         The same well in the units in which the potential was given; exits are those of this one, divided by powers of 2.
     """
 
-    def __init__(self, potential: Potential, stated: Well) -> None:
-        super().__init__(potential)
-        self._stated = stated
+    stated: Well
 
     @cached_property
     def units(self) -> WellUnits:
@@ -41,17 +34,17 @@ class ScaledWell(Well):
     @property
     def stated_units(self) -> WellUnits:
         """The units of the potential as it was given."""
-        return self._stated.units
+        return self.stated.units
 
     @cached_property
     def saddles(self) -> np.ndarray:
         """See `Well.saddles`."""
-        return read_only(self._stated.saddles / self.stated_units.length)
+        return read_only(self.stated.saddles / self.stated_units.length)
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
         """See `Well.outward_directions`."""
-        return self._stated.outward_directions
+        return self.stated.outward_directions
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
@@ -59,18 +52,17 @@ class ScaledWell(Well):
         units = self.stated_units
         return tuple(
             ChannelMerger(energy / units.energy, x / units.length, y / units.length, channels)
-            for energy, x, y, channels in self._stated.channel_mergers
+            for energy, x, y, channels in self.stated.channel_mergers
         )
 
 
+@dataclass(frozen=True, eq=False)
 class ContinuedWell(Well):
     """A well whose exits were continued from those of a potential nearby.
 
-    Parameters
+    Attributes
     ----------
-    potential
-        The potential.
-    saddles
+    found
         (n, 2) the saddles of all exits, in any order.
     maxima
         (m, 2) the maxima between exits.
@@ -78,20 +70,20 @@ class ContinuedWell(Well):
         For each maximum the places of its exits among the saddles.
     """
 
-    def __init__(self, potential: Potential, saddles: np.ndarray, maxima: np.ndarray, around: Sequence[Sequence[int]]) -> None:
-        super().__init__(potential)
-        self._given, self._maxima, self._around = saddles, maxima, around
+    found: np.ndarray
+    maxima: np.ndarray
+    around: Sequence[Sequence[int]]
 
     @cached_property
     def saddles(self) -> np.ndarray:
         """See `Well.saddles`."""
-        return self._in_channel_order(self._given)
+        return self._in_channel_order(self.found)
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
         """See `Well.channel_mergers`."""
-        channel = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self._given], int)
-        return self._mergers_at(self._maxima, [np.sort(channel[list(places)]) for places in self._around])
+        channel = np.array([1 + np.argmin(np.hypot(*(self.saddles - saddle).T)) for saddle in self.found], int)
+        return self._mergers_at(self.maxima, [np.sort(channel[list(places)]) for places in self.around])
 
 
 @dataclass(frozen=True)
@@ -104,11 +96,11 @@ class Lineage:
         Empty, or from which family the exits were continued (`ParameterFamily`). They may differ in the last bit from those that
         are found from the critical points, and so may results, which are therefore kept apart.
     make_well
-        Makes the well of the potential; it has no influence on any result.
+        Makes the well of form, rotation, centres and escape radius; it has no influence on any result.
     """
 
     family: str = ""
-    make_well: Callable[[Potential], Well] = field(default=Well, compare=False)
+    make_well: Callable[..., Well] = field(default=Well, compare=False)
 
 
 SEARCHED = Lineage()

@@ -6,23 +6,17 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from types import MappingProxyType
 
-from engine.potentials.catalogue import CATALOGUE
-from engine.potentials.catalogue_entry import ROTATION, WELL_PARAMETERS, CatalogueEntry
+from engine.potentials.catalogue.entry import CatalogueEntry
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, formula_letters, parse_formula
 from engine.potentials.formulas.formula_writer import write_formula
-from engine.potentials.potential import PARAMETER_RANGES, Potential
+from engine.potentials.parameters import ROTATION, WELL_PARAMETERS, symbol_of
+from engine.potentials.potential import Potential
 from engine.validation import check_type
 
 TYPED = "typed"
 """Case of a potential that is given by a formula."""
-
-PARAMETERS = {"omega_1": "ω1", "omega_2": "ω2", "epsilon": "ε", ROTATION: "Ω"}
-"""Symbols of the parameters."""
-
-RANGES: Mapping[str, tuple[float, float]] = MappingProxyType({**PARAMETER_RANGES, ROTATION: (-LARGEST_VALUE, LARGEST_VALUE)})
-"""Legal ranges of these parameters."""
 
 SHOWN_DIGITS = 12
 """Significant digits of the coefficients in formulas, where 1.46²/2 is 1.0658 without the rounding error of the product."""
@@ -61,7 +55,7 @@ class System:
         check_type("parameters", self.parameters, Mapping)
         _ = self.entry
         # Sorted, so that the order in which they were chosen changes neither titles nor links.
-        places = {name: place for place, name in enumerate(PARAMETERS)}
+        places = {name: place for place, name in enumerate(WELL_PARAMETERS)}
         ordered = sorted(self.parameters, key=lambda name: (places.get(name, len(places)), name))
         changed = {name: self.parameters[name] for name in ordered if self.parameters[name] != self.default_of(name)}
         object.__setattr__(self, "parameters", changed)
@@ -95,7 +89,7 @@ class System:
 
     def range_of(self, name: str) -> tuple[float, float]:
         """The smallest and the largest legal value of a parameter."""
-        return RANGES.get(name, (-LARGEST_VALUE, LARGEST_VALUE))
+        return WELL_PARAMETERS[name].range if name in WELL_PARAMETERS else (-LARGEST_VALUE, LARGEST_VALUE)
 
     def value_of(self, name: str) -> float:
         """The value of a parameter."""
@@ -118,17 +112,17 @@ class System:
     @property
     def well_parameters(self) -> dict[str, float]:
         """Those of ω1, ω2 and ε that are not 1."""
-        return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS}
+        return {name: value for name, value in self.parameters.items() if name in WELL_PARAMETERS and name != ROTATION}
 
     @property
     def letter_parameters(self) -> dict[str, float]:
         """The values of letters that are not given by default."""
-        return {name: value for name, value in self.parameters.items() if name not in PARAMETERS}
+        return {name: value for name, value in self.parameters.items() if name not in WELL_PARAMETERS}
 
     @property
     def title(self) -> str:
         """Name of the potential, with the parameters that are not 1."""
-        changed = ", ".join(f"{PARAMETERS.get(name, name)} = {value:.6g}" for name, value in self.parameters.items())
+        changed = ", ".join(f"{symbol_of(name)} = {value:.6g}" for name, value in self.parameters.items())
         return f"{self.entry.title} with {changed}" if changed else self.entry.title
 
     @property
@@ -152,6 +146,6 @@ def _potential(system: System) -> Potential:
         legal = ", ".join(entry.adjustable) or "none"
         raise ValueError(f"parameters: {reprlib.repr(unknown[0])} is no parameter of {system.case}; it has {legal}")
     values = {**entry.parameters, **system.parameters}
-    letters = {name: value for name, value in values.items() if name not in PARAMETERS}
-    well = {name: value for name, value in values.items() if name in WELL_PARAMETERS}
+    letters = {name: value for name, value in values.items() if name not in WELL_PARAMETERS}
+    well = {name: value for name, value in values.items() if name in WELL_PARAMETERS and name != ROTATION}
     return parse_formula(entry.formula, entry.name, letters).with_parameters(**well).in_rotating_frame(values[ROTATION])

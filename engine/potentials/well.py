@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from engine.potentials.forms.exit_saddles import find_maxima_beside, leads_out_of_well
+from engine.potentials.forms.form import Form, hessian_matrix
 from engine.potentials.forms.stored_points import stored_points
 from engine.potentials.merged_channels import ChannelMerger, MergedExit, describe_channel, exit_numbers, merged_exits
-from engine.potentials.outcomes import Outcome, exit_outcome, outcomes_of
+from engine.potentials.outcomes import Centre, Outcome, exit_outcome, outcomes_of
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.results.arrays import ReadOnlyArrays, read_only
 from engine.taylor.source.series import Setting
-
-if TYPE_CHECKING:
-    from engine.potentials.potential import Potential
 
 EQUAL_ENERGY_TOLERANCE = 1e-12
 """Saddles whose energies differ by less count as equally high; in units of the well's energy."""
@@ -30,19 +29,22 @@ _ROUNDING = 1e-13
 _TYPICAL_SHARE, _CIRCLE_POINTS = 0.1, 64
 
 
+@dataclass(frozen=True, eq=False)
 class Well(ReadOnlyArrays):
     """The well, or the centre, at the origin of a potential, and its exits.
 
     Lengths and energies are in the units of the potential.
 
-    Parameters
+    Attributes
     ----------
-    potential
-        The potential.
+    form, rotation, centres, escape_radius
+        Those of the potential.
     """
 
-    def __init__(self, potential: Potential) -> None:
-        self.potential = potential
+    form: Form
+    rotation: float
+    centres: tuple[Centre, ...]
+    escape_radius: float | None
 
     @property
     def critical_points(self) -> np.ndarray:
@@ -59,8 +61,7 @@ class Well(ReadOnlyArrays):
 
     @cached_property
     def _points_and_indices(self) -> np.ndarray:
-        form = self.potential.form
-        return read_only(stored_points("critical_points", form, form.find_critical_points))
+        return read_only(stored_points("critical_points", self.form, self.form.find_critical_points))
 
     @cached_property
     def saddles(self) -> np.ndarray:
@@ -70,9 +71,9 @@ class Well(ReadOnlyArrays):
         of the two lines of steepest descent ends at the origin are exits. Zotos (2014) prints the saddle test without the
         square of V_xy, which is a misprint. With an escape radius there are none.
         """
-        if self.potential.escape_radius is not None:
+        if self.escape_radius is not None:
             return read_only(np.empty((0, 2)))
-        form, points, indices = self.potential.form, self.critical_points, self.critical_indices
+        form, points, indices = self.form, self.critical_points, self.critical_indices
         leads_out = stored_points(
             "exit_saddles", form, lambda: leads_out_of_well(form.downhill, form.hessian, points, indices, form.singular_points)
         )
@@ -95,7 +96,7 @@ class Well(ReadOnlyArrays):
     @cached_property
     def saddle_energies(self) -> np.ndarray:
         """(channels,) V at each exit saddle, in channel order."""
-        return read_only(np.asarray(self.potential.value(self.saddles[:, 0], self.saddles[:, 1]), dtype=float))
+        return read_only(np.asarray(self.form.value(self.saddles[:, 0], self.saddles[:, 1]), dtype=float))
 
     @cached_property
     def escape_energy(self) -> float:
@@ -103,7 +104,7 @@ class Well(ReadOnlyArrays):
 
         With an escape radius −∞: at every energy there may be orbits outside the saddles.
         """
-        if self.potential.escape_radius is not None:
+        if self.escape_radius is not None:
             return -np.inf
         return float(self.saddle_energies.min(initial=np.inf))
 
@@ -118,7 +119,7 @@ class Well(ReadOnlyArrays):
 
         With an escape radius never. In a rotating frame orbits cannot pass the zero-velocity curve V = h either.
         """
-        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.potential.centres)
+        return np.logical_and(np.asarray(energy) <= self.escape_energy, not self.centres)
 
     @cached_property
     def outward_directions(self) -> np.ndarray:
@@ -130,20 +131,19 @@ class Well(ReadOnlyArrays):
         return read_only(directions)
 
     def _unstable_direction(self, saddle: np.ndarray) -> np.ndarray:
-        direction: np.ndarray = np.linalg.eigh(self.potential.hessian_matrix(*saddle))[1][:, 0]
+        direction: np.ndarray = np.linalg.eigh(hessian_matrix(self.form, *saddle))[1][:, 0]
         direction = np.where(np.abs(direction) < _ROUNDING, 0.0, direction)
         return direction if direction @ saddle > 0 else -direction
 
     @cached_property
     def outcomes(self) -> tuple[Outcome, ...]:
         """What orbits can end at: the exits in channel order, the centres, the escape radius; the first one is fate 1."""
-        return outcomes_of(self.channels, self.potential.centres, self.potential.escape_radius is not None)
+        return outcomes_of(self.channels, self.centres, self.escape_radius is not None)
 
     @property
     def setting(self) -> Setting:
         """What the compiled functions depend on besides the formula."""
-        given = self.potential
-        return Setting(self.channels, len(given.centres), given.escape_radius is not None, given.rotation != 0.0)
+        return Setting(self.channels, len(self.centres), self.escape_radius is not None, self.rotation != 0.0)
 
     @cached_property
     def channel_mergers(self) -> tuple[ChannelMerger, ...]:
@@ -153,7 +153,7 @@ class Well(ReadOnlyArrays):
         """
         if not self.channels:
             return ()
-        form, points, indices = self.potential.form, self.critical_points, self.critical_indices
+        form, points, indices = self.form, self.critical_points, self.critical_indices
         saddles = np.array([np.argmin(np.hypot(*(points - saddle).T)) for saddle in self.saddles], int)
         beside = stored_points("maxima", form, lambda: find_maxima_beside(form.downhill, form.hessian, points, indices, saddles))
         maxima = np.flatnonzero(beside.sum(axis=0) > 1)
@@ -163,7 +163,7 @@ class Well(ReadOnlyArrays):
         """The mergers at maxima (n, 2) between channels, the lowest first."""
         places = zip(maxima.tolist(), channels, strict=True)
         return tuple(
-            sorted(ChannelMerger(float(self.potential.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in places)
+            sorted(ChannelMerger(float(self.form.value(x, y)), x, y, tuple(around.tolist())) for (x, y), around in places)
         )
 
     def merged_exits(self, energy: float) -> tuple[MergedExit, ...]:
@@ -191,21 +191,21 @@ class Well(ReadOnlyArrays):
     @property
     def mirror_in_x(self) -> bool:
         """Whether (x, px) → (−x, −px) maps orbits to orbits, exactly in floating point: V is even in x, and nothing rotates."""
-        return self.potential.form.mirror_in_x and self._mirrors_centres([-1.0, 1.0])
+        return self.form.mirror_in_x and self._mirrors_centres([-1.0, 1.0])
 
     @property
     def mirror_in_y(self) -> bool:
         """Whether (y, py) → (−y, −py) maps orbits to orbits, exactly in floating point: V is even in y, and nothing rotates."""
-        return self.potential.form.mirror_in_y and self._mirrors_centres([1.0, -1.0])
+        return self.form.mirror_in_y and self._mirrors_centres([1.0, -1.0])
 
     def _mirrors_centres(self, signs: Sequence[float]) -> bool:
-        discs = {(each.x, each.y, each.radius) for each in self.potential.centres}
-        return not self.potential.rotation and {(signs[0] * x, signs[1] * y, radius) for x, y, radius in discs} == discs
+        discs = {(each.x, each.y, each.radius) for each in self.centres}
+        return not self.rotation and {(signs[0] * x, signs[1] * y, radius) for x, y, radius in discs} == discs
 
     @cached_property
     def mirror_channels(self) -> np.ndarray:
         """(outcomes + 1,) the image of each fate under x → −x; entry 0 is 0. Only valid if `mirror_in_x`."""
-        places = (self.saddles, np.array([(centre.x, centre.y) for centre in self.potential.centres]).reshape(-1, 2))
+        places = (self.saddles, np.array([(centre.x, centre.y) for centre in self.centres]).reshape(-1, 2))
         images = [np.arange(1)]
         for points in places:
             if len(points):
@@ -222,14 +222,14 @@ class Well(ReadOnlyArrays):
     @cached_property
     def is_minimum(self) -> bool:
         """Whether V curves upward in all directions at the origin."""
-        matrix = self.potential.hessian_matrix(0.0, 0.0)
+        matrix = hessian_matrix(self.form, 0.0, 0.0)
         return bool(np.isfinite(matrix).all() and np.linalg.eigvalsh(matrix)[0] > 0.0)
 
     @property
     def typical_radius(self) -> float:
         """Half the distance of the nearest exit saddle, or a share of the escape radius; 0 without either."""
-        if self.potential.escape_radius is not None:
-            return _TYPICAL_SHARE * self.potential.escape_radius
+        if self.escape_radius is not None:
+            return _TYPICAL_SHARE * self.escape_radius
         return 0.5 * float(np.hypot(*self.saddles.T).min(initial=0.0 if not self.channels else np.inf))
 
     @property
@@ -245,10 +245,10 @@ class Well(ReadOnlyArrays):
         Without a well that of a circle of typical size about the origin: the square is the average slope of V over the radius.
         """
         if self.is_minimum or not self.typical_radius:
-            matrix = self.potential.hessian_matrix(0.0, 0.0)
+            matrix = hessian_matrix(self.form, 0.0, 0.0)
             with np.errstate(invalid="ignore"):
                 return float(np.sqrt(np.linalg.eigvalsh(matrix)[-1])) if np.isfinite(matrix).all() else np.nan
-        slope = np.hypot(*self.potential.gradient(*self._typical_circle))
+        slope = np.hypot(*self.form.gradient(*self._typical_circle))
         return float(np.sqrt(slope[np.isfinite(slope)].mean() / self.typical_radius))
 
     @property
@@ -267,10 +267,10 @@ class Well(ReadOnlyArrays):
         """
         frequency = self.fastest_frequency
         time = 1.0 / nearest_power_of_two(frequency) if np.isfinite(frequency) and frequency > 0.0 else 1.0
-        if self.potential.escape_radius is not None:
+        if self.escape_radius is not None:
             return WellUnits(nearest_power_of_two(self.typical_radius), time)
         if not self.channels:
-            return WellUnits(self.potential.form.length, time)
+            return WellUnits(self.form.length, time)
         return WellUnits(nearest_power_of_two(float(np.hypot(*self.saddles.T).min())), time)
 
     @property
@@ -285,8 +285,8 @@ class Well(ReadOnlyArrays):
         Without a well its average on a circle with half the distance of the nearest exit saddle, or a tenth of the escape radius.
         """
         if self.is_minimum or not self.typical_radius:
-            return float(self.potential.value(0.0, 0.0))
-        value = self.potential.value(*self._typical_circle)
+            return float(self.form.value(0.0, 0.0))
+        value = self.form.value(*self._typical_circle)
         return float(value[np.isfinite(value)].mean())
 
     def energy_at(self, multiple: float) -> float:

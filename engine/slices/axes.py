@@ -9,8 +9,9 @@ from typing import Self
 
 import numpy as np
 
+from engine.potentials.parameters import symbol_of
 from engine.potentials.potential import Potential
-from engine.potentials.system import PARAMETERS, System
+from engine.potentials.system import System
 from engine.potentials.well_units import WellUnits, nearest_power_of_two
 from engine.validation import check_type, checked_number, short_repr
 
@@ -152,7 +153,7 @@ class _OfSystem:
     @property
     def symbol(self) -> str:
         """The name in texts and at axes."""
-        return PARAMETERS.get(self.key, self.key)
+        return symbol_of(self.key)
 
     @property
     def parity(self) -> int:

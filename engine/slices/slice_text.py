@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.potentials.system import PARAMETERS, System
+from engine.potentials.parameters import WELL_PARAMETERS
+from engine.potentials.system import System
 from engine.slices.axes import STATE, Axis, Coordinate, Direction, ParameterAxis
 from engine.slices.planes import Plane, checked_slice
 from engine.slices.slice import Slice
@@ -14,7 +15,7 @@ AXIS_NAMES = tuple(coordinate.key for coordinate in Coordinate if coordinate is 
 _COORDINATES = {coordinate.key: coordinate for coordinate in Coordinate}
 _ALIASES = {
     **{coordinate.symbol: coordinate.key for coordinate in Coordinate},
-    **{symbol: key for key, symbol in PARAMETERS.items()},
+    **{parameter.symbol: key for key, parameter in WELL_PARAMETERS.items()},
     "eps": "epsilon",
 }
 _SIGNS = {"+": 1, "-": -1}

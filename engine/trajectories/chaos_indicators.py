@@ -29,7 +29,7 @@ from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.results.wording import format_time
 from engine.trajectories.trajectory import Orbit
-from engine.validation import checked_state, checked_t_max, checks_types
+from engine.validation import checked_state, checks_types
 
 MIN_GROWTH_TIME = 100.0
 """Shortest orbit judged by the growth of a deviation vector, in units of the well.
@@ -154,7 +154,7 @@ def compute_birkhoff_digits(
     array([8.9])
     """
     start, units = checked_state("state", state), potential.units
-    t_max = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit)
+    t_max = potential.checked_t_max(t_max)
     return units.restore(_compare_windows(potential.in_well_units, start[None] / units.state, t_max / units.time, execution))
 
 

@@ -17,7 +17,7 @@ from engine.potentials.well_units import LENGTH
 from engine.slices.energies import Energy
 from engine.slices.planes import checked_slice
 from engine.slices.slice import Slice
-from engine.validation import checked_number, checked_t_max, checks_types
+from engine.validation import checked_number, checks_types
 
 # Lengths and times are in units of the well. A few hundred units in the last place of coordinates of order 1:
 _MIN_DISTANCE = 1e-13
@@ -122,7 +122,7 @@ def find_divergent_start(
     h = _checked_energy(plane, energy, x, ordinate)
     if plane.parameter is not None:
         potential, plane = plane.potential_at(potential, x, ordinate), plane.line((x, ordinate)[plane.parameter_axis or 0])
-    t_max, units = checked_t_max(t_max, unit=lambda: potential.well.exact_time_unit), potential.units
+    t_max, units = potential.checked_t_max(t_max), potential.units
     nearest = _MIN_DISTANCE * units.length
     furthest = units.length if furthest is None else checked_number("furthest", furthest, f"a finite number above {nearest:g}")
     if not furthest > nearest:

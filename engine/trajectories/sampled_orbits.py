@@ -19,7 +19,7 @@ from engine.potentials.well_units import ENERGY, LENGTH, MOMENTUM, TIME
 from engine.results.arrays import read_only
 from engine.taylor.kernels.dense_output import sample_path
 from engine.trajectories.trajectory import MAX_ORBIT_TIME
-from engine.validation import LARGEST_NUMBER, checked_array, checked_t_max, checks_types, short_repr
+from engine.validation import LARGEST_NUMBER, checked_array, checks_types, short_repr
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -168,5 +168,5 @@ def _checked_times(times: np.ndarray, count: int, potential: Potential) -> np.nd
     if not (has_shape and (rows[:, 0] >= 0.0).all() and (np.diff(rows) >= 0.0).all()):
         raise ValueError(f"times of shape {times.shape}: must be ascending from 0, (m,) or ({count}, m)")
     for last in (rows[:, -1].min(), rows[:, -1].max()):
-        checked_t_max(float(last), MAX_ORBIT_TIME, lambda: potential.well.exact_time_unit, name="times: the last one")
+        potential.checked_t_max(float(last), MAX_ORBIT_TIME, name="times: the last one")
     return rows

@@ -14,7 +14,7 @@ from engine.potentials.well_units import LENGTH, TIME
 from engine.results.arrays import read_only
 from engine.results.result import Result
 from engine.taylor.kernels.dense_output import sample_path, trace_steps
-from engine.validation import checked_state, checked_t_max, checks_types
+from engine.validation import checked_state, checks_types
 
 LONGEST_SEPARATION = 2000.0
 """Longest time over which two orbits are compared, in units of the well: neighbours in a chaotic sea separate long before."""
@@ -80,10 +80,9 @@ def compute_separation(
     >>> distance.size, round(float(distance[-1] / distance[0]))
     (2000, 235)
     """
-    units, potential = potential.units, potential.in_well_units
-    longest = checked_t_max(t_end, unit=lambda: potential.well.exact_time_unit, name="t_end")
+    longest, units = potential.checked_t_max(t_end, name="t_end"), potential.units
     times = np.linspace(0.0, min(longest / units.time, LONGEST_SEPARATION), _SAMPLES)
-    kernels = kernels_of(potential)
+    kernels = kernels_of(potential.in_well_units)
     paths = []
     for name, state in (("first", first), ("second", second)):
         start = checked_state(name, state) / units.state

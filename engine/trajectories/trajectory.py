@@ -22,7 +22,7 @@ from engine.potentials.stored_potential import describe_potential
 from engine.potentials.well_units import AREA, ENERGY, LENGTH, MOMENTUM, RATE, TIME
 from engine.results.arrays import read_only
 from engine.taylor.kernels.dense_output import find_crossings, sample_deviations, sample_path, trace_steps
-from engine.validation import checked_state, checked_t_max, checks_types
+from engine.validation import checked_state, checks_types
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -175,7 +175,7 @@ def integrate_orbit(potential: Potential, state: Any, t_max: float = 1e5, *, exe
     (1, 15.1781, 8)
     """
     start, units = checked_state("state", state), potential.units
-    t_max = checked_t_max(t_max, MAX_ORBIT_TIME, lambda: potential.well.exact_time_unit)
+    t_max = potential.checked_t_max(t_max, MAX_ORBIT_TIME)
     orbit = _integrate(potential.in_well_units, start / units.state, t_max / units.time, execution)
     return replace(units.restore(orbit), potential=potential)
 

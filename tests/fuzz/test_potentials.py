@@ -13,8 +13,9 @@ from app.state.permalink import write_link
 from app.state.view_state import ViewState
 from cli.potential_argument import file_name_part, find_potential
 from engine import Potential, PotentialReview, System, parse_formula, review_potential, write_formula
+from engine.potentials.parameters import WELL_PARAMETERS
 from engine.potentials.review.potential_review import review_system
-from engine.potentials.system import PARAMETERS, TYPED
+from engine.potentials.system import TYPED
 from plots.accepted_potentials import refusal
 from tests.app.state.opened_link import open_link
 from tests.contracts.potentials import WELLS
@@ -70,7 +71,7 @@ def test_any_formula(text: str) -> None:
 @given(st.sampled_from(list(WELLS)), *[mostly(st.floats(0.5, 2.0))] * 3)
 def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: Any, epsilon: Any) -> None:
     plain = WELLS[name]
-    changed = result_or_error(lambda: plain.with_parameters(omega_1, omega_2, epsilon), PARAMETERS)
+    changed = result_or_error(lambda: plain.with_parameters(omega_1, omega_2, epsilon), WELL_PARAMETERS)
     if changed is not None:
         check_display(
             System(name, "", {"omega_1": float(omega_1), "omega_2": float(omega_2), "epsilon": float(epsilon)}), reviewed(changed)
@@ -79,7 +80,7 @@ def test_any_parameters_of_a_known_potential(name: str, omega_1: Any, omega_2: A
 
 @given(case_strings)
 def test_any_potential_argument(case: str) -> None:
-    result_or_error(lambda: find_potential(case), ["case", *PARAMETERS])
+    result_or_error(lambda: find_potential(case), ["case", *WELL_PARAMETERS])
     assert not set(file_name_part(case)) & set("/\\\0 \n")
 
 

@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev
 
 from engine import Potential, System, classify_orbits, find_lyapunov_orbits, sample_starts
 from engine.exits.interior import find_outside_channels
-from engine.potentials.rotating_systems import ROTATING_ENTRIES
+from engine.potentials.catalogue.rotating_systems import ROTATING_ENTRIES
 from engine.taylor.kernels import events
 from tests.peers import taylor_heyoka
 from tests.peers.exits_by_heyoka import compare

@@ -17,7 +17,7 @@ from app.views.components.plots import FigurePane, chart_hover, set_decades, set
 from app.views.components.texts import TextPane
 from app.views.components.widgets import FULL_HEIGHT, button, flex_row
 from engine import Outcome, Sweep, System
-from engine.potentials.system import PARAMETERS
+from engine.potentials.parameters import symbol_of
 from plots.palette import LAW_COLOURS, MARK_EDGE, MEASURED, PAPER, THRESHOLD, Entry, Palette
 from plots.sweep_panels import CURVE_PANELS, SHARES_TITLE, CurvePanel
 
@@ -75,7 +75,7 @@ class CurvesView:
     def follow_system(self, system: System) -> None:
         """Offer the parameters of a system."""
         self._system = system
-        self.against.options = {"h": "h"} | {PARAMETERS.get(name, name): name for name in system.parameter_names}
+        self.against.options = {"h": "h"} | {symbol_of(name): name for name in system.parameter_names}
 
     def follow_energy(self, energy: float) -> None:
         """Mark the energy in view."""

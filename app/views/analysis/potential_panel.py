@@ -14,10 +14,11 @@ from app.browser.parameter_slider import ParameterSlider
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import button, flex_row
 from engine import PotentialReview, System
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.formulas.formula_parser import LARGEST_VALUE, LONGEST_TEXT, formula_letters
+from engine.potentials.parameters import WELL_PARAMETERS
 from engine.potentials.review.potential_review import SystemReview
-from engine.potentials.system import PARAMETERS, RANGES, TYPED
+from engine.potentials.system import TYPED
 from plots.accepted_potentials import refusal
 from plots.mathml import potential_formula, potential_symbol
 from plots.palette import MOST_CHANNELS
@@ -75,7 +76,7 @@ class PotentialPanel:
         self.typeset = TextPane("", css_classes=["typeset"], sizing_mode="stretch_width", margin=0)
         self.message = StatusPane("", css_classes=["potential-message"], sizing_mode="stretch_width", margin=0)
         self.move = button("Use this well", self._move, visible=False, margin=(8, 0))
-        self.sliders = {name: self._make_slider(name) for name in PARAMETERS}
+        self.sliders = {name: self._make_slider(name) for name in WELL_PARAMETERS}
         self.letter_sliders: dict[str, ParameterSlider] = {}
         self.letters = pn.Column(sizing_mode="stretch_width", margin=0)
         reset = lambda: self._choose(System(self.shown.case, self.shown.formula))  # noqa: E731
@@ -101,7 +102,7 @@ class PotentialPanel:
         ]
 
     def _make_slider(self, name: str) -> ParameterSlider:
-        (lowest, highest), label = RANGES[name], PARAMETERS[name]
+        label, _, (lowest, highest) = WELL_PARAMETERS[name]
         low, high = _ENDS.get(name, (_LOW, _HIGH))
         return ParameterSlider(
             partial(self._slide, name), label=label, low=low, high=high, lowest=lowest, highest=highest,
@@ -117,7 +118,7 @@ class PotentialPanel:
 
     def _show_letters(self, system: System) -> None:
         """Show a slider for each letter of the formula; one that stays keeps its range."""
-        letters = tuple(name for name in _parameter_names(system) if name not in PARAMETERS)
+        letters = tuple(name for name in _parameter_names(system) if name not in WELL_PARAMETERS)
         if letters != tuple(self.letter_sliders):
             before = self.letter_sliders
             self.letter_sliders = {
@@ -217,7 +218,7 @@ def _text(system: System) -> str:
 
 def _typed(text: str, before: System) -> System:
     """A system of a formula, with the parameters of the previous one that it still has."""
-    return System(TYPED, text, {name: before.value_of(name) for name in (*PARAMETERS, *_letters(text))})
+    return System(TYPED, text, {name: before.value_of(name) for name in (*WELL_PARAMETERS, *_letters(text))})
 
 
 def _letters(text: str) -> tuple[str, ...]:
@@ -230,7 +231,7 @@ def _letters(text: str) -> tuple[str, ...]:
 
 def _parameter_names(system: System) -> tuple[str, ...]:
     """The parameters of a system, also while its formula is not understood."""
-    return (*PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
+    return (*WELL_PARAMETERS, *_letters(system.formula)) if system.case == TYPED else system.parameter_names
 
 
 def _alert(sentence: str) -> str:

@@ -15,7 +15,7 @@ from app.state.view_state import SYSTEM, ViewState
 from app.views.components.texts import StatusPane, TextPane
 from app.views.components.widgets import flex_row
 from engine import Coordinate, ParameterAxis, Slice
-from engine.potentials.system import PARAMETERS
+from engine.potentials.parameters import symbol_of
 from engine.slices.slice_text import AXIS_NAMES, default_range
 
 _HINT = "Starts move along the two axes. The energy decides one momentum, or the speed in a given direction."
@@ -179,7 +179,7 @@ def _make_list(label: str) -> pn.widgets.Select:
 
 
 def _symbol(key: str) -> str:
-    return Coordinate(key).symbol if key in AXIS_NAMES else PARAMETERS.get(key, key)
+    return Coordinate(key).symbol if key in AXIS_NAMES else symbol_of(key)
 
 
 def _mode_of(plane: Slice) -> str:

@@ -86,3 +86,9 @@ class Form(Protocol):
 
     def limits_refusal(self) -> str | None:
         """Why V cannot be used, before anything is searched; None if it can."""
+
+
+def hessian_matrix(form: Form, x: float, y: float) -> np.ndarray:
+    """(2, 2) the Hessian matrix of V at one point."""
+    vxx, vxy, vyy = form.hessian(x, y)
+    return np.array([[vxx, vxy], [vxy, vyy]])

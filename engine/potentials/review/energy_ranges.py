@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from engine.potentials.catalogue_entry import EnergyRange
+from engine.potentials.catalogue.entry import EnergyRange
 from engine.potentials.potential import Potential
 
 HIGHEST_SHOWN = 4.0

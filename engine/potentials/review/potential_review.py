@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from engine.potentials.catalogue_entry import EnergyRange
+from engine.potentials.catalogue.entry import EnergyRange
 from engine.potentials.formulas.formula_writer import write_formula
 from engine.potentials.merged_channels import name_channels
 from engine.potentials.potential import Potential

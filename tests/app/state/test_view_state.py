@@ -7,7 +7,7 @@ import pytest
 
 from app.state.view_state import ViewState
 from engine import CASES, Plane
-from engine.potentials.catalogue import PAPER_ENERGIES
+from engine.potentials.catalogue.table import PAPER_ENERGIES
 from plots.palette import MOST_ORBITS
 
 

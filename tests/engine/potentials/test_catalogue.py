@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy
 
-from engine.potentials.catalogue import CATALOGUE
+from engine.potentials.catalogue.table import CATALOGUE
 from engine.potentials.known_potentials import CASES, POTENTIALS, channel_family
 
 X, Y = sympy.symbols("x y", real=True)

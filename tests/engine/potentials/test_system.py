@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from engine import CASES, POTENTIALS, System, parse_formula, review_potential
-from engine.potentials.catalogue import CATALOGUE, PAPER_ENERGIES
+from engine.potentials.catalogue.table import CATALOGUE, PAPER_ENERGIES
 from engine.potentials.review.potential_review import review_system
 from engine.potentials.system import TYPED
 

@@ -6,13 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
-ROTATION = "rotation"
-"""Name of the parameter Ω."""
+from engine.potentials.parameters import WELL_PARAMETERS
 
-WELL_PARAMETERS = ("omega_1", "omega_2", "epsilon")
-"""Names of ω1, ω2 and ε of Zotos (2014)."""
-
-_OF_WELLS = MappingProxyType({**dict.fromkeys(WELL_PARAMETERS, 1.0), ROTATION: 0.0})
+_OF_WELLS = MappingProxyType({name: parameter.default for name, parameter in WELL_PARAMETERS.items()})
 
 
 @dataclass(frozen=True)

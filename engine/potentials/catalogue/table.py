@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from fractions import Fraction
 from math import comb
 
-from engine.potentials.catalogue_entry import CatalogueEntry, EnergyRange
-from engine.potentials.names import ByName
-from engine.potentials.rotating_systems import ROTATING_ENTRIES
+from engine.potentials.catalogue.entry import CatalogueEntry, EnergyRange
+from engine.potentials.catalogue.names import ByName
+from engine.potentials.catalogue.rotating_systems import ROTATING_ENTRIES
 
 PAPER_ENERGIES = {
     "I": EnergyRange(0.1, 0.5, (0.13, 0.15, 0.17, 0.19, 0.21, 0.23, 0.25, 0.27, 0.30), 0.19),
@@ -78,9 +78,9 @@ _ENTRIES = (
     ),
 )
 
+_BY_NAME = {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)}
+
 CATALOGUE: Mapping[str, CatalogueEntry] = ByName(
-    "potential",
-    {entry.name: entry for entry in (*_ENTRIES, *ROTATING_ENTRIES)},
-    {entry.name: entry.title for entry in (*_ENTRIES, *ROTATING_ENTRIES)},
+    "potential", _BY_NAME, _BY_NAME.__getitem__, {name: entry.title for name, entry in _BY_NAME.items()}
 )
 """The potentials included in the engine with their descriptions, by name; the three cases of Zotos (2014) come first."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from engine.potentials.catalogue_entry import ROTATION, CatalogueEntry, EnergyRange
+from engine.potentials.catalogue.entry import CatalogueEntry, EnergyRange
+from engine.potentials.parameters import ROTATION
 
 # The Moon's share of the mass of Earth and Moon; its radius over its distance is 1737.4 / 384 400.
 _MOON_MASS = 0.0121505856
