@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from engine import CASES, EscapeMap, MapSpec, Plane, compute_map
-from plots.link_picture import HEIGHT, WIDTH, draw_link_picture, link_picture_bytes
+from plots.link_picture import HEIGHT, draw_link_picture, link_picture_bytes
 from plots.map_images import picture_pixels
 from plots.palette import PAPER, rgba
 
@@ -28,10 +28,6 @@ def image(escape_map: EscapeMap) -> np.ndarray:
 
 def texts(escape_map: EscapeMap, title: str) -> str:
     return "\n".join(text.get_text() for text in draw_link_picture(escape_map, title, PAPER).texts)
-
-
-def test_the_size_is_that_of_link_pictures(image: np.ndarray) -> None:
-    assert image.shape == (HEIGHT, WIDTH, 4) == (630, 1200, 4)
 
 
 def test_each_start_is_a_square_of_its_colour(escape_map: EscapeMap, image: np.ndarray) -> None:
@@ -56,7 +52,3 @@ def test_long_titles_are_cut(escape_map: EscapeMap) -> None:
     title = texts(escape_map, "V = " + "x^2 + " * 80).partition("\n(x, px)")[0].splitlines()
     assert len(title) == 2
     assert title[1].endswith(" …")
-
-
-def test_formulas_are_no_markup(escape_map: EscapeMap) -> None:
-    assert link_picture_bytes(escape_map, "V = $\\frac{", PAPER)

@@ -46,16 +46,6 @@ def test_undecided_and_failed_starts_do_not_count(whole: EscapeMap, fate: Fate, 
     assert np.count_nonzero(before) - np.count_nonzero(after) == 1
 
 
-def test_both_arrays_are_read_only(whole: EscapeMap) -> None:
-    assert not any(array.flags.writeable for array in exit_labels(whole.fate, bounded=True))
-
-
-def test_the_map_itself_stays_writable(whole: EscapeMap) -> None:
-    frame = with_fate(whole, Fate.FAILED)
-    exit_labels(frame.fate, bounded=True)
-    assert frame.fate.flags.writeable
-
-
 @pytest.mark.parametrize("measure", [compute_basin_entropy, compute_wada_test])
 def test_negative_codes_without_a_mask_are_no_basin(measure: Callable[..., Any]) -> None:
     fate = compute_map(MapSpec(CASES["III"], Plane.X_PX, 0.3, (30, 30), t_max=100.0)).fate
